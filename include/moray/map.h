@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+//
+// A vector function with sparse first and second derivatives: the one form in which models meet the transcription.
+#ifndef MORAY_MAP_H
+#define MORAY_MAP_H
+
+#include <complex.h>
+
+#include "moray/status.h"
+
+// Positions of the entries that may be non-zero; row and col have nnz entries. Values travel in the same order.
+typedef struct moray_pattern {
+    int nnz;
+    int *row, *col;
+} moray_pattern;
+
+// in[n_in] -> out[n_out], with
+//   jacobian: values[k] = d out[row k] / d in[col k]                        over `jac`
+//   hessian:  values[k] = d2 (sum_i weight[i] out[i]) / d in[row k] d in[col k]  over `hess`, lower triangle (row >=
+//   col)
+// No entry stands twice in a pattern. The callbacks write every value of their pattern, allocate nothing, and show
+// that they are outside their domain by a NaN. `self` may hold scratch space, so one map serves one thread.
+// `release` frees what `self` and the patterns own; NULL where nothing is owned.
+typedef struct moray_map {
+    int n_in, n_out;
+    moray_pattern jac, hess;
+    void *self;
+    void (*value)(void *self, const double *in, double *out);
+    void (*jacobian)(void *self, const double *in, double *values);
+    void (*hessian)(void *self, const double *in, const double *weight, double *values);
+    void (*release)(struct moray_map *map);
+} moray_map;
+
+// Frees what the map owns and zeroes it; safe on a zeroed map, and twice.
+void moray_map_release(moray_map *map);
+
+// The same function written for complex arguments (C99 <tgmath.h>).
+typedef void moray_complex_fn(void *self, const double complex *in, double complex *out);
+
+// Makes a map of a complex-valued function: exact Jacobians by complex step, Hessians by central differences of them,
+// patterns by NaN propagation at `probe`[n_in] and at random points near it, directions merged by column colouring.
+// `self` stays the caller's. Error: MORAY_MEMORY; MORAY_INPUT when the function is not finite at the probe.
+moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *self,
+                                    const double *probe);
+
+// The worst disagreement between a map's derivatives and an independent route, relative to 1 + |reference|.
+typedef struct moray_derivative_report {
+    double jacobian_error, hessian_error;
+    int jacobian_row, jacobian_col, hessian_row, hessian_col;
+    double jacobian_given, jacobian_reference, hessian_given, hessian_reference;
+} moray_derivative_report;
+
+// Checks at in[n_in]: the Jacobian against Richardson-extrapolated differences of the value (about 1e-10 where the
+// function is smooth), the Hessian with weight[n_out] against the same of the Jacobian; entries missing from a
+// pattern are found too. Allocates its own scratch. Error: MORAY_MEMORY.
+moray_status moray_check_derivatives(const moray_map *map, const double *in, const double *weight,
+                                     moray_derivative_report *report);
+
+// Ownership of patterns: zeroed arrays of nnz entries; free with moray_pattern_free. Error: MORAY_MEMORY.
+moray_status moray_pattern_new(moray_pattern *pattern, int nnz);
+void moray_pattern_free(moray_pattern *pattern);
+
+#endif

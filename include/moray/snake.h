@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+//
+// Underwater snake robot: parameters, gait, control-oriented and first-principles models. Equation numbers are those of
+// Kelasidi et al., "A control-oriented model of underwater snake robots exposed to currents"; errata E1-E4 in
+// README.md. Units are SI throughout; angles in rad.
+#ifndef MORAY_SNAKE_H
+#define MORAY_SNAKE_H
+
+#include "moray/map.h"
+#include "moray/ode.h"
+
+// The robot. Every field is set; moray_robot_check says whether they make sense.
+typedef struct moray_robot {
+    int links;                           // N >= 2
+    double l;                            // half a link [m]; L = 2l (erratum E2)
+    double m, J;                         // mass [kg] and moment of inertia [kg m^2] of a link
+    double c_t, c_n;                     // tangential and normal drag per link [kg/s]
+    double mu_n;                         // normal added mass per link [kg]
+    double lambda_1, lambda_2, lambda_3; // fluid torque (4): added inertia, linear and quadratic drag
+    double rot_damping, rot_gain;        // lambda~_1 [1/s], lambda~_2 [1/(m^2 s)] of (20), control-oriented model only
+    double k_p, k_d;                     // joint controller (34) [1/s^2], [1/s]
+} moray_robot;
+
+// An elliptic-cylinder link in a fluid, from which the coefficients of moray_robot follow (Sec. V-A).
+typedef struct moray_link_geometry {
+    double length;             // 2l [m]
+    double a_e, b_e;           // in-plane and vertical semi-axis [m]
+    double rho;                // fluid density [kg/m^3]
+    double C_f, C_D, C_A, C_M; // drag and added-mass constants [-]
+} moray_link_geometry;
+
+// The robot of Sec. V-A (a_e = 0.05, b_e = 0.03, 2l = 0.14, N = 10) and its links.
+moray_robot moray_robot_paper(void);
+moray_link_geometry moray_link_geometry_paper(void);
+
+// Sets l, m, J, c_t, c_n, mu_n and lambda_1..3 of the robot; leaves the rest. J is that of the solid elliptic cylinder.
+void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *geometry);
+
+// Error: MORAY_INPUT naming the first field that is not usable, its value and what is allowed.
+moray_status moray_robot_check(const moray_robot *robot);
+
+typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
+
+// Gait (25): phi_ref,i(t) = amplitude sin(omega t + (i-1) delta) + offset, i = 1..N-1. amplitude and offset are a and
+// phi_0 in m for the control-oriented model, alpha and phi_0 in rad for the first-principles model.
+typedef struct moray_gait {
+    double amplitude, omega, delta, offset;
+} moray_gait;
+
+// phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
+void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi);
+
+// Amplitude from the link-angle amplitude theta_max of (24), and back: (27) alpha = 2 sin(delta/2) theta_max;
+// (33) a = 2l cos(delta/2) sin theta_max.
+double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta);
+double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude, double delta);
+
+// The same gait for the other model: equal theta_max, omega, delta; offset in the same ratio to the amplitude, with the
+// opposite sign (erratum E3).
+moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
+
+// ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------
+//
+// State of the control-oriented model, (21), 2N+4: phi (N-1), theta, p_x, p_y, v_phi (N-1), v_theta, v_t, v_n.
+// State of the first-principles model, 2N+4: theta_1..N, p_x, p_y, and their time derivatives in the same order.
+
+typedef struct moray_swimmer moray_swimmer; // one robot, one model, its scratch space; not for two threads at once
+
+// Makes a swimmer of a copy of the robot. Error: MORAY_INPUT (moray_robot_check), MORAY_MEMORY.
+moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model);
+void moray_swimmer_free(moray_swimmer *swimmer);
+
+const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer);
+moray_model moray_swimmer_model(const moray_swimmer *swimmer);
+int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
+
+void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
+
+// State at rest over ground: all velocities zero, straight body at heading
+// theta, position (p_x, p_y). x[2N+4].
+void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
+
+// Joint coordinates and rates (N-1 each) of the state.
+void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
+
+// State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
+// N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
+bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
+
+// (34): ubar[N-1] that steers the state to the gait at time t.
+void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
+                           double *ubar);
+
+// Outputs of a state: heading (theta, or mean link angle), position, ground velocity, largest |link angle - heading|
+// ((12) for the control-oriented model).
+typedef struct moray_pose {
+    double heading, p_x, p_y, v_x, v_y, link_angle;
+} moray_pose;
+moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
+
+// Centres and orientations of the N links in the plane, for drawing: x_i[N], y_i[N], angle_i[N].
+void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i);
+
+// ---- Control-oriented model as maps with analytic derivatives (for the transcription) ------------------------------
+//
+// in  = [state x, controls u, parameters s, time t]
+// out = [f: state derivative | c: path outputs | g: joint power sum u_i v_phi,i in W]
+// path outputs c, each block only when asked for: joint forces u_i of (22) in N (N-1), then link angles theta_i of (12)
+// (N).
+
+typedef enum {
+    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0); no u
+    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0), ubar from (34); no u
+    MORAY_JOINTS_FREE         // x of (21), u = ubar (N-1); no s
+} moray_joints;
+
+typedef struct moray_plant_spec {
+    moray_robot robot;
+    moray_joints joints;
+    double current[2];             // V_x, V_y [m/s]
+    bool path_forces, path_angles; // blocks of c wanted
+} moray_plant_spec;
+
+// Sizes of the map that moray_control_plant makes.
+typedef struct moray_plant_size {
+    int nx, nu, ns, nc, nq;
+} moray_plant_size;
+moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
+
+// Error: MORAY_INPUT (robot), MORAY_MEMORY. The map owns all it needs; release with moray_map_release.
+moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
+
+#endif

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/snake.h"
+
+#define DEG (M_PI / 180)
+
+static void test_printed_coefficients(void)
+{
+    const moray_robot robot = moray_robot_paper();
+    CHECK_NEAR(robot.m, 0.6597, 5e-5, "m as printed in Sec. V-A");
+    CHECK_NEAR(robot.c_n, 8.4, 1e-12, "c_n");
+    CHECK_NEAR(robot.c_t, 0.2639, 5e-5, "c_t");
+    CHECK_NEAR(robot.mu_n, 0.3958, 5e-5, "mu_n");
+    CHECK_NEAR(robot.lambda_1, 2.2988e-7, 5e-12, "lambda_1");
+    CHECK_NEAR(robot.lambda_2, 4.3103e-4, 5e-9, "lambda_2");
+    CHECK_NEAR(robot.lambda_3, 2.2629e-5, 5e-10, "lambda_3");
+    CHECK_OK(moray_robot_check(&robot), "the paper's robot is accepted");
+}
+
+static void test_bad_robots(void)
+{
+    moray_robot robot = moray_robot_paper();
+    robot.links = 1;
+    moray_status status = moray_robot_check(&robot);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "links = 1"), "N = 1: %s", status.text);
+    robot = moray_robot_paper();
+    robot.m = -1;
+    status = moray_robot_check(&robot);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "m = -1"), "negative mass: %s", status.text);
+    robot = moray_robot_paper();
+    robot.c_n = NAN;
+    status = moray_robot_check(&robot);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "c_n"), "NaN drag: %s", status.text);
+}
+
+static void test_amplitude_table(void)
+{
+    // paper-notes, section 5
+    const double theta_deg[] = {10, 15, 20, 30}, alpha_deg[] = {6.840, 10.261, 13.681, 20.521};
+    const double a_cm[] = {2.284, 3.405, 4.500, 6.578};
+    const moray_robot robot = moray_robot_paper();
+    for (int i = 0; i < 4; i++) {
+        const double theta = theta_deg[i] * DEG, delta = 40 * DEG;
+        const double alpha = moray_amplitude_from_theta_max(&robot, MORAY_FIRST_PRINCIPLES, theta, delta);
+        const double a = moray_amplitude_from_theta_max(&robot, MORAY_CONTROL_ORIENTED, theta, delta);
+        CHECK_NEAR(alpha / DEG, alpha_deg[i], 6e-4, "(27) alpha in deg");
+        CHECK_NEAR(a * 100, a_cm[i], 6e-4, "(33) a in cm");
+        CHECK_NEAR(moray_theta_max_from_amplitude(&robot, MORAY_FIRST_PRINCIPLES, alpha, delta), theta, 1e-14,
+                   "(27) back");
+        CHECK_NEAR(moray_theta_max_from_amplitude(&robot, MORAY_CONTROL_ORIENTED, a, delta), theta, 1e-14, "(33) back");
+    }
+}
+
+static void test_gait(void)
+{
+    const moray_gait gait = {.amplitude = 0.04, .omega = 2, .delta = 0.7, .offset = 0.01};
+    enum { n = 5 };
+    double phi[n], dphi[n], ddphi[n], later[n], earlier[n], unused[n];
+    const double t = 0.3, h = 1e-4;
+    moray_gait_reference(&gait, n, t, phi, dphi, ddphi);
+    moray_gait_reference(&gait, n, t + h, later, unused, unused);
+    moray_gait_reference(&gait, n, t - h, earlier, unused, unused);
+    for (int i = 0; i < n; i++) {
+        CHECK_NEAR(phi[i], 0.04 * sin(0.6 + 0.7 * i) + 0.01, 1e-15, "(25)");
+        CHECK_NEAR(dphi[i], (later[i] - earlier[i]) / (2 * h), 1e-9, "first derivative of (25)");
+        CHECK_NEAR(ddphi[i], (later[i] - 2 * phi[i] + earlier[i]) / (h * h), 1e-7, "second derivative of (25)");
+    }
+    const moray_robot robot = moray_robot_paper();
+    const moray_gait there = moray_gait_map(&robot, &gait, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    const moray_gait back = moray_gait_map(&robot, &there, MORAY_FIRST_PRINCIPLES, MORAY_CONTROL_ORIENTED);
+    CHECK(there.offset < 0, "the offset changes sign between the models (E3): %g", there.offset);
+    CHECK_NEAR(there.offset / there.amplitude, -gait.offset / gait.amplitude, 1e-15, "offset in the amplitude's ratio");
+    CHECK_NEAR(back.amplitude, gait.amplitude, 1e-15, "mapping and back, amplitude");
+    CHECK_NEAR(back.offset, gait.offset, 1e-15, "mapping and back, offset");
+}
+
+int main(void)
+{
+    test_printed_coefficients();
+    test_bad_robots();
+    test_amplitude_table();
+    test_gait();
+    return tap_done();
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/status.h"
+
+static moray_status passes_on(void)
+{
+    MORAY_TRY(moray_error(MORAY_IO, "robot.ini: %s", "no such file"));
+    return moray_ok();
+}
+
+int main(void)
+{
+    CHECK(!moray_failed(moray_ok()), "ok has not failed");
+    moray_status status = passes_on();
+    CHECK(status.code == MORAY_IO && strcmp(status.text, "robot.ini: no such file") == 0,
+          "MORAY_TRY passes code and text on: %s", status.text);
+    char lengthy[1000];
+    memset(lengthy, 'x', sizeof lengthy - 1);
+    lengthy[sizeof lengthy - 1] = 0;
+    CHECK(strlen(moray_error(MORAY_INPUT, "%s", lengthy).text) == sizeof status.text - 1, "a long text is cut");
+    CHECK(strcmp(moray_code_text(MORAY_INTERRUPTED), "interrupted") == 0, "texts follow the codes");
+    CHECK(strcmp(moray_code_text((moray_code)99), "unknown code") == 0, "an unknown code has a text");
+    return tap_done();
+}
