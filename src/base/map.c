@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "moray/map.h"
+
+#include <stdlib.h>
+
+moray_status moray_pattern_new(moray_pattern *pattern, int nnz)
+{
+    *pattern = (moray_pattern){.nnz = nnz,
+                               .row = calloc((size_t)nnz + 1, sizeof *pattern->row),
+                               .col = calloc((size_t)nnz + 1, sizeof *pattern->col)};
+    if (pattern->row && pattern->col)
+        return moray_ok();
+    moray_pattern_free(pattern);
+    return moray_error(MORAY_MEMORY, "no memory for a pattern of %d entries", nnz);
+}
+
+void moray_pattern_free(moray_pattern *pattern)
+{
+    free(pattern->row);
+    free(pattern->col);
+    *pattern = (moray_pattern){0};
+}
+
+void moray_map_release(moray_map *map)
+{
+    if (map->release)
+        map->release(map);
+    *map = (moray_map){0};
+}
