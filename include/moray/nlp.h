@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+//
+// Sparse nonlinear programme: minimise f(x) subject to g_lower <= g(x) <= g_upper, x_lower <= x <= x_upper.
+#ifndef MORAY_NLP_H
+#define MORAY_NLP_H
+
+#include "moray/status.h"
+
+#define MORAY_INFINITY 1e20 // bounds at or beyond this do not exist
+
+// The callbacks return false where a function is not defined. `fresh` says that x differs from the last call's.
+// Patterns are fixed, without repeated entries; the Hessian is that of sigma f + sum lambda_i g_i, lower triangle.
+typedef struct moray_nlp {
+    int n, m;
+    const double *x_lower, *x_upper, *g_lower, *g_upper;
+    const double *x_scale, *g_scale; // the solver sees x_scale x, g_scale g and f_scale f; NULL or 0 for its own choice
+    double f_scale;
+    int nnz_jac, nnz_hess;
+    const int *jac_row, *jac_col, *hess_row, *hess_col;
+    void *self;
+    bool (*objective)(void *self, const double *x, bool fresh, double *f);
+    bool (*gradient)(void *self, const double *x, bool fresh, double *gradient);
+    bool (*constraints)(void *self, const double *x, bool fresh, double *g);
+    bool (*jacobian)(void *self, const double *x, bool fresh, double *values);
+    bool (*hessian)(void *self, const double *x, bool fresh, double sigma, const double *lambda, double *values);
+} moray_nlp;
+
+// A point with its multipliers, of L = f + lambda g - z_lower (x - x_lower) + z_upper (x - x_upper). The arrays are the
+// caller's: x, z_lower, z_upper [n], g, lambda [m].
+typedef struct moray_iterate {
+    double *x, *z_lower, *z_upper, *g, *lambda;
+    double objective;
+} moray_iterate;
+
+// One line of progress; return false to stop at this iteration.
+typedef struct moray_progress {
+    int iteration;
+    double objective, infeasibility, dual_infeasibility;
+    bool restoring; // in the solver's feasibility restoration
+} moray_progress;
+typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
+
+typedef struct moray_nlp_settings {
+    double tolerance;   // 1e-8: scaled KKT error at which the solver stops
+    int max_iterations; // 1000
+    bool warm;          // false: true starts from the multipliers of the iterate too
+    int print_level;    // 0: Ipopt's own log on standard output, 0..12
+    moray_progress_fn *progress;
+    void *observer;
+} moray_nlp_settings;
+
+moray_nlp_settings moray_nlp_settings_default(void);
+
+typedef enum {
+    MORAY_NLP_SOLVED,
+    MORAY_NLP_ACCEPTABLE, // to Ipopt's looser tolerance only
+    MORAY_NLP_INFEASIBLE, // a stationary point of the constraint violation
+    MORAY_NLP_ITERATION_LIMIT,
+    MORAY_NLP_INTERRUPTED,
+    MORAY_NLP_STALLED, // restoration failed, search direction too small, diverging, or a linear solve failed
+    MORAY_NLP_INVALID  // not a number, or too few degrees of freedom
+} moray_nlp_outcome;
+const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
+
+typedef struct moray_nlp_info {
+    moray_nlp_outcome outcome;
+    int iterations;
+    double seconds;            // whole solve
+    double evaluation_seconds; // of it in the callbacks
+    int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
+} moray_nlp_info;
+
+// Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there. Returns MORAY_OK
+// whenever Ipopt ran (read info->outcome), MORAY_MEMORY, or MORAY_INPUT when the problem cannot be set up.
+moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
+                               moray_nlp_info *info);
+
+// Optimality of an iterate, computed from the callbacks alone, in the user's units (nothing scaled).
+typedef struct moray_kkt {
+    double stationarity;    // largest |d L / d x_j| / dual_scale
+    double feasibility;     // largest violation of a constraint or bound / (1 + |bound|)
+    double complementarity; // largest |multiplier x slack| / dual_scale
+    double dual_scale;      // max(1, mean |multiplier|)
+    double error;           // the largest of the three
+    int worst_variable;     // of the stationarity
+    int worst_constraint;   // of the feasibility; m + j for the bounds of x_j
+} moray_kkt;
+
+// Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at the iterate.
+moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt);
+
+#endif

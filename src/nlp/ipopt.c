@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+//
+// The one file that knows Ipopt. Written for 3.11 (char * options) and kept valid for 3.14.
+#include "moray/nlp.h"
+
+#include <coin/IpStdCInterface.h>
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+struct session {
+    const moray_nlp *nlp;
+    const moray_nlp_settings *settings;
+    moray_nlp_info *info;
+};
+
+enum { eval_objective, eval_gradient, eval_constraints, eval_jacobian, eval_hessian };
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static Bool account(struct session *session, int which, double start, bool ok)
+{
+    session->info->evaluation_seconds += now() - start;
+    session->info->evaluations[which]++;
+    return ok;
+}
+
+static Bool on_objective(Index n, Number *x, Bool fresh, Number *f, UserDataPtr data)
+{
+    (void)n;
+    struct session *session = data;
+    const double start = now();
+    return account(session, eval_objective, start, session->nlp->objective(session->nlp->self, x, fresh, f));
+}
+
+static Bool on_gradient(Index n, Number *x, Bool fresh, Number *gradient, UserDataPtr data)
+{
+    (void)n;
+    struct session *session = data;
+    const double start = now();
+    return account(session, eval_gradient, start, session->nlp->gradient(session->nlp->self, x, fresh, gradient));
+}
+
+static Bool on_constraints(Index n, Number *x, Bool fresh, Index m, Number *g, UserDataPtr data)
+{
+    (void)n;
+    (void)m;
+    struct session *session = data;
+    const double start = now();
+    return account(session, eval_constraints, start, session->nlp->constraints(session->nlp->self, x, fresh, g));
+}
+
+static Bool on_jacobian(Index n, Number *x, Bool fresh, Index m, Index nnz, Index *row, Index *col, Number *values,
+                        UserDataPtr data)
+{
+    (void)n;
+    (void)m;
+    struct session *session = data;
+    const moray_nlp *nlp = session->nlp;
+    if (!values) {
+        memcpy(row, nlp->jac_row, (size_t)nnz * sizeof *row);
+        memcpy(col, nlp->jac_col, (size_t)nnz * sizeof *col);
+        return TRUE;
+    }
+    const double start = now();
+    return account(session, eval_jacobian, start, nlp->jacobian(nlp->self, x, fresh, values));
+}
+
+static Bool on_hessian(Index n, Number *x, Bool fresh, Number sigma, Index m, Number *lambda, Bool fresh_lambda,
+                       Index nnz, Index *row, Index *col, Number *values, UserDataPtr data)
+{
+    (void)n;
+    (void)m;
+    (void)fresh_lambda;
+    struct session *session = data;
+    const moray_nlp *nlp = session->nlp;
+    if (!values) {
+        memcpy(row, nlp->hess_row, (size_t)nnz * sizeof *row);
+        memcpy(col, nlp->hess_col, (size_t)nnz * sizeof *col);
+        return TRUE;
+    }
+    const double start = now();
+    return account(session, eval_hessian, start, nlp->hessian(nlp->self, x, fresh, sigma, lambda, values));
+}
+
+static Bool on_iteration(Index mode, Index iteration, Number objective, Number inf_pr, Number inf_du, Number mu,
+                         Number d_norm, Number regularisation, Number alpha_du, Number alpha_pr, Index trials,
+                         UserDataPtr data)
+{
+    (void)mu;
+    (void)d_norm;
+    (void)regularisation;
+    (void)alpha_du;
+    (void)alpha_pr;
+    (void)trials;
+    struct session *session = data;
+    session->info->iterations = iteration;
+    if (!session->settings->progress)
+        return TRUE;
+    const moray_progress progress = {iteration, objective, inf_pr, inf_du, mode != 0};
+    return session->settings->progress(session->settings->observer, &progress);
+}
+
+static bool set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_nlp_settings *settings)
+{
+    // 3.11 declares its option texts as char * but only reads them.
+    bool ok = AddIpoptNumOption(problem, (char *)"tol", settings->tolerance);
+    ok = ok && AddIpoptIntOption(problem, (char *)"max_iter", settings->max_iterations);
+    ok = ok && AddIpoptIntOption(problem, (char *)"print_level", settings->print_level);
+    ok = ok && AddIpoptStrOption(problem, (char *)"sb", (char *)"yes"); // no banner
+    ok = ok && AddIpoptStrOption(problem, (char *)"linear_solver", (char *)"mumps");
+    if (nlp->x_scale || nlp->g_scale || nlp->f_scale != 0) {
+        ok = ok && AddIpoptStrOption(problem, (char *)"nlp_scaling_method", (char *)"user-scaling");
+        ok = ok && SetIpoptProblemScaling(problem, nlp->f_scale != 0 ? nlp->f_scale : 1, (double *)nlp->x_scale,
+                                          (double *)nlp->g_scale);
+    }
+    if (settings->warm) {
+        ok = ok && AddIpoptStrOption(problem, (char *)"warm_start_init_point", (char *)"yes");
+        ok = ok && AddIpoptNumOption(problem, (char *)"mu_init", 1e-6);
+        ok = ok && AddIpoptNumOption(problem, (char *)"warm_start_bound_push", 1e-9);
+        ok = ok && AddIpoptNumOption(problem, (char *)"warm_start_mult_bound_push", 1e-9);
+    }
+    return ok && SetIntermediateCallback(problem, on_iteration);
+}
+
+static moray_nlp_outcome outcome_of(enum ApplicationReturnStatus code)
+{
+    switch (code) {
+    case Solve_Succeeded:
+    case Feasible_Point_Found:
+        return MORAY_NLP_SOLVED;
+    case Solved_To_Acceptable_Level:
+        return MORAY_NLP_ACCEPTABLE;
+    case Infeasible_Problem_Detected:
+        return MORAY_NLP_INFEASIBLE;
+    case Maximum_Iterations_Exceeded:
+    case Maximum_CpuTime_Exceeded:
+        return MORAY_NLP_ITERATION_LIMIT;
+    case User_Requested_Stop:
+        return MORAY_NLP_INTERRUPTED;
+    case Search_Direction_Becomes_Too_Small:
+    case Diverging_Iterates:
+    case Restoration_Failed:
+    case Error_In_Step_Computation:
+        return MORAY_NLP_STALLED;
+    default:
+        return MORAY_NLP_INVALID;
+    }
+}
+
+moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
+                               moray_nlp_info *info)
+{
+    *info = (moray_nlp_info){0};
+    if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
+        return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
+    const double start = now();
+    // Ipopt copies the bounds.
+    IpoptProblem problem = CreateIpoptProblem(
+        nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
+        nlp->nnz_jac, nlp->nnz_hess, 0, on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
+    if (!problem)
+        return moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
+    struct session session = {nlp, settings, info};
+    moray_status status = moray_ok();
+    if (set_options(problem, nlp, settings))
+        info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective, iterate->lambda,
+                                              iterate->z_lower, iterate->z_upper, &session));
+    else
+        status = moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
+                             settings->tolerance, settings->max_iterations, settings->print_level);
+    FreeIpoptProblem(problem);
+    info->seconds = now() - start;
+    return status;
+}
+
+moray_nlp_settings moray_nlp_settings_default(void)
+{
+    return (moray_nlp_settings){.tolerance = 1e-8, .max_iterations = 1000};
+}
+
+const char *moray_nlp_outcome_text(moray_nlp_outcome outcome)
+{
+    static const char *const texts[] = {"solved",
+                                        "solved to a looser tolerance",
+                                        "infeasible",
+                                        "iteration limit",
+                                        "interrupted",
+                                        "stalled",
+                                        "not a number, or too few degrees of freedom"};
+    return (unsigned)outcome < sizeof texts / sizeof *texts ? texts[outcome] : "unknown";
+}

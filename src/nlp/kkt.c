@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "moray/nlp.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void keep_worst(double *worst, int *where, double value, int here)
+{
+    if (!(value <= *worst)) {
+        *worst = value;
+        *where = here;
+    }
+}
+
+static double violation(double value, double lower, double upper)
+{
+    if (lower > -MORAY_INFINITY && value < lower)
+        return (lower - value) / (1 + fabs(lower));
+    if (upper < MORAY_INFINITY && value > upper)
+        return (value - upper) / (1 + fabs(upper));
+    return 0;
+}
+
+// max(1, mean |multiplier|), so that a problem stated in small units does not look unsolved
+static double mean_multiplier(const moray_nlp *nlp, const moray_iterate *it)
+{
+    double sum = 0;
+    for (int i = 0; i < nlp->m; i++)
+        sum += fabs(it->lambda[i]);
+    for (int j = 0; j < nlp->n; j++)
+        sum += fabs(it->z_lower[j]) + fabs(it->z_upper[j]);
+    return fmax(1, sum / (nlp->m + 2.0 * nlp->n));
+}
+
+// A multiplier must vanish or its constraint be active.
+static double row_complementarity(const moray_nlp *nlp, const moray_iterate *it, const double *g, int i)
+{
+    if (nlp->g_lower[i] == nlp->g_upper[i])
+        return 0;
+    const double bound = it->lambda[i] > 0 ? nlp->g_upper[i] : nlp->g_lower[i];
+    return fabs(bound) >= MORAY_INFINITY ? fabs(it->lambda[i]) : fabs(it->lambda[i] * (bound - g[i]));
+}
+
+static double bound_complementarity(const moray_nlp *nlp, const moray_iterate *it, int j)
+{
+    double worst = 0;
+    if (nlp->x_lower[j] > -MORAY_INFINITY)
+        worst = fabs(it->z_lower[j] * (it->x[j] - nlp->x_lower[j]));
+    if (nlp->x_upper[j] < MORAY_INFINITY)
+        worst = fmax(worst, fabs(it->z_upper[j] * (nlp->x_upper[j] - it->x[j])));
+    return worst;
+}
+
+// gradient <- d L / d x
+static void lagrangian_gradient(const moray_nlp *nlp, const moray_iterate *it, const double *jac, double *gradient)
+{
+    for (int k = 0; k < nlp->nnz_jac; k++)
+        gradient[nlp->jac_col[k]] += it->lambda[nlp->jac_row[k]] * jac[k];
+    for (int j = 0; j < nlp->n; j++)
+        gradient[j] += it->z_upper[j] - it->z_lower[j];
+}
+
+static void measure(const moray_nlp *nlp, const moray_iterate *it, const double *g, const double *gradient,
+                    moray_kkt *kkt)
+{
+    *kkt = (moray_kkt){.dual_scale = mean_multiplier(nlp, it), .worst_variable = -1, .worst_constraint = -1};
+    int ignored;
+    for (int j = 0; j < nlp->n; j++) {
+        if (nlp->x_lower[j] < nlp->x_upper[j]) // a fixed variable's own multiplier takes up whatever is left
+            keep_worst(&kkt->stationarity, &kkt->worst_variable, fabs(gradient[j]) / kkt->dual_scale, j);
+        keep_worst(&kkt->feasibility, &kkt->worst_constraint, violation(it->x[j], nlp->x_lower[j], nlp->x_upper[j]),
+                   nlp->m + j);
+        if (nlp->x_lower[j] < nlp->x_upper[j])
+            keep_worst(&kkt->complementarity, &ignored, bound_complementarity(nlp, it, j) / kkt->dual_scale, j);
+    }
+    for (int i = 0; i < nlp->m; i++) {
+        keep_worst(&kkt->feasibility, &kkt->worst_constraint, violation(g[i], nlp->g_lower[i], nlp->g_upper[i]), i);
+        keep_worst(&kkt->complementarity, &ignored, row_complementarity(nlp, it, g, i) / kkt->dual_scale, i);
+    }
+    kkt->error = fmax(kkt->stationarity, fmax(kkt->feasibility, kkt->complementarity));
+}
+
+moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt)
+{
+    double *block = calloc((size_t)(nlp->n + nlp->m + nlp->nnz_jac) + 1, sizeof *block);
+    if (!block)
+        return moray_error(MORAY_MEMORY, "no memory to check %d variables", nlp->n);
+    double *gradient = block, *g = block + nlp->n, *jac = g + nlp->m;
+    const bool ok = nlp->constraints(nlp->self, iterate->x, true, g) &&
+                    nlp->gradient(nlp->self, iterate->x, false, gradient) &&
+                    nlp->jacobian(nlp->self, iterate->x, false, jac);
+    if (ok) {
+        lagrangian_gradient(nlp, iterate, jac, gradient);
+        measure(nlp, iterate, g, gradient, kkt);
+    }
+    free(block);
+    return ok ? moray_ok() : moray_error(MORAY_NUMERIC, "a function of the problem is not finite at the solution");
+}

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+//
+// Hock-Schittkowski 71: min x0 x3 (x0+x1+x2) + x2, x0 x1 x2 x3 >= 25, |x|^2 = 40, 1 <= x <= 5. f* = 17.0140173.
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/nlp.h"
+
+static bool objective(void *self, const double *x, bool fresh, double *f)
+{
+    (void)self;
+    (void)fresh;
+    *f = x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2];
+    return true;
+}
+
+static bool gradient(void *self, const double *x, bool fresh, double *g)
+{
+    (void)self;
+    (void)fresh;
+    g[0] = x[3] * (2 * x[0] + x[1] + x[2]);
+    g[1] = x[0] * x[3];
+    g[2] = x[0] * x[3] + 1;
+    g[3] = x[0] * (x[0] + x[1] + x[2]);
+    return true;
+}
+
+static bool constraints(void *self, const double *x, bool fresh, double *g)
+{
+    (void)fresh;
+    g[0] = x[0] * x[1] * x[2] * x[3];
+    g[1] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3];
+    return self == NULL;
+}
+
+static bool jacobian(void *self, const double *x, bool fresh, double *v)
+{
+    (void)self;
+    (void)fresh;
+    for (int j = 0; j < 4; j++) {
+        v[j] = x[(j + 1) % 4] * x[(j + 2) % 4] * x[(j + 3) % 4];
+        v[4 + j] = 2 * x[j];
+    }
+    return true;
+}
+
+// lower triangle row by row
+static bool hessian(void *self, const double *x, bool fresh, double sigma, const double *lambda, double *v)
+{
+    (void)self;
+    (void)fresh;
+    const double f[10] = {2 * x[3], x[3], 0, x[3], 0, 0, 2 * x[0] + x[1] + x[2], x[0], x[0], 0};
+    for (int i = 0, k = 0; i < 4; i++)
+        for (int j = 0; j <= i; j++, k++) {
+            double others = 1;
+            for (int l = 0; l < 4; l++)
+                others *= l == i || l == j ? 1 : x[l];
+            v[k] = sigma * f[k] + (i == j ? 2 * lambda[1] : lambda[0] * others);
+        }
+    return true;
+}
+
+static const double lower[] = {1, 1, 1, 1}, upper[] = {5, 5, 5, 5}, g_lower[] = {25, 40},
+                    g_upper[] = {MORAY_INFINITY, 40};
+static const int jac_row[] = {0, 0, 0, 0, 1, 1, 1, 1}, jac_col[] = {0, 1, 2, 3, 0, 1, 2, 3};
+static const int hess_row[] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3}, hess_col[] = {0, 0, 1, 0, 1, 2, 0, 1, 2, 3};
+
+static moray_nlp hock_schittkowski_71(void)
+{
+    return (moray_nlp){.n = 4,
+                       .m = 2,
+                       .x_lower = lower,
+                       .x_upper = upper,
+                       .g_lower = g_lower,
+                       .g_upper = g_upper,
+                       .nnz_jac = 8,
+                       .nnz_hess = 10,
+                       .jac_row = jac_row,
+                       .jac_col = jac_col,
+                       .hess_row = hess_row,
+                       .hess_col = hess_col,
+                       .objective = objective,
+                       .gradient = gradient,
+                       .constraints = constraints,
+                       .jacobian = jacobian,
+                       .hessian = hessian};
+}
+
+static bool stop_at_three(void *observer, const moray_progress *progress)
+{
+    *(int *)observer = progress->iteration;
+    return progress->iteration < 3;
+}
+
+int main(void)
+{
+    moray_nlp nlp = hock_schittkowski_71();
+    double x[4] = {1, 5, 5, 1}, z_lower[4], z_upper[4], g[2], lambda[2];
+    moray_iterate it = {x, z_lower, z_upper, g, lambda, 0};
+    moray_nlp_settings settings = moray_nlp_settings_default();
+    moray_nlp_info info;
+    moray_kkt kkt;
+    CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "HS71");
+    CHECK(info.outcome == MORAY_NLP_SOLVED, "outcome: %s", moray_nlp_outcome_text(info.outcome));
+    CHECK_NEAR(it.objective, 17.0140173, 1e-6, "published optimum");
+    CHECK_OK(moray_kkt_error(&nlp, &it, &kkt), "KKT");
+    CHECK(kkt.error < 1e-7, "KKT error %.1e", kkt.error);
+    x[1] += 1e-3;
+    moray_kkt_error(&nlp, &it, &kkt);
+    CHECK(kkt.error > 1e-4 && kkt.feasibility > 1e-4, "a shifted point is not optimal: %.1e", kkt.error);
+    x[1] -= 1e-3;
+    lambda[1] += 0.1;
+    moray_kkt_error(&nlp, &it, &kkt);
+    CHECK(kkt.stationarity > 1e-2, "a wrong multiplier shows in the stationarity: %.1e", kkt.stationarity);
+
+    const double x_scale[] = {10, 0.1, 3, 1}, g_scale[] = {0.04, 2};
+    nlp.x_scale = x_scale;
+    nlp.g_scale = g_scale;
+    nlp.f_scale = 0.1;
+    memcpy(x, (double[]){1, 5, 5, 1}, sizeof x);
+    CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "scaled");
+    moray_kkt_error(&nlp, &it, &kkt);
+    CHECK_NEAR(it.objective, 17.0140173, 1e-6, "the optimum does not depend on scaling");
+    CHECK(kkt.error < 1e-6, "multipliers come back in user units: KKT %.1e", kkt.error);
+
+    int last = 0;
+    memcpy(x, (double[]){1, 5, 5, 1}, sizeof x);
+    settings.progress = stop_at_three;
+    settings.observer = &last;
+    CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "interrupted run");
+    CHECK(info.outcome == MORAY_NLP_INTERRUPTED && last == 3, "stops when asked, at iteration %d", last);
+    settings.progress = NULL;
+
+    const double impossible[] = {5000, 40};
+    nlp.g_lower = impossible;
+    CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "infeasible run");
+    CHECK(info.outcome == MORAY_NLP_INFEASIBLE, "infeasible is said: %s", moray_nlp_outcome_text(info.outcome));
+    settings.tolerance = -1;
+    CHECK(moray_failed(moray_ipopt_solve(&nlp, &settings, &it, &info)), "a negative tolerance is refused");
+    nlp.self = &nlp;
+    CHECK(moray_kkt_error(&nlp, &it, &kkt).code == MORAY_NUMERIC, "an undefined constraint is an error");
+    return tap_done();
+}
