@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#ifndef OCP_LEGENDRE_H
+#define OCP_LEGENDRE_H
+
+// Gauss, Radau (right end) and Lobatto points on [0, 1], ascending, to rounding. node[s].
+void legendre_gauss(int s, double *node, double *weight); // weight may be NULL
+void legendre_radau(int s, double *node);
+void legendre_lobatto(int s, double *node);
+
+#endif

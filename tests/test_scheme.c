@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/scheme.h"
+
+// The tables must integrate and differentiate polynomials exactly: A to degree s-1 at every point, b to order - 1.
+static void test_exactness(moray_family family, int stages)
+{
+    moray_scheme k;
+    moray_status status = moray_scheme_new(&k, family, stages);
+    CHECK(!moray_failed(status), "family %d, %d stages", family, stages);
+    double worst_A = 0, worst_b = 0, worst_defect = 0;
+    for (int degree = 0; degree < k.order; degree++) {
+        for (int i = 0; i < k.points; i++) {
+            double integral = 0;
+            for (int j = 0; j < k.points; j++)
+                integral += k.A[i * k.points + j] * pow(k.node[j], degree);
+            if (degree < stages)
+                worst_A = fmax(worst_A, fabs(integral - pow(k.node[i], degree + 1) / (degree + 1)));
+            if (i == k.points - 1)
+                worst_b = fmax(worst_b, fabs(integral - 1.0 / (degree + 1)));
+        }
+        for (int i = 0; i < k.points - 1 && degree < stages; i++) {
+            double defect = 0;
+            for (int j = 0; j < k.points; j++)
+                defect += k.P[i * k.points + j] * pow(k.node[j], degree + 1) -
+                          k.Q[i * k.points + j] * (degree + 1) * pow(k.node[j], degree);
+            worst_defect = fmax(worst_defect, fabs(defect));
+        }
+    }
+    CHECK(worst_A < 2e-14 && worst_b < 2e-14 && worst_defect < 1e-12,
+          "family %d, %d stages, order %d: exact on polynomials (A %.1e, b %.1e, defects %.1e)", family, stages,
+          k.order, worst_A, worst_b, worst_defect);
+    double rows = 0;
+    for (int i = 0; i < k.points - 1; i++) {
+        double sum = 0, largest = 0;
+        for (int j = 0; j < k.points; j++) {
+            sum += k.P[i * k.points + j];
+            largest = fmax(largest, fabs(k.P[i * k.points + j]));
+        }
+        rows = fmax(rows, fmax(fabs(sum), fabs(largest - 1)));
+    }
+    CHECK(rows < 1e-12, "family %d, %d stages: defects of a constant vanish, coefficients at most 1 (%.1e)", family,
+          stages, rows);
+    moray_scheme_free(&k);
+}
+
+static void test_textbook_tables(void)
+{
+    moray_scheme k;
+    CHECK_OK(moray_scheme_new(&k, MORAY_LOBATTO, 3), "Hermite-Simpson");
+    const double simpson[] = {1. / 6, 2. / 3, 1. / 6}, middle[] = {5. / 24, 1. / 3, -1. / 24};
+    for (int j = 0; j < 3; j++) {
+        CHECK_NEAR(k.b[j], simpson[j], 1e-15, "Simpson's weights");
+        CHECK_NEAR(k.A[3 + j], middle[j], 1e-15, "middle row of Lobatto IIIA");
+    }
+    moray_scheme_free(&k);
+    CHECK_OK(moray_scheme_new(&k, MORAY_RADAU, 2), "Radau IIA");
+    CHECK_NEAR(k.node[1], 1. / 3, 1e-15, "Radau point");
+    CHECK_NEAR(k.A[3 + 1], 5. / 12, 1e-15, "Radau IIA a11");
+    CHECK_NEAR(k.A[3 + 2], -1. / 12, 1e-15, "Radau IIA a12");
+    moray_scheme_free(&k);
+    CHECK_OK(moray_scheme_new(&k, MORAY_GAUSS, 1), "midpoint rule");
+    CHECK_NEAR(k.node[1], 0.5, 1e-15, "midpoint");
+    CHECK_NEAR(k.b[1], 1, 1e-15, "weight of the midpoint rule");
+    moray_scheme_free(&k);
+}
+
+static void test_names(void)
+{
+    moray_family family;
+    int stages;
+    CHECK(!moray_failed(moray_scheme_parse("hermite-simpson", &family, &stages)) && family == MORAY_LOBATTO &&
+              stages == 3,
+          "hermite-simpson is Lobatto with 3 stages");
+    CHECK(!moray_failed(moray_scheme_parse("radau12", &family, &stages)) && family == MORAY_RADAU && stages == 12,
+          "radau12");
+    const char *bad[] = {"", "simpson", "lobatto", "lobatto1", "radau0", "gauss65", "gauss3x", "trapezoid2", "radau-3"};
+    for (unsigned i = 0; i < sizeof bad / sizeof *bad; i++) {
+        moray_status status = moray_scheme_parse(bad[i], &family, &stages);
+        CHECK(status.code == MORAY_INPUT && strstr(status.text, "scheme = "), "\"%s\" is refused", bad[i]);
+    }
+    moray_scheme scheme;
+    CHECK(moray_scheme_new(&scheme, MORAY_LOBATTO, 1).code == MORAY_INPUT, "Lobatto needs two stages");
+}
+
+int main(void)
+{
+    for (int stages = 1; stages <= 20; stages++)
+        for (int family = 0; family < 3; family++)
+            if (family != MORAY_LOBATTO || stages > 1)
+                test_exactness((moray_family)family, stages);
+    test_exactness(MORAY_RADAU, MORAY_MAX_STAGES);
+    test_exactness(MORAY_LOBATTO, MORAY_MAX_STAGES);
+    test_exactness(MORAY_GAUSS, MORAY_MAX_STAGES);
+    test_textbook_tables();
+    test_names();
+    return tap_done();
+}
