@@ -3,7 +3,10 @@
 #define MORAY_MORAY_H
 
 #include "moray/map.h"
+#include "moray/nlp.h"
+#include "moray/ocp.h"
 #include "moray/ode.h"
+#include "moray/scheme.h"
 #include "moray/snake.h"
 #include "moray/status.h"
 
