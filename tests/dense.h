@@ -9,8 +9,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-enum { DENSE_LINKS = 17 }; // most links of a test robot
-
 // Row-major matrix of `rows` x `cols`.
 typedef struct {
     int rows, cols;

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
 // The running sums of shape.c against the matrices built by definition.
-#include "tap.h"
 #include "dense.h"
+#include "random_robot.h"
 #include "snake/shape.h"
 
 typedef void product(int N, const double *v, double *out);
 
 static void check_product(int N, const char *name, product *fast, dense matrix, bool transposed)
 {
-    unsigned long long seed = (unsigned long long)N;
-    double v[DENSE_LINKS], out[DENSE_LINKS + 1], expected[DENSE_LINKS];
+    random_seed seed = (random_seed)N;
+    double v[MAX_LINKS], out[MAX_LINKS + 1], expected[MAX_LINKS];
     const int n_out = transposed ? matrix.cols : matrix.rows;
     double worst = 0;
     for (int trial = 0; trial < 5; trial++) {
-        for (int i = 0; i < N - 1; i++)
-            v[i] = tap_random(&seed, -1, 1);
+        random_vector(&seed, 1, N - 1, v);
         out[n_out] = 1234;
         fast(N, v, out);
         dense_apply(matrix, transposed, v, expected);
@@ -57,10 +56,9 @@ static void check_identities(int N)
 
 int main(void)
 {
-    const int links[] = {2, 3, 5, 10, 17};
-    for (unsigned k = 0; k < sizeof links / sizeof *links; k++) {
-        check_products(links[k]);
-        check_identities(links[k]);
+    for (int k = 0; k < ROBOT_SIZES; k++) {
+        check_products(robot_links[k]);
+        check_identities(robot_links[k]);
     }
     return tap_done();
 }
