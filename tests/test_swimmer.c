@@ -46,8 +46,14 @@ static void check_rest(random_seed *seed, moray_model model, int N)
     CHECK(dot(2 * N + 4, dx, dx) == 0 && dot(N - 1, u, u) == 0, "still water leaves it at rest");
     moray_swimmer_set_current(swimmer, 0.3, 0.1);
     CHECK(moray_swimmer_rates(swimmer, x, ubar, dx, NULL) && dot(2 * N + 4, dx, dx) > 0, "a current moves it");
-    x[0] = NAN;
-    CHECK(!moray_swimmer_rates(swimmer, x, ubar, dx, u), "a NaN is refused");
+    for (int i = 0; i < 2 * N + 4; i += 2 * N + 2) { // shape, velocity
+        const double kept = x[i];
+        x[i] = NAN;
+        CHECK(!moray_swimmer_rates(swimmer, x, ubar, dx, NULL), "a NaN in state %d is refused", i);
+        x[i] = kept;
+    }
+    ubar[0] = INFINITY;
+    CHECK(!moray_swimmer_rates(swimmer, x, ubar, dx, u), "an infinite joint acceleration is refused");
     moray_swimmer_free(swimmer);
 }
 
