@@ -190,7 +190,7 @@ typedef struct moray_certificate {
     double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
                           // x mesh_tolerance
     double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes when each phase is integrated again
-                         // from its start with the found controls; limit 100 x mesh_tolerance
+                          // from its start with the found controls; limit 100 x mesh_tolerance
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.
