@@ -22,7 +22,7 @@ typedef struct dense_plant {
     matrix A, D, gram_inverse, Dbar, ADbar, ADT;
 } dense_plant;
 
-static void multiply(int rows, int inner, int cols, const matrix x, const matrix y, bool y_transposed, matrix out)
+static void multiply(int rows, int inner, int cols, matrix x, matrix y, bool y_transposed, matrix out)
 {
     for (int i = 0; i < rows; i++)
         for (int j = 0; j < cols; j++) {
@@ -114,7 +114,8 @@ static dense_state dense_unpack(const dense_plant *self, const num *in)
         const bool on_gait = self->spec.joints == MORAY_JOINTS_ON_GAIT;
         x.phi[i] = on_gait ? ref : in[i];
         x.v_phi[i] = on_gait ? dref : in[n + 3 + i];
-        x.ubar[i] = ddref + self->spec.robot.k_d * (dref - x.v_phi[i]) + self->spec.robot.k_p * (ref - x.phi[i]); // (34)
+        x.ubar[i] =
+            ddref + self->spec.robot.k_d * (dref - x.v_phi[i]) + self->spec.robot.k_p * (ref - x.phi[i]); // (34)
         if (self->spec.joints == MORAY_JOINTS_FREE)
             x.ubar[i] = in[size.nx + i];
     }
@@ -134,7 +135,7 @@ static dense_rates dense_dynamics(const dense_plant *self, const dense_state *x)
     const moray_robot *r = &self->spec.robot;
     const int N = self->N, n = self->n;
     const double L = 2 * r->l, m = r->m, mt = r->m + r->mu_n;
-    const double c_p = (r->c_n - r->c_t) / L, mu_p = r->mu_n / L, ch = r->c_n / (L * L);
+    const double c_p = (r->c_n - r->c_t) / (2 * L), mu_p = r->mu_n / (2 * L), ch = r->c_n / (4 * L * L); // (13)
     const num v_tr = x->v_t - (self->spec.current[0] * ccos(x->theta) + self->spec.current[1] * csin(x->theta));
     const num v_nr = x->v_n - (-self->spec.current[0] * csin(x->theta) + self->spec.current[1] * ccos(x->theta));
     num bent[DENSE_LINKS], moved[DENSE_LINKS], pushed[DENSE_LINKS], s = 0, squares = 0;
@@ -150,18 +151,18 @@ static dense_rates dense_dynamics(const dense_plant *self, const dense_state *x)
     apply(n, n, self->ADbar, x->v_phi, moved);
     apply(n, n, self->ADbar, x->ubar, pushed);
     const num by_v = inner(n, x->phi, moved), by_ubar = inner(n, x->phi, pushed);
-    const num h_1 = 1 / (N * N * m * mt - 4 * mu_p * mu_p * s * s);                // (17)
-    const num h_2 = 2 * N * s * (c_p * mt - r->c_n * mu_p);                        // (16b)
+    const num h_1 = 1 / (N * N * m * mt - 4 * mu_p * mu_p * s * s); // (17)
+    const num h_2 = 2 * N * s * (c_p * mt - r->c_n * mu_p);         // (16b)
     const num h_3 = 4 * c_p * mu_p * s * s - N * N * mt * r->c_t - N * mt * ch * squares;
     const num h_4 = 2 * s * (N * c_p * m - N * r->c_t * mu_p - ch * mu_p * squares); // (16c)
     const num h_5 = 4 * c_p * mu_p * s * s - N * N * m * r->c_n;
-    dense_rates rates = {
-        .dv_theta = -r->rot_damping * x->v_theta + r->rot_gain / (N - 1) * v_tr * s, // (20)
-        .dv_t = h_1 * (h_2 * v_nr + h_3 * v_tr - c_p * N * mt * by_v - mu_p * N * mt * by_ubar),
-        .dv_n = h_1 * (h_4 * v_tr + h_5 * v_nr - 2 * c_p * mu_p * s * by_v - 2 * mu_p * mu_p * s * by_ubar)};
+    dense_rates rates = {.dv_theta = -r->rot_damping * x->v_theta + r->rot_gain / (N - 1) * v_tr * s, // (20)
+                         .dv_t = h_1 * (h_2 * v_nr + h_3 * v_tr - c_p * N * mt * by_v - mu_p * N * mt * by_ubar),
+                         .dv_n = h_1 *
+                                 (h_4 * v_tr + h_5 * v_nr - 2 * c_p * mu_p * s * by_v - 2 * mu_p * mu_p * s * by_ubar)};
     const num K = 2 * N * mu_p * h_1 * s * (r->c_n * mu_p - mt * c_p) * v_nr +
                   N * mt * h_1 * (N * mu_p * r->c_t + ch * mu_p * squares - N * m * c_p) * v_tr;
-    num force[DENSE_LINKS];
+    num force[DENSE_LINKS] = {0};
     for (int i = 0; i < n; i++) // (18)
         force[i] = mt * x->ubar[i] + N * mt * mu_p * mu_p * h_1 * bent[i] * by_ubar + r->c_n * x->v_phi[i] +
                    N * mt * c_p * mu_p * h_1 * bent[i] * by_v + K * bent[i];
