@@ -5,32 +5,25 @@
 #define DENSE_DERIVATIVES_H
 
 #include "dense_plant.h"
-#include "tap.h"
 
 typedef struct grid {
     double at[DENSE_OUTPUTS][DENSE_INPUTS];
 } grid;
 
+static random_seed derivatives_seed = 20240607;
+
 static double draw(double low, double high)
 {
-    static unsigned long long seed = 20240607;
-    return tap_random(&seed, low, high);
+    return tap_random(&derivatives_seed, low, high);
 }
 
 static moray_plant_spec random_spec(int links, moray_joints joints, bool forces, bool angles)
 {
-    moray_plant_spec spec = {.robot = moray_robot_paper(),
-                             .joints = joints,
-                             .current = {draw(-0.2, 0.2), draw(-0.2, 0.2)},
-                             .path_forces = forces,
-                             .path_angles = angles};
-    spec.robot.links = links;
-    double *const coefficients[] = {&spec.robot.l,        &spec.robot.m,    &spec.robot.c_t,
-                                    &spec.robot.c_n,      &spec.robot.mu_n, &spec.robot.rot_damping,
-                                    &spec.robot.rot_gain, &spec.robot.k_p,  &spec.robot.k_d};
-    for (unsigned k = 0; k < sizeof coefficients / sizeof *coefficients; k++)
-        *coefficients[k] *= draw(0.7, 1.4);
-    return spec;
+    return (moray_plant_spec){.robot = random_robot(&derivatives_seed, links),
+                              .joints = joints,
+                              .current = {draw(-1, 1), draw(-1, 1)},
+                              .path_forces = forces,
+                              .path_angles = angles};
 }
 
 // For every input a range to draw from and the step of a difference quotient of order eight along it; the step in
@@ -43,10 +36,9 @@ static void input_kinds(const moray_plant_spec *spec, input_kind *kinds)
 {
     const moray_plant_size size = moray_plant_sizes(spec);
     const int n = spec->robot.links - 1;
-    const input_kind phi = {-0.06, 0.06, 2e-3}, angle = {-3, 3, 0.03}, position = {-1, 1, 0.1},
-                     v_phi = {-0.1, 0.1, 0.1};
-    const input_kind rate = {-0.5, 0.5, 0.1}, ubar = {-1, 1, 0.5};
-    const input_kind gait[] = {{0.02, 0.06, 2e-3}, {1, 3, 5e-3}, {0.3, 1.2, 1e-3}, {-0.02, 0.02, 1e-3}};
+    const input_kind phi = {-0.2, 0.2, 5e-3}, angle = {-3, 3, 0.03}, position = {-1, 1, 0.1}, v_phi = {-1, 1, 0.1};
+    const input_kind rate = {-1, 1, 0.1}, ubar = {-1, 1, 0.1};
+    const input_kind gait[] = {{0.05, 0.2, 2e-3}, {1, 3, 5e-3}, {0.3, 1.2, 1e-3}, {-0.05, 0.05, 2e-3}};
     input_kind *next = kinds;
     const bool joints = spec->joints != MORAY_JOINTS_ON_GAIT;
     for (int i = 0; i < n && joints; i++)
@@ -73,7 +65,7 @@ static void random_point(const moray_plant_spec *spec, int n_in, double *in)
 // ---- The reference's derivatives
 // -------------------------------------------------------------------------------------
 
-static void dense_jacobian(const dense_plant *dense, int n_in, int n_out, const double *in, grid *out)
+static void dense_jacobian(const dense_plant *plant, int n_in, int n_out, const double *in, grid *out)
 {
     const double h = 1e-30; // complex step: no cancellation, exact to rounding
     num z[DENSE_INPUTS], f[DENSE_OUTPUTS];
@@ -81,18 +73,18 @@ static void dense_jacobian(const dense_plant *dense, int n_in, int n_out, const 
         z[k] = in[k];
     for (int k = 0; k < n_in; k++) {
         z[k] += h * I;
-        dense_value(dense, z, f);
+        dense_value(plant, z, f);
         z[k] = in[k];
         for (int i = 0; i < n_out; i++)
             out->at[i][k] = cimag(f[i]) / h;
     }
 }
 
-static void dense_gradient(const dense_plant *dense, int n_in, int n_out, const double *in, const double *weight,
+static void dense_gradient(const dense_plant *plant, int n_in, int n_out, const double *in, const double *weight,
                            double *out)
 {
     static grid jacobian;
-    dense_jacobian(dense, n_in, n_out, in, &jacobian);
+    dense_jacobian(plant, n_in, n_out, in, &jacobian);
     for (int k = 0; k < n_in; k++) {
         out[k] = 0;
         for (int i = 0; i < n_out; i++)
@@ -101,13 +93,13 @@ static void dense_gradient(const dense_plant *dense, int n_in, int n_out, const 
 }
 
 // Central differences of order eight of complex-step gradients.
-static void dense_hessian(const dense_plant *dense, int n_in, int n_out, const double *in, const double *weight,
+static void dense_hessian(const dense_plant *plant, int n_in, int n_out, const double *in, const double *weight,
                           grid *out)
 {
     static const double coefficient[] = {0, 4. / 5, -1. / 5, 4. / 105, -1. / 280};
     input_kind kinds[DENSE_INPUTS];
     double z[DENSE_INPUTS], gradient[DENSE_INPUTS];
-    input_kinds(&dense->spec, kinds);
+    input_kinds(&plant->spec, kinds);
     memcpy(z, in, (size_t)n_in * sizeof *in);
     memset(out, 0, sizeof *out);
     for (int k = 0; k < n_in; k++) {
@@ -115,7 +107,7 @@ static void dense_hessian(const dense_plant *dense, int n_in, int n_out, const d
             if (step == 0)
                 continue;
             z[k] = in[k] + step * kinds[k].step;
-            dense_gradient(dense, n_in, n_out, z, weight, gradient);
+            dense_gradient(plant, n_in, n_out, z, weight, gradient);
             const double c = (step > 0 ? coefficient[step] : -coefficient[-step]) / kinds[k].step;
             for (int i = 0; i < n_in; i++)
                 out->at[i][k] += c * gradient[i];

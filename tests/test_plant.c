@@ -20,7 +20,7 @@ static fixture *fixture_new(int links, int form, bool forces, bool angles)
 {
     static fixture f;
     f.spec = random_spec(links, (moray_joints)form, forces, angles);
-    dense_plant_set(&f.dense, &f.spec);
+    f.dense = dense_plant_new(&f.spec);
     snprintf(f.name, sizeof f.name, "N = %d, %s%s%s", links, form_names[form], forces ? ", forces" : "",
              angles ? ", angles" : "");
     CHECK_OK(moray_control_plant(&f.map, &f.spec), f.name);
@@ -28,6 +28,12 @@ static fixture *fixture_new(int links, int form, bool forces, bool angles)
     for (int i = 0; i < f.map.n_out; i++)
         f.weight[i] = draw(-1, 1);
     return &f;
+}
+
+static void fixture_release(fixture *f)
+{
+    moray_map_release(&f->map);
+    shape_matrices_free(&f->dense.shape);
 }
 
 static void check_values(fixture *f)
@@ -74,7 +80,7 @@ static void test_against_dense(int links, int form, bool forces, bool angles)
         check_jacobian(f);
         check_hessian(f);
     }
-    moray_map_release(&f->map);
+    fixture_release(f);
 }
 
 // The number of entries of the pattern where |m| is not above `noise` (lower: or m^T), and that of other entries where
@@ -110,7 +116,7 @@ static void test_patterns(int links, int form, bool path)
     count = pattern_misfit(&f->map.hess, f->map.n_in, f->map.n_in, 1e-9, &f->want);
     CHECK(count.idle == 0 && count.missing == 0, "%s: of %d Hessian entries %d idle, %d missing", f->name,
           f->map.hess.nnz, count.idle, count.missing);
-    moray_map_release(&f->map);
+    fixture_release(f);
 }
 
 static void test_sizes(void)
@@ -166,21 +172,20 @@ static void test_any_order(int form)
     f->map.jacobian(f->map.self, other, f->values);
     f->map.value(f->map.self, f->in, again);
     CHECK(memcmp(fresh, again, (size_t)f->map.n_out * sizeof *fresh) == 0, "%s: value after another Jacobian", f->name);
-    moray_map_release(&f->map);
+    fixture_release(f);
 }
 
 int main(void)
 {
-    static const int links[] = {2, 3, 5, 10, 17};
     test_sizes();
     test_bad_robot();
     for (int form = 0; form < 3; form++) {
-        for (int k = 0; k < 5; k++) {
-            test_against_dense(links[k], form, false, false);
-            test_against_dense(links[k], form, true, true);
-            if (links[k] > 2) { // with two links A Dbar is zero and delta moves nothing
-                test_patterns(links[k], form, false);
-                test_patterns(links[k], form, true);
+        for (int k = 0; k < ROBOT_SIZES; k++) {
+            test_against_dense(robot_links[k], form, false, false);
+            test_against_dense(robot_links[k], form, true, true);
+            if (robot_links[k] > 2) { // with two links A Dbar is zero and delta moves nothing
+                test_patterns(robot_links[k], form, false);
+                test_patterns(robot_links[k], form, true);
             }
         }
         test_against_dense(5, form, true, false);
