@@ -2,8 +2,10 @@
 #ifndef MORAY_MORAY_H
 #define MORAY_MORAY_H
 
+#include "moray/app.h"
 #include "moray/map.h"
 #include "moray/ode.h"
+#include "moray/results.h"
 #include "moray/snake.h"
 #include "moray/status.h"
 
