@@ -71,13 +71,15 @@ static int take_pair(void *self, const char *section, const char *key, const cha
     return !moray_failed(status);
 }
 
+// inih goes on after a malformed line and returns the first; the reader stops at the first bad key.
 static moray_status parse(ini_state *state)
 {
     const int bad_line = ini_parse_stream(next_line, state, take_pair, state);
+    const bool malformed = bad_line > 0 && (!moray_failed(state->status) || bad_line < state->line);
+    if (malformed)
+        return moray_error(MORAY_INPUT, "%s:%d: neither [section] nor KEY = VALUE", tail(state->path), bad_line);
     if (moray_failed(state->status))
         return state->status;
-    if (bad_line > 0)
-        return moray_error(MORAY_INPUT, "%s:%d: neither [section] nor KEY = VALUE", tail(state->path), bad_line);
     if (bad_line < 0)
         return moray_error(MORAY_MEMORY, "%s: no memory to read it", tail(state->path));
     if (ferror(state->file))

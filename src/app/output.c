@@ -84,8 +84,9 @@ moray_status moray_output_open(moray_output **output, const char *directory)
     if (!made)
         return moray_error(MORAY_MEMORY, "output directory %.100s: no memory for its files", directory);
     moray_status status;
-    if (strlen(directory) >= sizeof made->directory) {
-        status = moray_error(MORAY_IO, "output directory %.100s...: the name is too long", directory);
+    if (!*directory || strlen(directory) >= sizeof made->directory) {
+        status = moray_error(MORAY_IO, "output directory %.100s: the name is %s", directory,
+                             *directory ? "too long" : "empty");
     } else {
         strcpy(made->directory, directory);
         status = stage(made);

@@ -36,52 +36,47 @@ static void widen(int *to, const char *text)
     *to = own > *to ? own : *to;
 }
 
-static void print_left(FILE *file, const char *text, int to)
+// Prints a text in a column, and before it the blanks that earlier columns left; returns those that it leaves itself.
+static int print_cell(FILE *file, int blanks, const char *text, int to, bool right)
 {
-    fprintf(file, "%s%*s", text ? text : "", to - width(text), "");
+    const int own = to - width(text);
+    if (width(text) == 0)
+        return blanks + own;
+    fprintf(file, "%*s%s", blanks + (right ? own : 0), "", text);
+    return right ? 0 : own;
 }
 
-static void print_right(FILE *file, const char *text, int to)
+static void print_line(FILE *file, const char *label, int label_width, const char *const *cell, const int *column,
+                       int n, const char *unit)
 {
-    fprintf(file, "%*s%s", to - width(text), "", text ? text : "");
-}
-
-static void print_heads(const moray_table *table, FILE *file, int label, const int *column)
-{
-    int last = table->n_columns;
-    while (last > 0 && !table->columns[last - 1])
-        last--;
-    if (last == 0)
-        return;
-    print_left(file, "", label);
-    for (int j = 0; j < last; j++) {
-        fputs("  ", file);
-        print_right(file, table->columns[j], column[j]);
-    }
+    int blanks = print_cell(file, 0, label, label_width, false);
+    for (int j = 0; j < n; j++)
+        blanks = print_cell(file, blanks + 2, cell[j], column[j], true);
+    print_cell(file, blanks + 2, unit, 0, false);
     fputc('\n', file);
 }
 
 void moray_table_print(const moray_table *table, FILE *file)
 {
     int label = 0, column[MORAY_TABLE_COLUMNS] = {0};
-    char text[32];
-    for (int j = 0; j < table->n_columns; j++)
+    char text[MORAY_TABLE_COLUMNS][32];
+    const char *cell[MORAY_TABLE_COLUMNS];
+    bool headed = false;
+    for (int j = 0; j < table->n_columns; j++) {
+        headed = headed || table->columns[j];
         widen(&column[j], table->columns[j]);
-    for (int i = 0; i < table->n_rows; i++) {
-        widen(&label, table->rows[i].label);
-        for (int j = 0; j < table->n_columns; j++)
-            widen(&column[j], moray_table_cell(&table->rows[i], j, text));
+        for (int i = 0; i < table->n_rows; i++)
+            widen(&column[j], moray_table_cell(&table->rows[i], j, text[j]));
     }
+    for (int i = 0; i < table->n_rows; i++)
+        widen(&label, table->rows[i].label);
     if (table->title)
         fprintf(file, "%s\n", table->title);
-    print_heads(table, file, label, column);
+    if (headed)
+        print_line(file, NULL, label, table->columns, column, table->n_columns, NULL);
     for (int i = 0; i < table->n_rows; i++) {
-        print_left(file, table->rows[i].label, label);
-        for (int j = 0; j < table->n_columns; j++) {
-            fputs("  ", file);
-            print_right(file, moray_table_cell(&table->rows[i], j, text), column[j]);
-        }
-        const char *unit = table->rows[i].unit;
-        fprintf(file, "%s%s\n", unit ? "  " : "", unit ? unit : "");
+        for (int j = 0; j < table->n_columns; j++)
+            cell[j] = moray_table_cell(&table->rows[i], j, text[j]);
+        print_line(file, table->rows[i].label, label, cell, column, table->n_columns, table->rows[i].unit);
     }
 }
