@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 # What a user meets at the command line. Arguments: the demo program, the source directory.
-demo=$1
+case $1 in
+/*) demo=$1 ;;
+*) demo=$PWD/$1 ;;
+esac
 source=$2
 . "$source/tests/tap.sh"
 work=$(mktemp -d)

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+//
+// Optimal-control problems: form, transcription by direct collocation, solution, certificate.
+//
+//   minimise J(x0, t0, xf, tf, q of every phase, s)
+//   with     x' = f(x, u, s, t), lower <= c(x, u, s, t) <= upper, q = integral of g(x, u, s, t) dt     on every phase
+//            lower <= e(x0, t0, xf, tf, q of every phase, s) <= upper, and bounds on x, u, s, t0, tf, q
+#ifndef MORAY_OCP_H
+#define MORAY_OCP_H
+
+#include <complex.h>
+
+#include "moray/map.h"
+#include "moray/nlp.h"
+#include "moray/ode.h"
+#include "moray/scheme.h"
+
+// ---- Bounds
+// ----------------------------------------------------------------------------------------------------------
+
+typedef struct moray_bounds {
+    double lower, upper;
+} moray_bounds;
+
+static inline moray_bounds moray_fixed(double value)
+{
+    return (moray_bounds){value, value};
+}
+static inline moray_bounds moray_between(double lower, double upper)
+{
+    return (moray_bounds){lower, upper};
+}
+static inline moray_bounds moray_at_least(double lower)
+{
+    return (moray_bounds){lower, MORAY_INFINITY};
+}
+static inline moray_bounds moray_at_most(double upper)
+{
+    return (moray_bounds){-MORAY_INFINITY, upper};
+}
+static inline moray_bounds moray_free(void)
+{
+    return (moray_bounds){-MORAY_INFINITY, MORAY_INFINITY};
+}
+
+// Bounds of a vector; none (n = 0) leaves every entry free (path constraints and events must be bounded).
+typedef struct moray_bounds_list {
+    const moray_bounds *at;
+    int n;
+} moray_bounds_list;
+#define MORAY_BOUNDS(...)                                                                                              \
+    {                                                                                                                  \
+        (const moray_bounds[]){__VA_ARGS__}, (int)(sizeof((const moray_bounds[]){__VA_ARGS__}) / sizeof(moray_bounds)) \
+    }
+
+// ---- Problem form
+// ------------------------------------------------------------------------------------------------------
+
+typedef double complex moray_num; // user functions are plain C99 on this type; their derivatives come by complex step
+
+// Where the functions of a phase are evaluated, and what they give.
+typedef struct moray_node {
+    const moray_num *x, *u, *s; // [nx], [nu], [ns]
+    moray_num t;
+} moray_node;
+typedef struct moray_rates {
+    moray_num *f, *c, *g; // [nx] dynamics, [nc] path constraints, [nq] integrands
+} moray_rates;
+typedef void moray_continuous_fn(const moray_node *at, moray_rates *out, const void *data);
+
+// The ends of the phases, and what they decide.
+typedef struct moray_phase_ends {
+    const moray_num *x0, *xf, *q; // [nx], [nx], [nq]
+    moray_num t0, tf;
+} moray_phase_ends;
+typedef struct moray_ends {
+    const moray_phase_ends *phase;
+    const moray_num *s;
+} moray_ends;
+typedef struct moray_verdict {
+    moray_num objective; // minimised
+    moray_num *e;        // [ne]
+} moray_verdict;
+typedef void moray_endpoint_fn(const moray_ends *at, moray_verdict *out, const void *data);
+
+typedef struct moray_phase_spec {
+    const char *name;
+    int nx, nu, nc, nq;
+    moray_continuous_fn *continuous; // complex step; or
+    const moray_map *map;            // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
+    moray_bounds t0, tf;
+    moray_bounds_list x, x0, xf, u, c, q;                         // x0 and xf narrow x at the ends
+    const char *const *x_names, *const *u_names, *const *c_names; // NULL: x[0], ...
+} moray_phase_spec;
+
+typedef struct moray_ocp_spec {
+    const char *name;
+    int phases, ns, ne;
+    const moray_phase_spec *phase; // [phases]
+    moray_endpoint_fn *endpoint;   // complex step; or
+    const moray_map *endpoint_map; // analytic: in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
+    moray_bounds_list s, e;
+    const char *const *s_names, *const *e_names;
+    const void *data; // handed to the functions
+} moray_ocp_spec;
+
+typedef struct moray_ocp moray_ocp;
+
+// Copies the spec (not the maps, nor data). Error: MORAY_INPUT naming what is missing, of the wrong length,
+// contradictory or not a number; MORAY_MEMORY.
+moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
+void moray_ocp_free(moray_ocp *ocp);
+
+// ---- Trajectories, guesses
+// -----------------------------------------------------------------------------------------------
+
+// Samples of one phase, row-major: time[n], x[n][nx], u[n][nu]; u is NULL where nu = 0. Borrowed by whoever takes it as
+// input.
+typedef struct moray_samples {
+    int n;
+    const double *time, *x, *u;
+} moray_samples;
+
+// A guess: samples of each phase (piecewise linear, stretched to the phase's own first and last time), parameters
+// s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, u in the middle
+// of its bounds.
+typedef struct moray_guess {
+    const moray_samples *phase;
+    const double *s;
+} moray_guess;
+
+// ---- Solving
+// ---------------------------------------------------------------------------------------------------------------
+
+typedef struct moray_settings {
+    const char *scheme;    // "hermite-simpson"
+    int intervals;         // 20, of equal length, in every phase
+    double tolerance;      // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
+    double mesh_tolerance; // 1e-6: largest relative error between nodes that the certificate accepts
+    int max_iterations;    // 1000
+    bool own_scaling;      // true; false leaves scaling to Ipopt
+    int print_level;       // 0: Ipopt's log
+    moray_progress_fn *progress;
+    void *observer;
+} moray_settings;
+
+moray_settings moray_settings_default(void);
+
+typedef struct moray_solution moray_solution;
+
+// Transcribes and solves from `guess` (NULL: from the bounds). The solution keeps what it needs of the problem but must
+// not outlive it; free with moray_solution_free. Returns MORAY_OK with *solution set whenever the solver ran, converged
+// or not: read moray_solution_info(...)->outcome and, when it is not MORAY_NLP_SOLVED, moray_solution_diagnosis.
+// Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY, MORAY_NUMERIC (functions not finite at the guess).
+moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
+                         moray_solution **solution);
+void moray_solution_free(moray_solution *solution);
+
+const moray_nlp_info *moray_solution_info(const moray_solution *solution);
+double moray_solution_objective(const moray_solution *solution);
+const double *moray_solution_parameters(const moray_solution *solution);           // s[ns]
+const double *moray_solution_integrals(const moray_solution *solution, int phase); // q[nq]
+void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf);
+
+// State x[nx] and control u[nu] at time t (clamped to the phase) from the collocation polynomials. Either may be NULL.
+void moray_solution_at(const moray_solution *solution, int phase, double t, double *x, double *u);
+
+// The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the
+// Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL.
+int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
+
+// Sizes of the programme that was solved.
+typedef struct moray_nlp_size {
+    int variables, constraints, nnz_jac, nnz_hess;
+} moray_nlp_size;
+moray_nlp_size moray_solution_size(const moray_solution *solution);
+
+// One text of several lines that says what hurts: the largest scaled violation by name, phase and time, and the active
+// bounds. Owned by the solution.
+const char *moray_solution_diagnosis(const moray_solution *solution);
+
+// ---- Certificate
+// -------------------------------------------------------------------------------------------------------------
+
+// Computed apart from the solver. Passes when every number is within its limit.
+typedef struct moray_certificate {
+    bool pass;
+    double kkt;           // optimality and feasibility in user units; limit 100 x tolerance
+    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|); limit mesh_tolerance
+    double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
+                          // x mesh_tolerance
+    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes when each phase is integrated again
+                          // from its start with the found controls; limit 100 x mesh_tolerance
+} moray_certificate;
+
+// Error: MORAY_MEMORY, or what the integrator returned.
+moray_status moray_certify(const moray_solution *solution, const moray_integrator *integrator,
+                           moray_certificate *certificate);
+
+#endif

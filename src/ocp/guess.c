@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ocp/solution.h"
+
+// Linear interpolation of row-major samples v[n][width] at time.
+static void interpolate(const moray_samples *samples, const double *v, int width, double time, double *out)
+{
+    int k = 0;
+    while (k + 2 < samples->n && samples->time[k + 1] < time)
+        k++;
+    const int next = samples->n > 1 ? k + 1 : k;
+    const double span = samples->time[next] - samples->time[k];
+    const double part = span > 0 ? fmin(fmax((time - samples->time[k]) / span, 0), 1) : 0;
+    for (int i = 0; i < width; i++)
+        out[i] = (1 - part) * v[k * width + i] + part * v[next * width + i];
+}
+
+static moray_status check_samples(const struct phase *phase, const moray_samples *samples)
+{
+    if (samples->n < 0 || !samples->time || !samples->x || (phase->nu > 0 && !samples->u))
+        return moray_error(MORAY_INPUT, "guess of phase %s: times, states or controls are missing", phase->name);
+    for (int k = 0; k < samples->n; k++) {
+        bool finite = isfinite(samples->time[k]);
+        for (int i = 0; i < phase->nx; i++)
+            finite = finite && isfinite(samples->x[k * phase->nx + i]);
+        for (int i = 0; i < phase->nu; i++)
+            finite = finite && isfinite(samples->u[k * phase->nu + i]);
+        if (!finite)
+            return moray_error(MORAY_INPUT, "guess of phase %s: sample %d is not finite", phase->name, k);
+        if (k > 0 && samples->time[k] < samples->time[k - 1])
+            return moray_error(MORAY_INPUT, "guess of phase %s: time %g of sample %d is before the one of sample %d",
+                               phase->name, samples->time[k], k, k - 1);
+    }
+    return moray_ok();
+}
+
+static void guess_from_samples(const struct transcription *t, int p, const moray_samples *samples, double *x)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const double first = samples->time[0], last = samples->time[samples->n - 1];
+    if (layout->t0 >= 0)
+        x[layout->t0] = first;
+    if (layout->tf >= 0)
+        x[layout->tf] = last;
+    for (int n = 0; n < layout->nodes; n++) {
+        const struct node *node = &layout->node[n];
+        const double time = first + (last - first) * node->tau;
+        interpolate(samples, samples->x, phase->nx, time, x + node->x);
+        if (phase->nu > 0 && node->collocated)
+            interpolate(samples, samples->u, phase->nu, time, x + node->x + phase->nx);
+    }
+}
+
+static void guess_from_bounds(const struct transcription *t, int p, double *x)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const double t0 = bounds_middle(phase->t0);
+    if (layout->t0 >= 0)
+        x[layout->t0] = t0;
+    if (layout->tf >= 0)
+        x[layout->tf] = phase->tf.upper < MORAY_INFINITY ? bounds_middle(phase->tf) : fmax(phase->tf.lower, t0 + 1);
+    for (int n = 0; n < layout->nodes; n++) {
+        const struct node *node = &layout->node[n];
+        for (int r = 0; r < phase->nx; r++)
+            x[node->x + r] = (1 - node->tau) * bounds_middle(phase->x0[r]) + node->tau * bounds_middle(phase->xf[r]);
+        for (int r = 0; r < phase->nu && node->collocated; r++)
+            x[node->x + phase->nx + r] = bounds_middle(phase->u[r]);
+    }
+}
+
+// q of the guessed trajectory: what makes its definition hold.
+static void guess_integrals(const struct transcription *t, const double *g, double *x)
+{
+    for (int p = 0; p < t->ocp->phases; p++)
+        for (int m = 0; m < t->ocp->phase[p].nq; m++)
+            x[t->layout.phase[p].q + m] -= g[t->layout.phase[p].integral_row + m];
+}
+
+static void clamp(const struct transcription *t, double *x)
+{
+    for (int j = 0; j < t->layout.columns; j++)
+        x[j] = fmin(fmax(x[j], t->nlp.x_lower[j]), t->nlp.x_upper[j]);
+}
+
+moray_status fill_guess(struct transcription *t, const moray_guess *guess, double *x)
+{
+    const moray_ocp *ocp = t->ocp;
+    for (int i = 0; i < ocp->ns; i++) {
+        x[t->layout.s + i] = guess && guess->s ? guess->s[i] : bounds_middle(ocp->s[i]);
+        if (!isfinite(x[t->layout.s + i]))
+            return moray_error(MORAY_INPUT, "guess: parameter %d is not finite", i);
+    }
+    for (int p = 0; p < ocp->phases; p++) {
+        const bool given = guess && guess->phase && guess->phase[p].n != 0;
+        if (given)
+            MORAY_TRY(check_samples(&ocp->phase[p], &guess->phase[p]));
+        if (given)
+            guess_from_samples(t, p, &guess->phase[p], x);
+        else
+            guess_from_bounds(t, p, x);
+        memset(x + t->layout.phase[p].q, 0, (size_t)ocp->phase[p].nq * sizeof *x);
+    }
+    clamp(t, x);
+    double *g = calloc((size_t)t->layout.rows + 1, sizeof *g);
+    if (!g)
+        return moray_error(MORAY_MEMORY, "no memory for %d constraints", t->layout.rows);
+    const bool ok = t->nlp.constraints(t, x, true, g);
+    if (ok)
+        guess_integrals(t, g, x);
+    clamp(t, x);
+    free(g);
+    return ok ? moray_ok() : moray_error(MORAY_NUMERIC, "at the guess, %.200s", t->failure.text);
+}

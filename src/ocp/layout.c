@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "ocp/layout.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void mesh_free(struct mesh *mesh)
+{
+    free(mesh->edge);
+    free(mesh->stages);
+    *mesh = (struct mesh){0};
+}
+
+static moray_status mesh_new(struct mesh *mesh, int intervals)
+{
+    *mesh = (struct mesh){.intervals = intervals,
+                          .edge = calloc((size_t)intervals + 1, sizeof *mesh->edge),
+                          .stages = calloc((size_t)intervals, sizeof *mesh->stages)};
+    if (mesh->edge && mesh->stages)
+        return moray_ok();
+    mesh_free(mesh);
+    return moray_error(MORAY_MEMORY, "no memory for a mesh of %d intervals", intervals);
+}
+
+moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages)
+{
+    MORAY_TRY(mesh_new(mesh, intervals));
+    for (int k = 0; k <= intervals; k++)
+        mesh->edge[k] = (double)k / intervals;
+    for (int k = 0; k < intervals; k++)
+        mesh->stages[k] = stages;
+    return moray_ok();
+}
+
+static moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh)
+{
+    MORAY_TRY(mesh_new(copy, mesh->intervals));
+    memcpy(copy->edge, mesh->edge, ((size_t)mesh->intervals + 1) * sizeof *copy->edge);
+    memcpy(copy->stages, mesh->stages, (size_t)mesh->intervals * sizeof *copy->stages);
+    return moray_ok();
+}
+
+static moray_status need_scheme(struct layout *layout, int stages)
+{
+    if (stages < 1 || stages > MORAY_MAX_STAGES)
+        return moray_error(MORAY_INPUT, "stages = %d: must be 1 to %d", stages, MORAY_MAX_STAGES);
+    if (layout->scheme[stages].points)
+        return moray_ok();
+    return moray_scheme_new(&layout->scheme[stages], layout->family, stages);
+}
+
+static moray_status allocate_phase(struct layout *layout, struct phase_layout *phase)
+{
+    phase->nodes = 1;
+    for (int k = 0; k < phase->mesh.intervals; k++) {
+        MORAY_TRY(need_scheme(layout, phase->mesh.stages[k]));
+        phase->nodes += layout->scheme[phase->mesh.stages[k]].points - 1;
+    }
+    phase->node = calloc((size_t)phase->nodes, sizeof *phase->node);
+    phase->interval = calloc((size_t)phase->mesh.intervals, sizeof *phase->interval);
+    if (phase->node && phase->interval)
+        return moray_ok();
+    return moray_error(MORAY_MEMORY, "no memory for %d nodes", phase->nodes);
+}
+
+static void place_points(const struct layout *layout, struct phase_layout *phase)
+{
+    for (int k = 0, first = 0; k < phase->mesh.intervals; k++) {
+        const double left = phase->mesh.edge[k], width = phase->mesh.edge[k + 1] - left;
+        const moray_scheme *scheme = &layout->scheme[phase->mesh.stages[k]];
+        phase->interval[k] = (struct interval){.scheme = scheme, .first = first, .width = width};
+        for (int j = 0; j < scheme->points; j++) {
+            struct node *node = &phase->node[first + j];
+            node->tau = j == scheme->points - 1 ? phase->mesh.edge[k + 1] : left + width * scheme->node[j];
+            node->weight += width * scheme->b[j];
+            node->collocated |= j >= scheme->first && j <= scheme->last;
+        }
+        first += scheme->points - 1;
+    }
+}
+
+// Columns and rows of a phase in the order of time, which keeps the factorisation's fill low.
+static void number_phase(struct layout *layout, struct phase_layout *phase, const struct phase *p)
+{
+    for (int n = 0; n < phase->nodes; n++) {
+        phase->node[n].x = layout->columns;
+        layout->columns += p->nx + (phase->node[n].collocated ? p->nu : 0);
+        phase->node[n].path = layout->rows;
+        layout->rows += phase->node[n].collocated ? p->nc : 0;
+    }
+    for (int k = 0; k < phase->mesh.intervals; k++) {
+        phase->interval[k].defect = layout->rows;
+        layout->rows += (phase->interval[k].scheme->points - 1) * p->nx;
+    }
+    phase->q = layout->columns;
+    layout->columns += p->nq;
+    phase->integral_row = layout->rows;
+    layout->rows += p->nq;
+    phase->t0 = bounds_are_fixed(p->t0) ? -1 : layout->columns++;
+    phase->tf = bounds_are_fixed(p->tf) ? -1 : layout->columns++;
+}
+
+moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family, const struct mesh *meshes)
+{
+    *layout = (struct layout){.family = family, .phases = ocp->phases};
+    layout->phase = calloc((size_t)ocp->phases, sizeof *layout->phase);
+    moray_status status =
+        layout->phase ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d phases", ocp->phases);
+    for (int p = 0; p < ocp->phases && !moray_failed(status); p++) {
+        struct phase_layout *phase = &layout->phase[p];
+        status = mesh_copy(&phase->mesh, &meshes[p]);
+        if (!moray_failed(status))
+            status = allocate_phase(layout, phase);
+        if (moray_failed(status))
+            break;
+        place_points(layout, phase);
+        number_phase(layout, phase, &ocp->phase[p]);
+    }
+    layout->s = layout->columns;
+    layout->columns += ocp->ns;
+    layout->events = layout->rows;
+    layout->rows += ocp->ne;
+    if (moray_failed(status))
+        layout_free(layout);
+    return status;
+}
+
+void layout_free(struct layout *layout)
+{
+    for (int p = 0; layout->phase && p < layout->phases; p++) {
+        mesh_free(&layout->phase[p].mesh);
+        free(layout->phase[p].node);
+        free(layout->phase[p].interval);
+    }
+    free(layout->phase);
+    for (int s = 0; s <= MORAY_MAX_STAGES; s++)
+        moray_scheme_free(&layout->scheme[s]);
+    *layout = (struct layout){0};
+}
+
+void layout_span(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double *t0, double *tf)
+{
+    const struct phase_layout *phase = &layout->phase[p];
+    *t0 = phase->t0 < 0 ? ocp->phase[p].t0.lower : x[phase->t0];
+    *tf = phase->tf < 0 ? ocp->phase[p].tf.lower : x[phase->tf];
+}
+
+double layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau)
+{
+    double t0, tf;
+    layout_span(layout, ocp, x, p, &t0, &tf);
+    return t0 + (tf - t0) * tau;
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// Where everything stands in the decision vector and among the constraints.
+#ifndef OCP_LAYOUT_H
+#define OCP_LAYOUT_H
+
+#include "ocp/problem.h"
+
+// Intervals of one phase: edges[intervals + 1] from 0 to 1, stages[intervals].
+struct mesh {
+    int intervals;
+    double *edge;
+    int *stages;
+};
+
+moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages);
+void mesh_free(struct mesh *mesh);
+
+// A point of the mesh. Neighbouring intervals share the point between them.
+struct node {
+    double tau;    // time in the phase, 0..1
+    double weight; // quadrature weight in tau; 0 where not collocated
+    bool collocated;
+    int x;    // first column of the state; the control follows where collocated
+    int path; // first row of the path constraints, where collocated
+};
+
+struct interval {
+    const moray_scheme *scheme;
+    int first;    // node
+    double width; // in tau
+    int defect;   // first row; defect i of state r is row defect + i nx + r
+};
+
+struct phase_layout {
+    struct mesh mesh;
+    int nodes;
+    struct node *node;
+    struct interval *interval;
+    int t0, tf;       // columns, -1 where fixed
+    int q;            // first column of the integrals
+    int integral_row; // first row of their definitions
+};
+
+struct layout {
+    moray_scheme scheme[MORAY_MAX_STAGES + 1]; // by stages, of one family, made when first used
+    moray_family family;
+    int phases;
+    struct phase_layout *phase;
+    int s, events; // first column of the parameters, first row of the events
+    int columns, rows;
+};
+
+// Takes over nothing: copies the meshes. Error: MORAY_MEMORY, MORAY_INPUT (stages).
+moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family, const struct mesh *meshes);
+void layout_free(struct layout *layout);
+
+// "phase wire, t = 1.25: state v", "parameter omega", ...: what a column or row of the programme is. text[size].
+void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int column, char *text,
+                        int size);
+void layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text, int size);
+
+// Time of tau in phase p at the decision vector x.
+double layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau);
+void layout_span(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double *t0, double *tf);
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <stdio.h>
+
+#include "ocp/layout.h"
+
+// "state v" or "state x[2]"
+static void entry_name(const char *kind, const char *letter, const char *const *names, int i, char *text, int size)
+{
+    if (names)
+        snprintf(text, (size_t)size, "%s %s", kind, names[i]);
+    else
+        snprintf(text, (size_t)size, "%s %s[%d]", kind, letter, i);
+}
+
+enum { name_size = 100 };
+
+static void in_phase(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau,
+                     const char *what, char *text, int size)
+{
+    snprintf(text, (size_t)size, "%s of phase %s at t = %.6g", what, ocp->phase[p].name,
+             layout_time(layout, ocp, x, p, tau));
+}
+
+void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int column, char *text,
+                        int size)
+{
+    char what[name_size];
+    if (column >= layout->s) {
+        entry_name("parameter", "s", ocp->s_names, column - layout->s, text, size);
+        return;
+    }
+    int p = 0;
+    while (p + 1 < layout->phases && column >= layout->phase[p + 1].node[0].x)
+        p++;
+    const struct phase_layout *phase = &layout->phase[p];
+    if (column >= phase->q) {
+        const bool time = column - phase->q >= ocp->phase[p].nq;
+        snprintf(text, (size_t)size, time ? "%s time of phase %s" : "integral %s of phase %s",
+                 time ? (column == phase->t0 ? "initial" : "final") : "q", ocp->phase[p].name);
+        return;
+    }
+    int n = 0;
+    while (n + 1 < phase->nodes && column >= phase->node[n + 1].x)
+        n++;
+    const int i = column - phase->node[n].x, nx = ocp->phase[p].nx;
+    if (i < nx)
+        entry_name("state", "x", ocp->phase[p].x_names, i, what, name_size);
+    else
+        entry_name("control", "u", ocp->phase[p].u_names, i - nx, what, name_size);
+    in_phase(layout, ocp, x, p, phase->node[n].tau, what, text, size);
+}
+
+static void defect_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, int row, char *text,
+                        int size)
+{
+    const struct phase_layout *phase = &layout->phase[p];
+    const int nx = ocp->phase[p].nx;
+    char what[name_size];
+    int k = 0;
+    while (k + 1 < phase->mesh.intervals && row >= phase->interval[k + 1].defect)
+        k++;
+    const int i = row - phase->interval[k].defect;
+    entry_name("defect of state", "x", ocp->phase[p].x_names, i % nx, what, name_size);
+    in_phase(layout, ocp, x, p, phase->node[phase->interval[k].first + i / nx + 1].tau, what, text, size);
+}
+
+void layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text, int size)
+{
+    char what[name_size];
+    if (row >= layout->events) {
+        entry_name("event", "e", ocp->e_names, row - layout->events, text, size);
+        return;
+    }
+    int p = 0;
+    while (p + 1 < layout->phases && row >= layout->phase[p + 1].node[0].path)
+        p++;
+    const struct phase_layout *phase = &layout->phase[p];
+    if (row >= phase->integral_row) {
+        snprintf(text, (size_t)size, "definition of integral q[%d] of phase %s", row - phase->integral_row,
+                 ocp->phase[p].name);
+    } else if (row >= phase->interval[0].defect) {
+        defect_name(layout, ocp, x, p, row, text, size);
+    } else {
+        int n = 0;
+        while (n + 1 < phase->nodes && row >= phase->node[n + 1].path)
+            n++;
+        entry_name("path constraint", "c", ocp->phase[p].c_names, row - phase->node[n].path, what, name_size);
+        in_phase(layout, ocp, x, p, phase->node[n].tau, what, text, size);
+    }
+}

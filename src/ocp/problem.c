@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "ocp/problem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+double bounds_middle(moray_bounds bounds)
+{
+    const bool below = bounds.lower > -MORAY_INFINITY, above = bounds.upper < MORAY_INFINITY;
+    return below && above ? (bounds.lower + bounds.upper) / 2 : below ? bounds.lower : above ? bounds.upper : 0;
+}
+
+bool bounds_are_fixed(moray_bounds bounds)
+{
+    return bounds.lower == bounds.upper;
+}
+
+static void *own(moray_ocp *ocp, size_t size)
+{
+    if (ocp->n_owned == ocp->owned_room) {
+        const int room = 2 * ocp->owned_room + 16;
+        void **larger = realloc(ocp->owned, (size_t)room * sizeof *larger);
+        if (!larger)
+            return NULL;
+        ocp->owned = larger;
+        ocp->owned_room = room;
+    }
+    void *block = calloc(1, size + 1);
+    if (block)
+        ocp->owned[ocp->n_owned++] = block;
+    return block;
+}
+
+static const char *copy_text(moray_ocp *ocp, const char *text)
+{
+    char *copy = own(ocp, text ? strlen(text) : 0);
+    return copy ? strcpy(copy, text ? text : "") : NULL;
+}
+
+static moray_status no_memory(void)
+{
+    return moray_error(MORAY_MEMORY, "no memory for the problem");
+}
+
+static moray_status copy_names(moray_ocp *ocp, const char *const *names, int n, const char ***copy)
+{
+    *copy = NULL;
+    if (!names || n == 0)
+        return moray_ok();
+    *copy = own(ocp, (size_t)n * sizeof **copy);
+    for (int i = 0; *copy && i < n; i++)
+        if (!((*copy)[i] = copy_text(ocp, names[i])))
+            return no_memory();
+    return *copy ? moray_ok() : no_memory();
+}
+
+// `what` and `where` name the list in errors: bounds x0 of phase "wire".
+struct place {
+    const char *what, *where;
+};
+
+static moray_status check_bounds(struct place place, const char *name, int i, moray_bounds b)
+{
+    if (isnan(b.lower) || isnan(b.upper))
+        return moray_error(MORAY_INPUT, "%s[%d]%s%s of %s: a bound is not a number", place.what, i, name ? " " : "",
+                           name ? name : "", place.where);
+    if (b.lower > b.upper)
+        return moray_error(MORAY_INPUT, "%s[%d]%s%s of %s: lower bound %g is above upper bound %g", place.what, i,
+                           name ? " " : "", name ? name : "", place.where, b.lower, b.upper);
+    return moray_ok();
+}
+
+static moray_status copy_bounds(moray_ocp *ocp, struct place place, moray_bounds_list list, int n,
+                                const char *const *names, bool required, moray_bounds **copy)
+{
+    *copy = own(ocp, (size_t)n * sizeof **copy);
+    if (!*copy)
+        return no_memory();
+    if (list.n != n && (list.n != 0 || (required && n > 0)))
+        return moray_error(MORAY_INPUT, "%s of %s: %d bounds given, %d needed", place.what, place.where, list.n, n);
+    for (int i = 0; i < n; i++) {
+        (*copy)[i] = list.n ? list.at[i] : moray_free();
+        MORAY_TRY(check_bounds(place, names ? names[i] : NULL, i, (*copy)[i]));
+    }
+    return moray_ok();
+}
+
+// x0 and xf narrow x.
+static moray_status narrow(struct place place, const struct phase *phase, moray_bounds *end)
+{
+    for (int i = 0; i < phase->nx; i++) {
+        const moray_bounds given = end[i];
+        end[i].lower = fmax(given.lower, phase->x[i].lower);
+        end[i].upper = fmin(given.upper, phase->x[i].upper);
+        if (end[i].lower > end[i].upper)
+            return moray_error(MORAY_INPUT, "%s[%d] of %s: [%g, %g] does not meet the bounds [%g, %g] of x", place.what,
+                               i, place.where, given.lower, given.upper, phase->x[i].lower, phase->x[i].upper);
+    }
+    return moray_ok();
+}
+
+static moray_status check_phase(const struct phase *phase, const moray_phase_spec *spec)
+{
+    if (spec->nx < 1 || spec->nu < 0 || spec->nc < 0 || spec->nq < 0)
+        return moray_error(MORAY_INPUT, "phase %s: nx %d, nu %d, nc %d, nq %d; nx must be positive, none negative",
+                           phase->name, spec->nx, spec->nu, spec->nc, spec->nq);
+    if (!spec->continuous == !spec->map)
+        return moray_error(MORAY_INPUT, "phase %s: needs a continuous function or a map, and not both", phase->name);
+    const int in = spec->nx + spec->nu + phase->ns + 1, out = spec->nx + spec->nc + spec->nq;
+    if (spec->map && (spec->map->n_in != in || spec->map->n_out != out))
+        return moray_error(MORAY_INPUT, "phase %s: the map has %d inputs and %d outputs, the phase %d and %d",
+                           phase->name, spec->map->n_in, spec->map->n_out, in, out);
+    if (spec->tf.upper < spec->t0.lower)
+        return moray_error(MORAY_INPUT, "phase %s: ends by %g, before it may begin at %g", phase->name, spec->tf.upper,
+                           spec->t0.lower);
+    return moray_ok();
+}
+
+static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, struct phase *phase)
+{
+    phase->name = copy_text(ocp, spec->name ? spec->name : "phase");
+    if (!phase->name)
+        return no_memory();
+    phase->nx = spec->nx, phase->nu = spec->nu, phase->nc = spec->nc, phase->nq = spec->nq, phase->ns = ocp->ns;
+    phase->map = spec->map;
+    phase->t0 = spec->t0, phase->tf = spec->tf;
+    MORAY_TRY(check_phase(phase, spec));
+    MORAY_TRY(check_bounds((struct place){"t0", phase->name}, NULL, 0, spec->t0));
+    MORAY_TRY(check_bounds((struct place){"tf", phase->name}, NULL, 0, spec->tf));
+    MORAY_TRY(copy_names(ocp, spec->x_names, spec->nx, &phase->x_names));
+    MORAY_TRY(copy_names(ocp, spec->u_names, spec->nu, &phase->u_names));
+    MORAY_TRY(copy_names(ocp, spec->c_names, spec->nc, &phase->c_names));
+    const struct {
+        const char *what;
+        moray_bounds_list list;
+        int n;
+        const char **names;
+        bool required;
+        moray_bounds **copy;
+    } lists[] = {{"x", spec->x, spec->nx, phase->x_names, false, &phase->x},
+                 {"x0", spec->x0, spec->nx, phase->x_names, false, &phase->x0},
+                 {"xf", spec->xf, spec->nx, phase->x_names, false, &phase->xf},
+                 {"u", spec->u, spec->nu, phase->u_names, false, &phase->u},
+                 {"c", spec->c, spec->nc, phase->c_names, true, &phase->c},
+                 {"q", spec->q, spec->nq, NULL, false, &phase->q}};
+    for (unsigned i = 0; i < sizeof lists / sizeof *lists; i++)
+        MORAY_TRY(copy_bounds(ocp, (struct place){lists[i].what, phase->name}, lists[i].list, lists[i].n,
+                              lists[i].names, lists[i].required, lists[i].copy));
+    MORAY_TRY(narrow((struct place){"x0", phase->name}, phase, phase->x0));
+    return narrow((struct place){"xf", phase->name}, phase, phase->xf);
+}
+
+static int endpoint_inputs(const moray_ocp *ocp)
+{
+    int n = ocp->ns;
+    for (int p = 0; p < ocp->phases; p++)
+        n += 2 * ocp->phase[p].nx + 2 + ocp->phase[p].nq;
+    return n;
+}
+
+static moray_status copy_spec(moray_ocp *ocp, const moray_ocp_spec *spec)
+{
+    ocp->name = copy_text(ocp, spec->name ? spec->name : "problem");
+    ocp->phases = spec->phases, ocp->ns = spec->ns, ocp->ne = spec->ne, ocp->data = spec->data;
+    ocp->endpoint = spec->endpoint_map, ocp->endpoint_fn = spec->endpoint;
+    if (!ocp->name)
+        return no_memory();
+    if (spec->phases < 1 || spec->ns < 0 || spec->ne < 0)
+        return moray_error(MORAY_INPUT, "problem %s: %d phases, ns %d, ne %d; there must be a phase, none negative",
+                           ocp->name, spec->phases, spec->ns, spec->ne);
+    if (!spec->endpoint == !spec->endpoint_map)
+        return moray_error(MORAY_INPUT, "problem %s: needs an endpoint function or a map, and not both", ocp->name);
+    MORAY_TRY(copy_names(ocp, spec->s_names, spec->ns, &ocp->s_names));
+    MORAY_TRY(copy_names(ocp, spec->e_names, spec->ne, &ocp->e_names));
+    MORAY_TRY(copy_bounds(ocp, (struct place){"s", ocp->name}, spec->s, spec->ns, ocp->s_names, false, &ocp->s));
+    MORAY_TRY(copy_bounds(ocp, (struct place){"e", ocp->name}, spec->e, spec->ne, ocp->e_names, true, &ocp->e));
+    ocp->phase = own(ocp, (size_t)spec->phases * sizeof *ocp->phase);
+    ocp->ends = own(ocp, (size_t)spec->phases * sizeof *ocp->ends);
+    if (!ocp->phase || !ocp->ends)
+        return no_memory();
+    for (int p = 0; p < spec->phases; p++)
+        MORAY_TRY(copy_phase(ocp, &spec->phase[p], &ocp->phase[p]));
+    const int inputs = endpoint_inputs(ocp);
+    if (spec->endpoint_map && (spec->endpoint_map->n_in != inputs || spec->endpoint_map->n_out != 1 + spec->ne))
+        return moray_error(MORAY_INPUT, "problem %s: the endpoint map has %d inputs and %d outputs, needs %d and %d",
+                           ocp->name, spec->endpoint_map->n_in, spec->endpoint_map->n_out, inputs, 1 + spec->ne);
+    return moray_ok();
+}
+
+moray_status moray_ocp_new(moray_ocp **result, const moray_ocp_spec *spec)
+{
+    *result = NULL;
+    moray_ocp *ocp = calloc(1, sizeof *ocp);
+    if (!ocp)
+        return no_memory();
+    moray_status status = copy_spec(ocp, spec);
+    if (!moray_failed(status))
+        status = wrap_functions(ocp, spec);
+    if (moray_failed(status))
+        moray_ocp_free(ocp);
+    else
+        *result = ocp;
+    return status;
+}
+
+void moray_ocp_free(moray_ocp *ocp)
+{
+    if (!ocp)
+        return;
+    unwrap_functions(ocp);
+    for (int i = 0; i < ocp->n_owned; i++)
+        free(ocp->owned[i]);
+    free(ocp->owned);
+    free(ocp);
+}

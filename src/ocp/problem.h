@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// The problem as the transcription sees it: every function a map, every bound in place.
+#ifndef OCP_PROBLEM_H
+#define OCP_PROBLEM_H
+
+#include "moray/ocp.h"
+
+struct wrapped_phase; // calls a user's continuous function as a map does
+
+struct phase {
+    const char *name;
+    int nx, nu, nc, nq, ns;
+    const moray_map *map; // in = [x, u, s, t], out = [f, c, g]
+    moray_map own_map;    // where it comes from a complex function
+    struct wrapped_phase *wrapped;
+    moray_bounds t0, tf;
+    moray_bounds *x, *x0, *xf, *u, *c, *q;
+    const char **x_names, **u_names, **c_names; // NULL where the user named nothing
+};
+
+struct moray_ocp {
+    const char *name;
+    int phases, ns, ne;
+    struct phase *phase;
+    const moray_map *endpoint; // in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
+    moray_map own_endpoint;
+    moray_endpoint_fn *endpoint_fn;
+    moray_phase_ends *ends; // scratch for endpoint_fn
+    moray_bounds *s, *e;
+    const char **s_names, **e_names;
+    const void *data;
+    void **owned; // every block that the copies took
+    int n_owned, owned_room;
+};
+
+// A value within bounds: their middle, the finite one, or 0.
+double bounds_middle(moray_bounds bounds);
+bool bounds_are_fixed(moray_bounds bounds);
+
+// Turns the complex functions of the spec into maps. Error: MORAY_MEMORY, MORAY_INPUT.
+moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec);
+void unwrap_functions(moray_ocp *ocp);
+
+#endif

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+
+#include "ocp/solution.h"
+
+// Size of a quantity: that of its bounds where it has both, else of its guess; 1 where that says nothing.
+static double size_of(moray_bounds bounds, double guess)
+{
+    double size = guess;
+    if (bounds.lower > -MORAY_INFINITY && bounds.upper < MORAY_INFINITY)
+        size = fmax(fabs(bounds.lower), fabs(bounds.upper));
+    return size > 1e-8 && size < MORAY_INFINITY ? size : 1;
+}
+
+static double largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
+{
+    double largest = 0;
+    for (int n = 0; n < layout->nodes; n++)
+        largest = fmax(largest, fabs(x[layout->node[n].x + offset]));
+    return largest;
+}
+
+static void scale_phase(struct transcription *t, int p, const double *x, double *x_scale, double *g_scale)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    for (int r = 0; r < phase->nx; r++) {
+        const double scale = 1 / size_of(phase->x[r], largest_in_phase(layout, x, r));
+        for (int n = 0; n < layout->nodes; n++)
+            x_scale[layout->node[n].x + r] = scale;
+        for (int k = 0; k < layout->mesh.intervals; k++) // a defect is an error in its state
+            for (int i = 0; i < layout->interval[k].scheme->points - 1; i++)
+                g_scale[layout->interval[k].defect + i * phase->nx + r] = scale;
+    }
+    for (int r = 0; r < phase->nu; r++) {
+        double largest = 0;
+        for (int n = 0; n < layout->nodes; n++)
+            if (layout->node[n].collocated)
+                largest = fmax(largest, fabs(x[layout->node[n].x + phase->nx + r]));
+        for (int n = 0; n < layout->nodes; n++)
+            if (layout->node[n].collocated)
+                x_scale[layout->node[n].x + phase->nx + r] = 1 / size_of(phase->u[r], largest);
+    }
+    for (int m = 0; m < phase->nq; m++)
+        x_scale[layout->q + m] = g_scale[layout->integral_row + m] = 1 / size_of(phase->q[m], fabs(x[layout->q + m]));
+    if (layout->t0 >= 0)
+        x_scale[layout->t0] = 1 / size_of(phase->t0, fabs(x[layout->t0]));
+    if (layout->tf >= 0)
+        x_scale[layout->tf] = 1 / size_of(phase->tf, fabs(x[layout->tf]));
+}
+
+// A row that is not a defect: the largest entry of its gradient in scaled variables becomes at most 1.
+static void scale_row_groups(const struct transcription *t, const double *jac, const double *x_scale, double *g_scale)
+{
+    for (int k = 0; k < t->nlp.nnz_jac; k++) {
+        const double slope = fabs(jac[k]) / x_scale[t->nlp.jac_col[k]];
+        double *scale = &g_scale[t->nlp.jac_row[k]];
+        if (*scale <= 0)
+            *scale = fmin(*scale, -slope); // negative while being collected
+    }
+    for (int i = 0; i < t->nlp.m; i++)
+        if (g_scale[i] <= 0)
+            g_scale[i] = g_scale[i] < -1 ? -1 / g_scale[i] : 1;
+}
+
+static double objective_scale(const struct transcription *t, const double *gradient, const double *x_scale)
+{
+    double largest = 0;
+    for (int j = 0; j < t->nlp.n; j++)
+        largest = fmax(largest, fabs(gradient[j]) / x_scale[j]);
+    return largest > 0 ? fmin(fmax(1 / largest, 1e-4), 1e4) : 1;
+}
+
+moray_status choose_scales(struct transcription *t, const double *x)
+{
+    const int n = t->nlp.n, m = t->nlp.m;
+    double *work = calloc((size_t)(n + t->nlp.nnz_jac) + 1, sizeof *work);
+    free(t->scale);
+    t->scale = calloc((size_t)(n + m) + 1, sizeof *t->scale);
+    moray_status status = work && t->scale ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d scales", n + m);
+    if (!moray_failed(status) && !(t->nlp.jacobian(t, x, true, work + n) && t->nlp.gradient(t, x, false, work)))
+        status = moray_error(MORAY_NUMERIC, "at the guess, %.200s", t->failure.text);
+    if (!moray_failed(status)) {
+        double *x_scale = t->scale, *g_scale = t->scale + n;
+        for (int p = 0; p < t->ocp->phases; p++)
+            scale_phase(t, p, x, x_scale, g_scale);
+        for (int i = 0; i < t->ocp->ns; i++)
+            x_scale[t->layout.s + i] = 1 / size_of(t->ocp->s[i], fabs(x[t->layout.s + i]));
+        scale_row_groups(t, work + n, x_scale, g_scale);
+        t->nlp.x_scale = x_scale;
+        t->nlp.g_scale = g_scale;
+        t->nlp.f_scale = objective_scale(t, work, x_scale);
+    }
+    free(work);
+    return status;
+}

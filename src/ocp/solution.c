@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "ocp/solution.h"
+
+#include <math.h>
+#include <string.h>
+
+const moray_nlp_info *moray_solution_info(const moray_solution *solution)
+{
+    return &solution->info;
+}
+
+double moray_solution_objective(const moray_solution *solution)
+{
+    return solution->iterate.objective;
+}
+
+const double *moray_solution_parameters(const moray_solution *solution)
+{
+    return solution->iterate.x + solution->transcription->layout.s;
+}
+
+const double *moray_solution_integrals(const moray_solution *solution, int phase)
+{
+    return solution->iterate.x + solution->transcription->layout.phase[phase].q;
+}
+
+void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf)
+{
+    const struct transcription *t = solution->transcription;
+    layout_span(&t->layout, t->ocp, solution->iterate.x, phase, t0, tf);
+}
+
+moray_nlp_size moray_solution_size(const moray_solution *solution)
+{
+    const moray_nlp *nlp = &solution->transcription->nlp;
+    return (moray_nlp_size){nlp->n, nlp->m, nlp->nnz_jac, nlp->nnz_hess};
+}
+
+const char *moray_solution_diagnosis(const moray_solution *solution)
+{
+    return solution->diagnosis;
+}
+
+static const struct interval *interval_at(const struct phase_layout *layout, double tau)
+{
+    int low = 0, high = layout->mesh.intervals - 1;
+    while (low < high) {
+        const int middle = (low + high + 1) / 2;
+        if (layout->mesh.edge[middle] <= tau)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return &layout->interval[low];
+}
+
+void moray_solution_at(const moray_solution *solution, int p, double time, double *x, double *u)
+{
+    const struct transcription *t = solution->transcription;
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const struct phase_cache *cache = &t->phase[p];
+    const int nx = t->ocp->phase[p].nx, nu = t->ocp->phase[p].nu, n_out = t->ocp->phase[p].map->n_out;
+    const double T = cache->tf - cache->t0, tau = T > 0 ? fmin(fmax((time - cache->t0) / T, 0), 1) : 0;
+    const struct interval *interval = interval_at(layout, tau);
+    const struct node *node = layout->node + interval->first;
+    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
+    moray_scheme_basis(interval->scheme, (tau - node->tau) / interval->width, ell, integral);
+    if (x)
+        memcpy(x, solution->iterate.x + node->x, (size_t)nx * sizeof *x);
+    if (u)
+        memset(u, 0, (size_t)nu * sizeof *u);
+    for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
+        const double *f = cache->out + (interval->first + j) * n_out;
+        for (int r = 0; x && r < nx; r++)
+            x[r] += T * interval->width * integral[j] * f[r];
+        for (int r = 0; u && r < nu; r++)
+            u[r] += ell[j] * solution->iterate.x[node[j].x + nx + r];
+    }
+}
+
+// Where f is collocated its coefficient in the Lagrangian is T weight times the costate. At other points the costate is
+// what a push of the state there costs: -+ the defects' multipliers times their coefficients of that state.
+static void costate_from_ends(const moray_solution *solution, int p, int n, double *costate)
+{
+    const struct transcription *t = solution->transcription;
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const int nx = t->ocp->phase[p].nx;
+    memset(costate, 0, (size_t)nx * sizeof *costate);
+    for (int k = 0; k < layout->mesh.intervals; k++) {
+        const struct interval *interval = &layout->interval[k];
+        const int points = interval->scheme->points;
+        const bool last = n == layout->nodes - 1 && k == layout->mesh.intervals - 1;
+        if (interval->first != n && !last)
+            continue;
+        for (int i = 0; i < points - 1; i++)
+            for (int r = 0; r < nx; r++)
+                costate[r] += (last ? -1 : 1) * solution->iterate.lambda[interval->defect + i * nx + r] *
+                              interval->scheme->P[i * points + (last ? points - 1 : 0)];
+    }
+}
+
+int moray_solution_nodes(const moray_solution *solution, int p, double *time, double *costate)
+{
+    const struct transcription *t = solution->transcription;
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const int nx = t->ocp->phase[p].nx;
+    const double T = t->phase[p].tf - t->phase[p].t0;
+    if (costate)
+        dynamics_multipliers(t, p, solution->iterate.lambda, costate);
+    for (int n = 0; n < layout->nodes; n++) {
+        if (time)
+            time[n] = t->phase[p].t0 + T * layout->node[n].tau;
+        for (int r = 0; costate && r < nx && layout->node[n].collocated; r++)
+            costate[n * nx + r] /= T * layout->node[n].weight;
+        if (costate && !layout->node[n].collocated)
+            costate_from_ends(solution, p, n, costate + n * nx);
+    }
+    return layout->nodes;
+}

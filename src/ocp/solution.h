@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#ifndef OCP_SOLUTION_H
+#define OCP_SOLUTION_H
+
+#include "ocp/transcription.h"
+
+enum { diagnosis_size = 2000 };
+
+struct moray_solution {
+    struct transcription *transcription;
+    moray_settings settings;
+    moray_nlp_info info;
+    moray_iterate iterate; // all in one block, owned
+    char diagnosis[diagnosis_size];
+};
+
+// Fills x[columns] from the guess; integrals are those of the guess itself. Error: MORAY_INPUT, MORAY_NUMERIC,
+// MORAY_MEMORY.
+moray_status fill_guess(struct transcription *t, const moray_guess *guess, double *x);
+
+// Chooses x_scale and g_scale of the programme from bounds and the guess. Error: MORAY_MEMORY, MORAY_NUMERIC.
+moray_status choose_scales(struct transcription *t, const double *x);
+
+// Writes the diagnosis text.
+void diagnose(moray_solution *solution);
+
+#endif

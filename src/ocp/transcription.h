@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// The nonlinear programme of a problem on a mesh. Decision vector: for every phase the nodes in the order of time
+// (state, then control where collocated), integrals, free times; then the parameters. Constraints: for every phase path
+// constraints, defects, definitions of the integrals; then the events.
+#ifndef OCP_TRANSCRIPTION_H
+#define OCP_TRANSCRIPTION_H
+
+#include "base/triplets.h"
+#include "ocp/layout.h"
+
+// What the functions of a phase gave at every node of the current point.
+struct phase_cache {
+    double t0, tf;
+    double *in, *out; // [nodes][n_in], [nodes][n_out] of the phase's map
+    double *jac;      // [nodes][nnz] of the map's Jacobian
+    double *lambda;   // [nodes][nx] scratch: multipliers of f
+    int *column;      // [n_in - 1] scratch: columns of the node at hand
+};
+
+struct transcription {
+    const moray_ocp *ocp;
+    struct layout layout;
+    moray_nlp nlp;
+    triplets jac, hess;
+    double *bounds; // x_lower, x_upper, g_lower, g_upper
+    double *scale;  // x_scale, g_scale
+    double *x;      // the point that the caches belong to
+    bool have_values, have_jacobians;
+    struct phase_cache *phase;
+    double *end_in, *end_out, *end_jac;
+    int *end_column;           // column of each endpoint input, -1 for fixed times
+    double *weight, *map_hess; // scratch for one call of a map's Hessian
+    moray_status failure;      // of the last evaluation: the function that is not finite, and where
+};
+
+// Error: MORAY_MEMORY, MORAY_INPUT.
+moray_status transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
+                               const struct mesh *meshes);
+void transcription_free(struct transcription *t);
+
+// Brings the caches to x. False where a value is not finite (t->failure says which).
+bool transcription_values(struct transcription *t, const double *x);
+bool transcription_jacobians(struct transcription *t, const double *x);
+
+// With the caches in place: g[rows], and walks over the constraint Jacobian and the Hessian of the Lagrangian.
+void assemble_constraints(const struct transcription *t, double *g);
+void walk_jacobian(const struct transcription *t, triplets *out);
+void walk_hessian(const struct transcription *t, double sigma, const double *lambda, triplets *out);
+
+// lambda_f[nodes][nx]: derivative of the constraint part of the Lagrangian with respect to f at every node.
+void dynamics_multipliers(const struct transcription *t, int p, const double *lambda, double *lambda_f);
+
+// Columns of the inputs x, u, s of a node (not t), in t->phase[p].column; -1 for a control where none is collocated.
+const int *node_columns(const struct transcription *t, int p, const struct node *node);
+
+#endif
