@@ -211,21 +211,21 @@ static void test_progress(void)
         return;
     const struct winsize narrow = {.ws_row = 10, .ws_col = 21};
     ioctl(reader, TIOCSWINSZ, &narrow);
-    moray_progress progress = moray_progress_start(terminal, false);
-    moray_progress_show(&progress, "iteration %d", 7);
-    moray_progress_show(&progress, "%s", "a line longer than the terminal is wide");
-    moray_progress_end(&progress);
+    moray_ticker ticker = moray_ticker_start(terminal, false);
+    moray_ticker_show(&ticker, "iteration %d", 7);
+    moray_ticker_show(&ticker, "%s", "a line longer than the terminal is wide");
+    moray_ticker_end(&ticker);
     CHECK(read(reader, seen, sizeof seen - 1) > 0 &&
               strcmp(seen, "\riteration 7\033[K\ra line longer than t\033[K\r\033[K") == 0,
           "a terminal shows one line, cut to its width, then none");
-    progress = moray_progress_start(terminal, true);
-    CHECK(!progress.live, "quiet is silent on a terminal");
+    ticker = moray_ticker_start(terminal, true);
+    CHECK(!ticker.live, "quiet is silent on a terminal");
     fclose(terminal);
     close(reader);
     FILE *plain = tmpfile();
-    progress = moray_progress_start(plain, false);
-    moray_progress_show(&progress, "iteration %d", 7);
-    moray_progress_end(&progress);
+    ticker = moray_ticker_start(plain, false);
+    moray_ticker_show(&ticker, "iteration %d", 7);
+    moray_ticker_end(&ticker);
     CHECK(ftell(plain) == 0, "a file gets no progress");
     fclose(plain);
 }

@@ -128,13 +128,13 @@ moray_status moray_output_report(moray_output *output, const moray_report *repor
 // ---- Progress ------------------------------------------------------------------------------------------------------
 
 // One line rewritten in place; silent where the stream is no terminal or `quiet`.
-typedef struct moray_progress {
+typedef struct moray_ticker {
     FILE *stream;
     bool live;
-} moray_progress;
+} moray_ticker;
 
-moray_progress moray_progress_start(FILE *stream, bool quiet);
-void moray_progress_show(const moray_progress *progress, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void moray_progress_end(const moray_progress *progress); // erases the line
+moray_ticker moray_ticker_start(FILE *stream, bool quiet);
+void moray_ticker_show(const moray_ticker *ticker, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void moray_ticker_end(const moray_ticker *ticker); // erases the line
 
 #endif

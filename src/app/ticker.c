@@ -5,9 +5,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-moray_progress moray_progress_start(FILE *stream, bool quiet)
+moray_ticker moray_ticker_start(FILE *stream, bool quiet)
 {
-    return (moray_progress){.stream = stream, .live = !quiet && isatty(fileno(stream))};
+    return (moray_ticker){.stream = stream, .live = !quiet && isatty(fileno(stream))};
 }
 
 // One less than the terminal is wide: a line that wraps cannot be rewritten.
@@ -19,23 +19,23 @@ static int room(FILE *stream)
     return 79;
 }
 
-void moray_progress_show(const moray_progress *progress, const char *format, ...)
+void moray_ticker_show(const moray_ticker *ticker, const char *format, ...)
 {
     char line[400];
     va_list arguments;
-    if (!progress->live)
+    if (!ticker->live)
         return;
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    fprintf(progress->stream, "\r%.*s\033[K", room(progress->stream), line);
-    fflush(progress->stream);
+    fprintf(ticker->stream, "\r%.*s\033[K", room(ticker->stream), line);
+    fflush(ticker->stream);
 }
 
-void moray_progress_end(const moray_progress *progress)
+void moray_ticker_end(const moray_ticker *ticker)
 {
-    if (!progress->live)
+    if (!ticker->live)
         return;
-    fputs("\r\033[K", progress->stream);
-    fflush(progress->stream);
+    fputs("\r\033[K", ticker->stream);
+    fflush(ticker->stream);
 }
