@@ -9,72 +9,34 @@
 #include <complex.h>
 #include <string.h>
 
+#include "dense.h"
 #include "moray/snake.h"
+#include "random_robot.h"
 
-enum { DENSE_LINKS = 20, DENSE_INPUTS = 3 * DENSE_LINKS + 8, DENSE_OUTPUTS = 4 * DENSE_LINKS + 8 };
+enum { DENSE_LINKS = MAX_LINKS, DENSE_INPUTS = 3 * DENSE_LINKS + 8, DENSE_OUTPUTS = 4 * DENSE_LINKS + 8 };
 
 typedef double complex num;
-typedef double matrix[DENSE_LINKS][DENSE_LINKS];
 
 typedef struct dense_plant {
     moray_plant_spec spec;
     int N, n; // links, joints
-    matrix A, D, gram_inverse, Dbar, ADbar, ADT;
+    shape_matrices shape;
 } dense_plant;
 
-static void multiply(int rows, int inner, int cols, const matrix x, const matrix y, bool y_transposed, matrix out)
+static dense_plant dense_plant_new(const moray_plant_spec *spec)
 {
-    for (int i = 0; i < rows; i++)
-        for (int j = 0; j < cols; j++) {
-            out[i][j] = 0;
-            for (int k = 0; k < inner; k++)
-                out[i][j] += x[i][k] * (y_transposed ? y[j][k] : y[k][j]);
-        }
+    const int N = spec->robot.links;
+    return (dense_plant){.spec = *spec, .N = N, .n = N - 1, .shape = shape_matrices_new(N)};
 }
 
-// Gauss-Jordan; no pivoting, for D D^T is diagonally dominant.
-static void invert(int n, matrix x, matrix out)
+// out = m v, or m^T v
+static void apply(dense m, bool transposed, const num *v, num *out)
 {
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
-            out[i][j] = i == j;
-    for (int p = 0; p < n; p++)
-        for (int i = 0; i < n; i++) {
-            const double factor = i == p ? 1 - 1 / x[p][p] : x[i][p] / x[p][p];
-            for (int j = 0; j < n; j++) {
-                const double x_pj = x[p][j], out_pj = out[p][j];
-                x[i][j] -= factor * x_pj;
-                out[i][j] -= factor * out_pj;
-            }
-        }
-}
-
-static void dense_plant_set(dense_plant *self, const moray_plant_spec *spec)
-{
-    memset(self, 0, sizeof *self);
-    self->spec = *spec;
-    const int N = self->N = spec->robot.links, n = self->n = N - 1;
-    matrix gram, DT;
-    for (int i = 0; i < n; i++) {
-        self->A[i][i] = self->A[i][i + 1] = self->D[i][i] = 1;
-        self->D[i][i + 1] = -1;
-    }
-    for (int i = 0; i < N; i++)
-        for (int j = 0; j < n; j++)
-            DT[i][j] = self->D[j][i];
-    multiply(n, N, n, self->D, self->D, true, gram);
-    invert(n, gram, self->gram_inverse);
-    multiply(N, n, n, DT, self->gram_inverse, false, self->Dbar);
-    multiply(n, N, n, self->A, self->Dbar, false, self->ADbar);
-    multiply(n, N, n, self->A, self->D, true, self->ADT);
-}
-
-static void apply(int rows, int cols, const matrix x, const num *v, num *out)
-{
+    const int rows = transposed ? m.cols : m.rows, cols = transposed ? m.rows : m.cols;
     for (int i = 0; i < rows; i++) {
         out[i] = 0;
         for (int j = 0; j < cols; j++)
-            out[i] += x[i][j] * v[j];
+            out[i] += (transposed ? DENSE(m, j, i) : DENSE(m, i, j)) * v[j];
     }
 }
 
@@ -114,7 +76,8 @@ static dense_state dense_unpack(const dense_plant *self, const num *in)
         const bool on_gait = self->spec.joints == MORAY_JOINTS_ON_GAIT;
         x.phi[i] = on_gait ? ref : in[i];
         x.v_phi[i] = on_gait ? dref : in[n + 3 + i];
-        x.ubar[i] = ddref + self->spec.robot.k_d * (dref - x.v_phi[i]) + self->spec.robot.k_p * (ref - x.phi[i]); // (34)
+        x.ubar[i] =
+            ddref + self->spec.robot.k_d * (dref - x.v_phi[i]) + self->spec.robot.k_p * (ref - x.phi[i]); // (34)
         if (self->spec.joints == MORAY_JOINTS_FREE)
             x.ubar[i] = in[size.nx + i];
     }
@@ -134,38 +97,34 @@ static dense_rates dense_dynamics(const dense_plant *self, const dense_state *x)
     const moray_robot *r = &self->spec.robot;
     const int N = self->N, n = self->n;
     const double L = 2 * r->l, m = r->m, mt = r->m + r->mu_n;
-    const double c_p = (r->c_n - r->c_t) / L, mu_p = r->mu_n / L, ch = r->c_n / (L * L);
+    const double c_p = (r->c_n - r->c_t) / (2 * L), mu_p = r->mu_n / (2 * L), ch = r->c_n / (4 * L * L); // (13)
     const num v_tr = x->v_t - (self->spec.current[0] * ccos(x->theta) + self->spec.current[1] * csin(x->theta));
     const num v_nr = x->v_n - (-self->spec.current[0] * csin(x->theta) + self->spec.current[1] * ccos(x->theta));
-    num bent[DENSE_LINKS], moved[DENSE_LINKS], pushed[DENSE_LINKS], s = 0, squares = 0;
+    num across[DENSE_LINKS], bent[DENSE_LINKS], moved[DENSE_LINKS], pushed[DENSE_LINKS], s = 0;
     for (int i = 0; i < n; i++)
         s += x->phi[i];
-    for (int k = 0; k < N; k++) {
-        num sum = 0;
-        for (int i = 0; i < n; i++)
-            sum += self->A[i][k] * x->phi[i];
-        squares += sum * sum;
-    }
-    apply(n, n, self->ADT, x->phi, bent);
-    apply(n, n, self->ADbar, x->v_phi, moved);
-    apply(n, n, self->ADbar, x->ubar, pushed);
+    apply(self->shape.A, true, x->phi, across);
+    apply(self->shape.A_Dt, false, x->phi, bent);
+    apply(self->shape.A_Dbar, false, x->v_phi, moved);
+    apply(self->shape.A_Dbar, false, x->ubar, pushed);
+    const num squares = inner(N, across, across);
     const num by_v = inner(n, x->phi, moved), by_ubar = inner(n, x->phi, pushed);
-    const num h_1 = 1 / (N * N * m * mt - 4 * mu_p * mu_p * s * s);                // (17)
-    const num h_2 = 2 * N * s * (c_p * mt - r->c_n * mu_p);                        // (16b)
+    const num h_1 = 1 / (N * N * m * mt - 4 * mu_p * mu_p * s * s); // (17)
+    const num h_2 = 2 * N * s * (c_p * mt - r->c_n * mu_p);         // (16b)
     const num h_3 = 4 * c_p * mu_p * s * s - N * N * mt * r->c_t - N * mt * ch * squares;
     const num h_4 = 2 * s * (N * c_p * m - N * r->c_t * mu_p - ch * mu_p * squares); // (16c)
     const num h_5 = 4 * c_p * mu_p * s * s - N * N * m * r->c_n;
-    dense_rates rates = {
-        .dv_theta = -r->rot_damping * x->v_theta + r->rot_gain / (N - 1) * v_tr * s, // (20)
-        .dv_t = h_1 * (h_2 * v_nr + h_3 * v_tr - c_p * N * mt * by_v - mu_p * N * mt * by_ubar),
-        .dv_n = h_1 * (h_4 * v_tr + h_5 * v_nr - 2 * c_p * mu_p * s * by_v - 2 * mu_p * mu_p * s * by_ubar)};
+    dense_rates rates = {.dv_theta = -r->rot_damping * x->v_theta + r->rot_gain / (N - 1) * v_tr * s, // (20)
+                         .dv_t = h_1 * (h_2 * v_nr + h_3 * v_tr - c_p * N * mt * by_v - mu_p * N * mt * by_ubar),
+                         .dv_n = h_1 *
+                                 (h_4 * v_tr + h_5 * v_nr - 2 * c_p * mu_p * s * by_v - 2 * mu_p * mu_p * s * by_ubar)};
     const num K = 2 * N * mu_p * h_1 * s * (r->c_n * mu_p - mt * c_p) * v_nr +
                   N * mt * h_1 * (N * mu_p * r->c_t + ch * mu_p * squares - N * m * c_p) * v_tr;
-    num force[DENSE_LINKS];
+    num force[DENSE_LINKS] = {0};
     for (int i = 0; i < n; i++) // (18)
         force[i] = mt * x->ubar[i] + N * mt * mu_p * mu_p * h_1 * bent[i] * by_ubar + r->c_n * x->v_phi[i] +
                    N * mt * c_p * mu_p * h_1 * bent[i] * by_v + K * bent[i];
-    apply(n, n, self->gram_inverse, force, rates.u); // (22)
+    apply(self->shape.gram_inverse, false, force, rates.u); // (22)
     return rates;
 }
 
@@ -185,15 +144,12 @@ static void dense_value(const dense_plant *self, const num *in, num *out)
     out[v_theta] = rates.dv_theta;
     out[v_theta + 1] = rates.dv_t;
     out[v_theta + 2] = rates.dv_n;
-    num *next = out + moray_plant_sizes(&self->spec).nx;
+    num angles[DENSE_LINKS], *next = out + moray_plant_sizes(&self->spec).nx;
     for (int i = 0; i < n && self->spec.path_forces; i++)
         *next++ = rates.u[i];
-    for (int i = 0; i <= n && self->spec.path_angles; i++) { // (12)
-        *next = 0;
-        for (int j = 0; j < n; j++)
-            *next += self->A[j][i] * x.phi[j] / (4 * self->spec.robot.l);
-        next++;
-    }
+    apply(self->shape.A, true, x.phi, angles); // (12)
+    for (int i = 0; i <= n && self->spec.path_angles; i++)
+        *next++ = angles[i] / (4 * self->spec.robot.l);
     *next = inner(n, rates.u, x.v_phi);
 }
 

@@ -1,196 +1,196 @@
 // SPDX-License-Identifier: MIT
-#include "tap.h"
-
-#include "dense_plant.h"
-
-typedef struct grid {
-    double at[DENSE_OUTPUTS][DENSE_INPUTS];
-} grid;
+//
+// The maps of the control-oriented model against the dense model and its derivatives.
+#include "dense_derivatives.h"
 
 static const char *const form_names[] = {"on the gait", "closed loop", "free"};
-static unsigned long long seed = 20240607;
 
-static double draw(double low, double high)
+// A map, its dense counterpart, a point, and what either says there.
+typedef struct fixture {
+    moray_plant_spec spec;
+    dense_plant dense;
+    moray_map map;
+    char name[80];
+    double in[DENSE_INPUTS], weight[DENSE_OUTPUTS];
+    double values[DENSE_OUTPUTS * DENSE_INPUTS];
+    grid got, want;
+} fixture;
+
+static fixture *fixture_new(int links, int form, bool forces, bool angles)
 {
-    return tap_random(&seed, low, high);
+    static fixture f;
+    f.spec = random_spec(links, (moray_joints)form, forces, angles);
+    f.dense = dense_plant_new(&f.spec);
+    snprintf(f.name, sizeof f.name, "N = %d, %s%s%s", links, form_names[form], forces ? ", forces" : "",
+             angles ? ", angles" : "");
+    CHECK_OK(moray_control_plant(&f.map, &f.spec), f.name);
+    random_point(&f.spec, f.map.n_in, f.in);
+    for (int i = 0; i < f.map.n_out; i++)
+        f.weight[i] = draw(-1, 1);
+    return &f;
 }
 
-static moray_plant_spec random_spec(int links, moray_joints joints, bool forces, bool angles)
+static void fixture_release(fixture *f)
 {
-    moray_plant_spec spec = {.robot = moray_robot_paper(),
-                             .joints = joints,
-                             .current = {draw(-0.2, 0.2), draw(-0.2, 0.2)},
-                             .path_forces = forces,
-                             .path_angles = angles};
-    spec.robot.links = links;
-    double *const coefficients[] = {&spec.robot.l,    &spec.robot.m,           &spec.robot.c_t,      &spec.robot.c_n,
-                                    &spec.robot.mu_n, &spec.robot.rot_damping, &spec.robot.rot_gain, &spec.robot.k_p,
-                                    &spec.robot.k_d};
-    for (unsigned k = 0; k < sizeof coefficients / sizeof *coefficients; k++)
-        *coefficients[k] *= draw(0.7, 1.4);
-    return spec;
+    moray_map_release(&f->map);
+    shape_matrices_free(&f->dense.shape);
 }
 
-// For every input a range to draw from and the step of a difference quotient of order eight along it; the step in
-// delta is small because (N-2) delta stands in a sine.
-typedef struct input_kind {
-    double low, high, step;
-} input_kind;
-
-static void input_kinds(const moray_plant_spec *spec, input_kind *kinds)
+static void check_values(fixture *f)
 {
-    const moray_plant_size size = moray_plant_sizes(spec);
-    const int n = spec->robot.links - 1;
-    const input_kind phi = {-0.06, 0.06, 5e-3}, angle = {-3, 3, 0.03}, position = {-1, 1, 0.1}, v_phi = {-0.1, 0.1, 0.1};
-    const input_kind rate = {-0.5, 0.5, 0.1}, ubar = {-1, 1, 0.5};
-    const input_kind gait[] = {{0.02, 0.06, 2e-3}, {1, 3, 5e-3}, {0.3, 1.2, 1e-3}, {-0.02, 0.02, 1e-3}};
-    input_kind *next = kinds;
-    const bool joints = spec->joints != MORAY_JOINTS_ON_GAIT;
-    for (int i = 0; i < n && joints; i++)
-        *next++ = phi;
-    *next++ = angle, *next++ = position, *next++ = position;
-    for (int i = 0; i < n && joints; i++)
-        *next++ = v_phi;
-    *next++ = rate, *next++ = rate, *next++ = rate;
-    for (int i = 0; i < size.nu; i++)
-        *next++ = ubar;
-    for (int i = 0; i < size.ns; i++)
-        *next++ = gait[i];
-    *next = (input_kind){0, 3, 5e-3};
-}
-
-static void random_point(const moray_plant_spec *spec, int n_in, double *in)
-{
-    input_kind kinds[DENSE_INPUTS];
-    input_kinds(spec, kinds);
-    for (int k = 0; k < n_in; k++)
-        in[k] = draw(kinds[k].low, kinds[k].high);
-}
-
-// ---- The reference's derivatives -------------------------------------------------------------------------------------
-
-static void dense_jacobian(const dense_plant *dense, int n_in, int n_out, const double *in, grid *out)
-{
-    const double h = 1e-30; // complex step: no cancellation, exact to rounding
-    num z[DENSE_INPUTS], f[DENSE_OUTPUTS];
-    for (int k = 0; k < n_in; k++)
-        z[k] = in[k];
-    for (int k = 0; k < n_in; k++) {
-        z[k] += h * I;
-        dense_value(dense, z, f);
-        z[k] = in[k];
-        for (int i = 0; i < n_out; i++)
-            out->at[i][k] = cimag(f[i]) / h;
+    double out[DENSE_OUTPUTS], worst = 0;
+    num in[DENSE_INPUTS], want[DENSE_OUTPUTS];
+    for (int k = 0; k < f->map.n_in; k++)
+        in[k] = f->in[k];
+    f->map.value(f->map.self, f->in, out);
+    dense_value(&f->dense, in, want);
+    for (int i = 0; i < f->map.n_out; i++) {
+        const double error = fabs(out[i] - creal(want[i])) / (1 + fabs(creal(want[i])));
+        worst = error <= worst ? worst : error;
     }
+    CHECK(worst < 1e-13, "%s: values within %.1e", f->name, worst);
 }
 
-static void dense_gradient(const dense_plant *dense, int n_in, int n_out, const double *in, const double *weight,
-                           double *out)
+static void check_jacobian(fixture *f)
 {
-    static grid jacobian;
-    dense_jacobian(dense, n_in, n_out, in, &jacobian);
-    for (int k = 0; k < n_in; k++) {
-        out[k] = 0;
-        for (int i = 0; i < n_out; i++)
-            out[k] += weight[i] * jacobian.at[i][k];
+    const int rows = f->map.n_out, cols = f->map.n_in;
+    f->map.jacobian(f->map.self, f->in, f->values);
+    CHECK(spread(&f->map.jac, f->values, false, &f->got), "%s: no entry of the Jacobian stands twice", f->name);
+    dense_jacobian(&f->dense, cols, rows, f->in, &f->want);
+    const double error = disagreement(&f->spec, rows, cols, false, &f->got, &f->want);
+    CHECK(error < 1e-13, "%s: Jacobian within %.1e", f->name, error);
+}
+
+static void check_hessian(fixture *f)
+{
+    const int n = f->map.n_in;
+    f->map.hessian(f->map.self, f->in, f->weight, f->values);
+    CHECK(spread(&f->map.hess, f->values, true, &f->got), "%s: Hessian lower, no entry twice", f->name);
+    dense_hessian(&f->dense, n, f->map.n_out, f->in, f->weight, &f->want);
+    const double error = disagreement(&f->spec, n, n, true, &f->got, &f->want);
+    CHECK(error < 1e-11, "%s: Hessian within %.1e", f->name, error);
+}
+
+static void test_against_dense(int links, int form, bool forces, bool angles)
+{
+    fixture *f = fixture_new(links, form, forces, angles);
+    for (int point = 0; point < 3; point++) {
+        random_point(&f->spec, f->map.n_in, f->in);
+        check_values(f);
+        check_jacobian(f);
+        check_hessian(f);
     }
+    fixture_release(f);
 }
 
-// Central differences of order eight of complex-step gradients.
-static void dense_hessian(const dense_plant *dense, int n_in, int n_out, const double *in, const double *weight,
-                          grid *out)
-{
-    static const double coefficient[] = {0, 4. / 5, -1. / 5, 4. / 105, -1. / 280};
-    input_kind kinds[DENSE_INPUTS];
-    double z[DENSE_INPUTS], gradient[DENSE_INPUTS];
-    input_kinds(&dense->spec, kinds);
-    memcpy(z, in, (size_t)n_in * sizeof *in);
-    memset(out, 0, sizeof *out);
-    for (int k = 0; k < n_in; k++) {
-        for (int step = -4; step <= 4; step++) {
-            if (step == 0)
-                continue;
-            z[k] = in[k] + step * kinds[k].step;
-            dense_gradient(dense, n_in, n_out, z, weight, gradient);
-            const double c = (step > 0 ? coefficient[step] : -coefficient[-step]) / kinds[k].step;
-            for (int i = 0; i < n_in; i++)
-                out->at[i][k] += c * gradient[i];
-        }
-        z[k] = in[k];
-    }
-}
+// The number of entries of the pattern where |m| is not above `noise` (lower: or m^T), and that of other entries where
+// it is.
+typedef struct misfit {
+    int idle, missing;
+} misfit;
 
-// ---- Comparison ------------------------------------------------------------------------------------------------------
-
-// Spreads values over a matrix; false when an entry stands twice or (lower) above the diagonal.
-static bool spread(const moray_pattern *pattern, const double *values, bool lower, grid *out)
+static misfit pattern_misfit(const moray_pattern *pattern, int rows, int cols, double noise, const grid *m)
 {
-    static grid seen;
-    bool good = true;
-    memset(out, 0, sizeof *out);
-    memset(&seen, 0, sizeof seen);
+    static grid in_pattern;
+    misfit count = {0, 0};
+    memset(&in_pattern, 0, sizeof in_pattern);
     for (int k = 0; k < pattern->nnz; k++) {
-        const int row = pattern->row[k], col = pattern->col[k];
-        good = good && seen.at[row][col]++ == 0 && !(lower && col > row);
-        out->at[row][col] = values[k];
-        if (lower)
-            out->at[col][row] = values[k];
+        in_pattern.at[pattern->row[k]][pattern->col[k]] = 1;
+        count.idle += fabs(m->at[pattern->row[k]][pattern->col[k]]) <= noise;
     }
-    return good;
+    const bool lower = rows == cols;
+    for (int i = 0; i < rows; i++)
+        for (int j = 0; j < cols && !(lower && j > i); j++)
+            count.missing += in_pattern.at[i][j] == 0 && fabs(m->at[i][j]) > noise;
+    return count;
 }
 
-// Largest difference, relative to the smaller of the largest entries of its row and column (1 at least if `floor`).
-static double disagreement(int rows, int cols, const grid *got, const grid *want, double floor)
+static void test_patterns(int links, int form, bool path)
 {
-    double row_max[DENSE_OUTPUTS] = {0}, col_max[DENSE_INPUTS] = {0}, worst = 0;
-    for (int i = 0; i < rows; i++)
-        for (int j = 0; j < cols; j++) {
-            row_max[i] = fmax(row_max[i], fabs(want->at[i][j]));
-            col_max[j] = fmax(col_max[j], fabs(want->at[i][j]));
-        }
-    for (int i = 0; i < rows; i++)
-        for (int j = 0; j < cols; j++) {
-            const double scale = fmax(fmin(row_max[i], col_max[j]), floor);
-            const double error = fabs(got->at[i][j] - want->at[i][j]) / scale;
-            if (!(error <= worst)) // a NaN counts
-                worst = error;
-        }
-    return worst;
+    fixture *f = fixture_new(links, form, path, path);
+    dense_jacobian(&f->dense, f->map.n_in, f->map.n_out, f->in, &f->want); // zeros are exact
+    misfit count = pattern_misfit(&f->map.jac, f->map.n_out, f->map.n_in, 0, &f->want);
+    CHECK(count.idle == 0 && count.missing == 0, "%s: of %d Jacobian entries %d idle, %d missing", f->name,
+          f->map.jac.nnz, count.idle, count.missing);
+    dense_hessian(&f->dense, f->map.n_in, f->map.n_out, f->in, f->weight, &f->want);
+    count = pattern_misfit(&f->map.hess, f->map.n_in, f->map.n_in, 1e-9, &f->want);
+    CHECK(count.idle == 0 && count.missing == 0, "%s: of %d Hessian entries %d idle, %d missing", f->name,
+          f->map.hess.nnz, count.idle, count.missing);
+    fixture_release(f);
+}
+
+static void test_sizes(void)
+{
+    moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_ON_GAIT};
+    moray_plant_size size = moray_plant_sizes(&spec);
+    CHECK(size.nx == 6 && size.nu == 0 && size.ns == 4 && size.nc == 0 && size.nq == 1, "sizes on the gait");
+    spec.joints = MORAY_JOINTS_CLOSED_LOOP;
+    spec.path_forces = true;
+    size = moray_plant_sizes(&spec);
+    CHECK(size.nx == 24 && size.nu == 0 && size.ns == 4 && size.nc == 9 && size.nq == 1, "sizes in closed loop");
+    spec.joints = MORAY_JOINTS_FREE;
+    spec.path_angles = true;
+    size = moray_plant_sizes(&spec);
+    CHECK(size.nx == 24 && size.nu == 9 && size.ns == 0 && size.nc == 19 && size.nq == 1, "sizes of the free form");
+    moray_map map;
+    CHECK_OK(moray_control_plant(&map, &spec), "the map");
+    CHECK(map.n_in == 24 + 9 + 1 && map.n_out == 24 + 19 + 1, "the map has these sizes and t");
+    moray_map_release(&map);
+    moray_map_release(&map);
+    CHECK(!map.self && !map.jac.row && !map.hess.row, "released twice");
+}
+
+static void test_bad_robot(void)
+{
+    moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_FREE};
+    spec.robot.links = 1;
+    moray_map map;
+    const moray_status status = moray_control_plant(&map, &spec);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "links = 1"), "one link: %s", status.text);
+    moray_map_release(&map);
+    CHECK(!map.self, "nothing is left of a map that was not made");
+}
+
+// The answers at a point do not depend on where the map was asked what before.
+static void test_any_order(int form)
+{
+    fixture *f = fixture_new(10, form, true, true);
+    double fresh[DENSE_OUTPUTS], again[DENSE_OUTPUTS], other[DENSE_INPUTS];
+    static double jacobian[DENSE_OUTPUTS * DENSE_INPUTS], hessian[DENSE_INPUTS * DENSE_INPUTS];
+    const size_t jac_size = (size_t)f->map.jac.nnz * sizeof(double),
+                 hess_size = (size_t)f->map.hess.nnz * sizeof(double);
+    random_point(&f->spec, f->map.n_in, other);
+    f->map.value(f->map.self, f->in, fresh);
+    f->map.jacobian(f->map.self, f->in, jacobian);
+    f->map.hessian(f->map.self, f->in, f->weight, hessian);
+    f->map.value(f->map.self, other, again);
+    f->map.hessian(f->map.self, f->in, f->weight, f->values);
+    CHECK(memcmp(hessian, f->values, hess_size) == 0, "%s: Hessian first", f->name);
+    f->map.hessian(f->map.self, other, f->weight, f->values);
+    f->map.jacobian(f->map.self, f->in, f->values);
+    CHECK(memcmp(jacobian, f->values, jac_size) == 0, "%s: Jacobian after another Hessian", f->name);
+    f->map.jacobian(f->map.self, other, f->values);
+    f->map.value(f->map.self, f->in, again);
+    CHECK(memcmp(fresh, again, (size_t)f->map.n_out * sizeof *fresh) == 0, "%s: value after another Jacobian", f->name);
+    fixture_release(f);
 }
 
 int main(void)
 {
-    const int links[] = {2, 3, 5, 10, 17};
-    for (int c = 0; c < 5; c++)
-        for (int form = 0; form < 3; form++)
-            for (int path = 0; path < 2; path++) {
-                moray_plant_spec spec = random_spec(links[c], (moray_joints)form, path, path);
-                dense_plant dense;
-                dense_plant_set(&dense, &spec);
-                moray_map map;
-                CHECK_OK(moray_control_plant(&map, &spec), "plant");
-                double in[DENSE_INPUTS], out[DENSE_OUTPUTS], weight[DENSE_OUTPUTS], v[4000], worst = 0;
-                num zin[DENSE_INPUTS], zout[DENSE_OUTPUTS];
-                random_point(&spec, map.n_in, in);
-                for (int k = 0; k < map.n_in; k++)
-                    zin[k] = in[k];
-                map.value(map.self, in, out);
-                dense_value(&dense, zin, zout);
-                for (int i = 0; i < map.n_out; i++)
-                    worst = fmax(worst, fabs(out[i] - creal(zout[i])) / (1 + cabs(zout[i])));
-                static grid got, want;
-                dense_jacobian(&dense, map.n_in, map.n_out, in, &want);
-                map.jacobian(map.self, in, v);
-                bool ok = spread(&map.jac, v, false, &got);
-                double ej = disagreement(map.n_out, map.n_in, &got, &want, 1e-300);
-                for (int i = 0; i < map.n_out; i++)
-                    weight[i] = draw(-1, 1);
-                dense_hessian(&dense, map.n_in, map.n_out, in, weight, &want);
-                map.hessian(map.self, in, weight, v);
-                ok = ok && spread(&map.hess, v, true, &got);
-                double eh = disagreement(map.n_in, map.n_in, &got, &want, 1e-2);
-                printf("# N %d %s path %d: value %.1e jac %.1e hess %.1e ok %d nnz %d %d\n", links[c], form_names[form], path, worst, ej, eh, ok, map.jac.nnz, map.hess.nnz);
-                moray_map_release(&map);
+    test_sizes();
+    test_bad_robot();
+    for (int form = 0; form < 3; form++) {
+        for (int k = 0; k < ROBOT_SIZES; k++) {
+            test_against_dense(robot_links[k], form, false, false);
+            test_against_dense(robot_links[k], form, true, true);
+            if (robot_links[k] > 2) { // with two links A Dbar is zero and delta moves nothing
+                test_patterns(robot_links[k], form, false);
+                test_patterns(robot_links[k], form, true);
             }
+        }
+        test_against_dense(5, form, true, false);
+        test_against_dense(5, form, false, true);
+        test_any_order(form);
+    }
     return tap_done();
 }

@@ -3,17 +3,19 @@
 
 #include <math.h>
 
+#include "control.h"
+
 plant_body body_of(const moray_robot *robot, const double current[2])
 {
-    const double L = 2 * robot->l;
+    const control_coefficients k = control_coefficients_of(robot);
     return (plant_body){.N = robot->links,
                         .m = robot->m,
-                        .mt = robot->m + robot->mu_n,
+                        .mt = k.m_tilde,
                         .c_t = robot->c_t,
                         .c_n = robot->c_n,
-                        .c_p = (robot->c_n - robot->c_t) / L,
-                        .mu_p = robot->mu_n / L,
-                        .ch_n = robot->c_n / (L * L),
+                        .c_p = k.c_p,
+                        .mu_p = k.mu_p,
+                        .ch_n = k.c_n_hat,
                         .damping = robot->rot_damping,
                         .turning = robot->rot_gain / (robot->links - 1),
                         .V_x = current[0],
@@ -44,8 +46,9 @@ void body_values(const plant_body *body, const double y[FEATURES], const double 
 {
     for (int k = 0; k < FEATURES; k++)
         at->y[k] = y[k];
-    at->sine = sin(in[BODY_THETA]);
-    at->cosine = cos(in[BODY_THETA]);
+    const double theta = in[BODY_THETA];
+    at->sine = sin(theta);
+    at->cosine = cos(theta);
     at->v_t = in[BODY_V_T];
     at->v_n = in[BODY_V_N];
     current_in_body_frame(body, at);

@@ -18,7 +18,7 @@ enum { BODY_THETA, BODY_V_T, BODY_V_N, BODY_INPUTS };
 // Constants of the robot and the current.
 typedef struct plant_body {
     double N, m, mt, c_t, c_n;
-    double c_p, mu_p, ch_n;  // c_p, mu_p, c_n^ of (13) with L = 2l for l (erratum E2)
+    double c_p, mu_p, ch_n;  // c_p, mu_p, c_n^ of (13)
     double damping, turning; // of v_theta and of v_tr s in (20)
     double V_x, V_y;
 } plant_body;
