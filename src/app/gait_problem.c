@@ -217,3 +217,42 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
     promise.power = moray_solution_integrals(solution, 0)[0] / tf;
     return promise;
 }
+
+// The plant's state from the swimmer's.
+static void plant_state(const moray_gait_problem *problem, const double *full, double *x)
+{
+    const int N = problem->spec.robot.links;
+    if (problem->spec.joints != MORAY_JOINTS_ON_GAIT) {
+        memcpy(x, full, (size_t)problem->size.nx * sizeof *x);
+        return;
+    }
+    for (int half = 0; half < 2; half++, full += N + 2, x += 3) {
+        if (problem->spec.model == MORAY_CONTROL_ORIENTED) {
+            memcpy(x, full + N - 1, 3 * sizeof *x);
+            continue;
+        }
+        x[0] = 0;
+        for (int i = 0; i < N; i++)
+            x[0] += full[i] / N;
+        x[1] = full[N];
+        x[2] = full[N + 1];
+    }
+}
+
+moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
+                                      const moray_gait *gait, const moray_swim_track *orbit,
+                                      moray_solution **solution)
+{
+    const int nx = problem->size.nx;
+    double s[4], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
+    if (!x)
+        return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", orbit->n);
+    for (int k = 0; k < orbit->n; k++)
+        plant_state(problem, orbit->x + k * orbit->n_states, x + k * nx);
+    moray_gait_to_parameters(gait, s);
+    const moray_samples samples = {.n = orbit->n, .time = orbit->t, .x = x};
+    const moray_guess guess = {.phase = &samples, .s = s};
+    moray_status status = moray_solve(problem->ocp, settings, &guess, solution);
+    free(x);
+    return status;
+}
