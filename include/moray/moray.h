@@ -4,6 +4,7 @@
 
 #include "moray/map.h"
 #include "moray/ode.h"
+#include "moray/sim.h"
 #include "moray/snake.h"
 #include "moray/status.h"
 
