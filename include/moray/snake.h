@@ -98,7 +98,8 @@ typedef struct moray_pose {
 } moray_pose;
 moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
 
-// Centres and orientations of the N links in the plane, for drawing: x_i[N], y_i[N], angle_i[N].
+// Centres and orientations of the N links in the plane, for drawing: x_i[N], y_i[N], angle_i[N]. For the
+// control-oriented model the centres of (8) and theta + (12).
 void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i);
 
 // ---- Control-oriented model as maps with analytic derivatives (for the transcription) ------------------------------

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "complex_model.h"
+
+#include <tgmath.h>
+
+#include "model.h"
+#include "shape.h"
+
+#define REAL double
+#define TYPED(name) name##_d
+#include "complex_core.inc"
+#undef REAL
+#undef TYPED
+
+#define REAL double complex
+#define TYPED(name) name##_z
+#include "complex_core.inc"
+#undef REAL
+#undef TYPED
+
+static size_t scratch_bytes(int N)
+{
+    return (size_t)N * sizeof(complex_link_d);
+}
+
+static void rest(int N, double theta, double p_x, double p_y, double *x)
+{
+    for (int i = 0; i < N; i++)
+        x[i] = theta;
+    x[N] = p_x;
+    x[N + 1] = p_y;
+    for (int i = N + 2; i < 2 * N + 4; i++)
+        x[i] = 0;
+}
+
+static void joints(int N, const double *x, double *phi, double *v_phi)
+{
+    const double *dtheta = x + N + 2;
+    for (int i = 0; i < N - 1; i++) {
+        phi[i] = x[i] - x[i + 1]; // (1)
+        v_phi[i] = dtheta[i] - dtheta[i + 1];
+    }
+}
+
+static bool rates(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
+                  double *u, void *scratch)
+{
+    const int N = robot->links, half = N + 2;
+    const complex_motion_d motion = {
+        .theta = x, .dtheta = x + half, .v_x = x[half + N], .v_y = x[half + N + 1], .ubar = ubar};
+    for (int i = 0; i < half; i++)
+        dx[i] = x[half + i];
+    const bool regular = complex_accelerations_d(robot, current, &motion, scratch, dx + half, dx + half + N);
+    if (u != NULL)
+        complex_torques_d(robot, &motion, scratch, dx + half, u);
+    return regular;
+}
+
+static moray_pose pose(const moray_robot *robot, const double *x)
+{
+    const int N = robot->links;
+    double sum = 0, largest = 0;
+    for (int i = 0; i < N; i++)
+        sum += x[i];
+    for (int i = 0; i < N; i++)
+        largest = fmax(largest, fabs(x[i] - sum / N));
+    return (moray_pose){.heading = sum / N,
+                        .p_x = x[N],
+                        .p_y = x[N + 1],
+                        .v_x = x[2 * N + 2],
+                        .v_y = x[2 * N + 3],
+                        .link_angle = largest};
+}
+
+// x - p_x e = -l Dbar A cos(theta), and y likewise; y_i and angle_i first hold the products with A.
+static void links(const moray_robot *robot, const double *x, double *x_i, double *y_i, double *angle_i)
+{
+    const int N = robot->links;
+    for (int i = 0; i < N - 1; i++) {
+        y_i[i] = -robot->l * (cos(x[i]) + cos(x[i + 1]));
+        angle_i[i] = -robot->l * (sin(x[i]) + sin(x[i + 1]));
+    }
+    shape_dbar(N, y_i, x_i);
+    shape_dbar(N, angle_i, y_i);
+    for (int i = 0; i < N; i++) {
+        x_i[i] += x[N];
+        y_i[i] += x[N + 1];
+        angle_i[i] = x[i];
+    }
+}
+
+const snake_model complex_model = {scratch_bytes, rest, joints, rates, pose, links};

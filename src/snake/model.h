@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+//
+// What moray_swimmer_* asks of a model: one table for each. Arguments as in moray/snake.h.
+#ifndef MORAY_SNAKE_MODEL_H
+#define MORAY_SNAKE_MODEL_H
+
+#include <stddef.h>
+
+#include "moray/snake.h"
+
+typedef struct snake_model {
+    size_t (*scratch_bytes)(int N); // of the scratch space that rates needs
+    void (*rest)(int N, double theta, double p_x, double p_y, double *x);
+    void (*joints)(int N, const double *x, double *phi, double *v_phi);
+    bool (*rates)(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
+                  double *u, void *scratch);
+    moray_pose (*pose)(const moray_robot *robot, const double *x);
+    void (*links)(const moray_robot *robot, const double *x, double *x_i, double *y_i, double *angle_i);
+} snake_model;
+
+extern const snake_model control_model, complex_model;
+
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+//
+// Robots and numbers at random, and how far two vectors differ.
+#ifndef RANDOM_ROBOT_H
+#define RANDOM_ROBOT_H
+
+#include "moray/snake.h"
+#include "tap.h"
+
+typedef unsigned long long random_seed;
+
+static const int robot_links[] = {2, 3, 5, 10, 17};
+enum { ROBOT_SIZES = sizeof robot_links / sizeof *robot_links, MAX_LINKS = 17, MAX_STATES = 2 * MAX_LINKS + 4 };
+
+static inline void random_vector(random_seed *seed, double bound, int n, double *v)
+{
+    for (int i = 0; i < n; i++)
+        v[i] = tap_random(seed, -bound, bound);
+}
+
+// Coefficients all of a size, so that an error in any term shows; those of the paper differ by seven powers of ten.
+static inline moray_robot random_robot(random_seed *seed, int N)
+{
+    moray_robot robot = {.links = N};
+    double *const fields[] = {&robot.l,        &robot.m,        &robot.J,        &robot.c_t,      &robot.c_n,
+                              &robot.mu_n,     &robot.lambda_1, &robot.lambda_2, &robot.lambda_3, &robot.rot_damping,
+                              &robot.rot_gain, &robot.k_p,      &robot.k_d};
+    for (unsigned i = 0; i < sizeof fields / sizeof *fields; i++)
+        *fields[i] = tap_random(seed, 0.3, 1.5);
+    return robot;
+}
+
+// max |got - want| / max |want|, a NaN if there is one.
+static inline double relative_distance(int n, const double *got, const double *want)
+{
+    double distance = 0, size = 0;
+    for (int i = 0; i < n; i++) {
+        const double difference = fabs(got[i] - want[i]);
+        distance = isnan(distance) || difference <= distance ? distance : difference;
+        size = fmax(size, fabs(want[i]));
+    }
+    return distance == 0 ? 0 : distance / size;
+}
+
+static inline double dot(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+#endif
