@@ -7,5 +7,6 @@
 #include "moray/sim.h"
 #include "moray/snake.h"
 #include "moray/status.h"
+#include "moray/swim.h"
 
 #endif
