@@ -46,8 +46,7 @@ void moray_gait_to_parameters(const moray_gait *gait, double s[4]);
 // Solves from the orbit of `gait` (parameters of the problem's model): a track over one period, from t = 0, p = 0, as
 // moray_swim_steady leaves it. Errors and result: those of moray_solve.
 moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
-                                      const moray_gait *gait, const moray_swim_track *orbit,
-                                      moray_solution **solution);
+                                      const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution);
 
 // What a solution promises, over one period: velocity over ground, speed through the water, speed along the course,
 // mean power.

@@ -240,8 +240,7 @@ static void plant_state(const moray_gait_problem *problem, const double *full, d
 }
 
 moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
-                                      const moray_gait *gait, const moray_swim_track *orbit,
-                                      moray_solution **solution)
+                                      const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution)
 {
     const int nx = problem->size.nx;
     double s[4], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
