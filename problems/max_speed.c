@@ -119,6 +119,7 @@ static moray_status solve_from(max_speed *run, const moray_gait_problem *problem
                                      .tolerance = run->common.tol,
                                      .mesh_tolerance = 1e-6,
                                      .max_iterations = 1000,
+                                     .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
                                      .own_scaling = true,
                                      .progress = show_iteration,
                                      .observer = run};
