@@ -8,6 +8,8 @@
 
 #include "moray/swim.h"
 
+#include "rk4.h"
+
 #define DEG (M_PI / 180)
 enum { LINKS = 10, STATES = 2 * LINKS + 4, JOINTS = LINKS - 1 };
 
@@ -44,38 +46,45 @@ static moray_steady steady_of(const moray_swim_setup *setup, const moray_gait *g
 
 // ---- Reference: classical Runge-Kutta, x[STATES] is the joint work -------------------------------------------------
 
-static void reference_rates(moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x, double *dx)
+typedef struct reference {
+    moray_swimmer *swimmer;
+    const moray_gait *gait;
+} reference;
+
+static bool reference_rates(double t, const double *x, double *dx, void *self)
 {
+    const reference *r = self;
     double ubar[JOINTS], u[JOINTS], phi[JOINTS], v_phi[JOINTS];
-    moray_swimmer_control(swimmer, gait, t, x, ubar);
-    moray_swimmer_rates(swimmer, x, ubar, dx, u);
-    moray_swimmer_joints(swimmer, x, phi, v_phi);
+    moray_swimmer_control(r->swimmer, r->gait, t, x, ubar);
+    if (!moray_swimmer_rates(r->swimmer, x, ubar, dx, u))
+        return false;
+    moray_swimmer_joints(r->swimmer, x, phi, v_phi);
     dx[STATES] = 0;
     for (int i = 0; i < JOINTS; i++)
         dx[STATES] += u[i] * v_phi[i];
+    return true;
 }
 
 static void reference_run(moray_swimmer *swimmer, const moray_gait *gait, double t0, double t1, int steps, double *x)
 {
-    const double h = (t1 - t0) / steps, node[] = {0, 0.5, 0.5, 1}, weight[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
-    for (int step = 0; step < steps; step++) {
-        double k[4][STATES + 1] = {{0}}, y[STATES + 1];
-        for (int s = 0; s < 4; s++) {
-            for (int i = 0; i <= STATES; i++)
-                y[i] = x[i] + (s > 0 ? h * node[s] * k[s - 1][i] : 0);
-            reference_rates(swimmer, gait, t0 + h * (step + node[s]), y, k[s]);
-        }
-        for (int i = 0; i <= STATES; i++)
-            for (int s = 0; s < 4; s++)
-                x[i] += h * weight[s] * k[s][i];
-    }
+    reference r = {swimmer, gait};
+    const moray_ode ode = {.n = STATES + 1, .rhs = reference_rates, .self = &r};
+    const moray_integrator rk4 = {.run = rk4_run, .self = &steps};
+    if (moray_failed(rk4_run(&rk4, &ode, t0, t1, x, NULL, 0, NULL, NULL)))
+        x[0] = NAN;
+}
+
+// fmax that does not lose a NaN.
+static double larger(double a, double b)
+{
+    return a >= b || isnan(a) ? a : b;
 }
 
 static double distance(const double *a, const double *b)
 {
     double largest = 0;
     for (int i = 0; i < STATES; i++)
-        largest = fmax(largest, fabs(a[i] - b[i]));
+        largest = larger(largest, fabs(a[i] - b[i]));
     return largest;
 }
 
@@ -333,9 +342,9 @@ static void test_orbit(moray_model model)
         moray_swimmer_control(swimmer, &gait, T * k / (points - 1), row, ubar);
         moray_swimmer_rates(swimmer, row, ubar, dx, u);
         for (int i = 0; i < JOINTS; i++) {
-            worst_joint = fmax(worst_joint, fabs(phi[i] - ref[i]) + fabs(v_phi[i] - dref[i]));
-            worst_effort = fmax(worst_effort, fabs(orbit.u[k * JOINTS + i] - u[i]));
-            largest_effort = fmax(largest_effort, fabs(u[i]));
+            worst_joint = larger(worst_joint, fabs(phi[i] - ref[i]) + fabs(v_phi[i] - dref[i]));
+            worst_effort = larger(worst_effort, fabs(orbit.u[k * JOINTS + i] - u[i]));
+            largest_effort = larger(largest_effort, fabs(u[i]));
         }
     }
     CHECK(worst_joint < 1e-8, "the joints are on the gait, in phase: %g", worst_joint);
