@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "moray/snake.h"
+#include "rk4.h"
 
 enum { INPUTS = 60, OUTPUTS = 60, LINKS = 10, JOINTS = LINKS - 1 };
 
@@ -166,6 +167,71 @@ static void test_frames(void)
     }
 }
 
+typedef struct swim {
+    const moray_map *map;
+    double gait[4];
+} swim;
+
+static void swim_out(const swim *self, double t, const double *x, double *out)
+{
+    double in[11];
+    memcpy(in, x, 6 * sizeof *x);
+    memcpy(in + 6, self->gait, sizeof self->gait);
+    in[10] = t;
+    self->map->value(self->map->self, in, out);
+}
+
+static bool swim_rhs(double t, const double *x, double *dx, void *self)
+{
+    double out[7];
+    swim_out(self, t, x, out);
+    memcpy(dx, out, 6 * sizeof *dx);
+    return true;
+}
+
+// From rest at the origin for 45 s; displacement [m] and joint work [J] of the last five periods of 3 s.
+static void swim_five_periods(const swim *self, double moved[2], double *work)
+{
+    enum { per_second = 100, before = 30 * per_second, total = 45 * per_second };
+    int steps = 1;
+    const double h = 1.0 / per_second;
+    const moray_integrator rk4 = {.run = rk4_run, .self = &steps};
+    const moray_ode ode = {.n = 6, .rhs = swim_rhs, .self = (void *)self};
+    double x[6] = {0}, out[7], start[2] = {0};
+    *work = 0;
+    for (int k = 0; k < total; k++) {
+        if (k == before)
+            memcpy(start, x + 1, sizeof start);
+        swim_out(self, k * h, x, out);
+        *work += k < before ? 0 : h * out[6];
+        rk4_run(&rk4, &ode, k * h, (k + 1) * h, x, NULL, 0, NULL, NULL);
+    }
+    moved[0] = x[1] - start[0];
+    moved[1] = x[2] - start[1];
+}
+
+// Straight motion of the paper's robot; figures of an independent implementation (paper-notes, section 5).
+static void test_paper_gaits(void)
+{
+    static const double theta_max_deg[] = {10, 15, 20, 30}, v_x[] = {0.2127, 0.2931, 0.3573, 0.4373};
+    const double degree = M_PI / 180, delta = 40 * degree;
+    moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_ON_GAIT, .current = {0.1, 0.1}};
+    moray_map map;
+    CHECK_OK(moray_control_plant(&map, &spec), "plant of the paper");
+    for (int k = 0; k < 4; k++) {
+        const double a =
+            moray_amplitude_from_theta_max(&spec.robot, MORAY_CONTROL_ORIENTED, theta_max_deg[k] * degree, delta);
+        const swim self = {.map = &map, .gait = {a, 120 * degree, delta, 0}};
+        double moved[2], work;
+        swim_five_periods(&self, moved, &work);
+        CHECK_NEAR(moved[0] / 15, v_x[k], 5e-5, "mean v_x of the paper's gaits");
+        CHECK_NEAR(moved[1] / 15, 0.1, 1e-10, "across the course it drifts with the current");
+        if (theta_max_deg[k] == 20)
+            CHECK_NEAR(work / 15, 0.397, 5e-4, "mean joint power at 20 deg");
+    }
+    moray_map_release(&map);
+}
+
 // Beyond the shape where (17) is singular the inertia is not positive definite.
 static void test_outside_domain(void)
 {
@@ -187,5 +253,6 @@ int main(void)
     test_against_swimmer();
     test_frames();
     test_outside_domain();
+    test_paper_gaits();
     return tap_done();
 }

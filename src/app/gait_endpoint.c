@@ -28,6 +28,26 @@ static double displacement(const struct gait_endpoint *e, const double *in, int 
     return side ? -dx * e->course[1] + dy * e->course[0] : dx * e->course[0] + dy * e->course[1];
 }
 
+// 1 / (L cos(delta/2)) of (33), or 1 / (2 sin(delta/2)) of (27), with two derivatives by delta.
+struct reciprocal {
+    double value, slope, curvature;
+};
+
+static struct reciprocal amplitude_reciprocal(const struct gait_endpoint *e, double delta)
+{
+    const double scale = e->revolute ? 2 : e->L, c = cos(delta / 2), s = sin(delta / 2);
+    const double d = e->revolute ? s : c, slope = (e->revolute ? c : -s) / 2; // d'' = -d/4
+    return (struct reciprocal){1 / (scale * d), -slope / (scale * d * d),
+                               (0.25 / d + 2 * slope * slope / (d * d * d)) / scale};
+}
+
+moray_bounds gait_amplitude_bounds(const struct gait_endpoint *e, moray_bounds theta_max)
+{
+    if (e->revolute)
+        return theta_max;
+    return moray_between(sin(theta_max.lower), sin(theta_max.upper));
+}
+
 static void endpoint_value(void *self, const double *in, double *out)
 {
     const struct gait_endpoint *e = self;
@@ -38,7 +58,7 @@ static void endpoint_value(void *self, const double *in, double *out)
             *out++ = in[at.xf + r] - in[at.x0 + r];
     *out++ = displacement(e, in, 1);
     *out++ = in[at.omega] * in[at.tf];
-    *out++ = in[at.a] / (e->L * cos(in[at.delta] / 2)); // (33)
+    *out++ = in[at.a] * amplitude_reciprocal(e, in[at.delta]).value;
     if (e->power)
         *out++ = in[at.energy] / in[at.tf];
     if (e->rate)
@@ -48,7 +68,8 @@ static void endpoint_value(void *self, const double *in, double *out)
 static void walk_endpoint_jacobian(const struct gait_endpoint *e, const double *in, triplets *out)
 {
     const struct places at = places_of(e);
-    const double T = in[at.tf], a = in[at.a], c = cos(in[at.delta] / 2), s = sin(in[at.delta] / 2);
+    const double T = in[at.tf], a = in[at.a];
+    const struct reciprocal amplitude = amplitude_reciprocal(e, in[at.delta]);
     const double along = displacement(e, in, 0);
     int row = 0;
     for (int k = 0; k < 2; k++) {
@@ -69,8 +90,8 @@ static void walk_endpoint_jacobian(const struct gait_endpoint *e, const double *
     row++;
     triplets_put(out, row, at.omega, T);
     triplets_put(out, row++, at.tf, in[at.omega]);
-    triplets_put(out, row, at.a, 1 / (e->L * c));
-    triplets_put(out, row++, at.delta, a * s / (2 * e->L * c * c));
+    triplets_put(out, row, at.a, amplitude.value);
+    triplets_put(out, row++, at.delta, a * amplitude.slope);
     if (e->power) {
         triplets_put(out, row, at.energy, 1 / T);
         triplets_put(out, row++, at.tf, -in[at.energy] / (T * T));
@@ -84,7 +105,8 @@ static void walk_endpoint_jacobian(const struct gait_endpoint *e, const double *
 static void walk_endpoint_hessian(const struct gait_endpoint *e, const double *in, const double *weight, triplets *out)
 {
     const struct places at = places_of(e);
-    const double T = in[at.tf], a = in[at.a], c = cos(in[at.delta] / 2), s = sin(in[at.delta] / 2);
+    const double T = in[at.tf], a = in[at.a];
+    const struct reciprocal amplitude = amplitude_reciprocal(e, in[at.delta]);
     for (int k = 0; k < 2; k++) {
         triplets_put_lower(out, at.tf, at.xf + e->position + k, weight[0] * e->course[k] / (T * T));
         triplets_put_lower(out, at.tf, at.x0 + e->position + k, -weight[0] * e->course[k] / (T * T));
@@ -93,8 +115,8 @@ static void walk_endpoint_hessian(const struct gait_endpoint *e, const double *i
     const double *event =
         weight + 1 + (e->nx - 2) + 1; // past the objective, periodicity and the cross-course displacement
     triplets_put_lower(out, at.omega, at.tf, event[0]);
-    triplets_put_lower(out, at.delta, at.a, event[1] * s / (2 * e->L * c * c));
-    triplets_put(out, at.delta, at.delta, event[1] * a / e->L * (1 / (4 * c) + s * s / (2 * c * c * c)));
+    triplets_put_lower(out, at.delta, at.a, event[1] * amplitude.slope);
+    triplets_put(out, at.delta, at.delta, event[1] * a * amplitude.curvature);
     event += 2;
     if (e->power) {
         triplets_put_lower(out, at.energy, at.tf, -*event / (T * T));

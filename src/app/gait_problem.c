@@ -48,13 +48,19 @@ static moray_status check_spec(const moray_gait_problem_spec *spec)
     MORAY_TRY(moray_robot_check(&spec->robot));
     if (spec->joints == MORAY_JOINTS_FREE)
         return moray_error(MORAY_INPUT, "joints = free: an optimal gait has its joints on the gait or in closed loop");
+    const bool control = spec->model == MORAY_CONTROL_ORIENTED;
+    if (!control && spec->joints != MORAY_JOINTS_ON_GAIT)
+        return moray_error(MORAY_INPUT, "joints: the first-principles model has its joints on the gait");
     MORAY_TRY(check_range("theta_max_deg", limits->theta_max, 0, 89 * degree, degree));
     MORAY_TRY(check_range("omega_deg_s", limits->omega, 1e-3 * degree, 1e5 * degree, degree));
-    MORAY_TRY(check_range("delta_deg", limits->delta, 0, 179 * degree, degree));
-    MORAY_TRY(check_range("phi0_m", limits->offset, -spec->robot.l, spec->robot.l, 1));
+    MORAY_TRY(check_range("delta_deg", limits->delta, 1 * degree, 179 * degree, degree));
+    if (control)
+        MORAY_TRY(check_range("phi0_m", limits->offset, -spec->robot.l, spec->robot.l, 1));
+    else
+        MORAY_TRY(check_range("phi0_deg", limits->offset, -90 * degree, 90 * degree, degree));
     MORAY_TRY(check_limit("power_W", limits->power));
-    MORAY_TRY(check_limit("joint_rate_m_s", limits->joint_rate));
-    MORAY_TRY(check_limit("joint_force_N", limits->joint_force));
+    MORAY_TRY(check_limit("joint_rate", limits->joint_rate));
+    MORAY_TRY(check_limit("joint_effort", limits->joint_effort));
     if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]) || !isfinite(spec->course))
         return moray_error(MORAY_INPUT, "current = %g,%g, course = %g: must be finite", spec->current[0],
                            spec->current[1], spec->course);
@@ -72,10 +78,12 @@ static moray_status make_plant(moray_gait_problem *problem)
     const moray_plant_spec plant = {.robot = spec->robot,
                                     .joints = spec->joints,
                                     .current = {spec->current[0], spec->current[1]},
-                                    .path_forces = limited(spec->limits.joint_force),
-                                    .path_angles = spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0};
+                                    .path_forces = limited(spec->limits.joint_effort),
+                                    .path_angles = spec->model == MORAY_CONTROL_ORIENTED &&
+                                                   (spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0)};
     problem->size = moray_plant_sizes(&plant);
-    return moray_control_plant(&problem->plant, &plant);
+    return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&problem->plant, &plant)
+                                                 : moray_complex_plant(&problem->plant, &plant);
 }
 
 static moray_status make_endpoint(moray_gait_problem *problem)
@@ -84,6 +92,7 @@ static moray_status make_endpoint(moray_gait_problem *problem)
     const int joints = spec->joints == MORAY_JOINTS_ON_GAIT ? 0 : spec->robot.links - 1;
     problem->endpoint = (struct gait_endpoint){.nx = problem->size.nx,
                                                .position = joints + 1,
+                                               .revolute = spec->model == MORAY_FIRST_PRINCIPLES,
                                                .L = 2 * spec->robot.l,
                                                .course = {cos(spec->course), sin(spec->course)},
                                                .power = limited(spec->limits.power),
@@ -94,9 +103,9 @@ static moray_status make_endpoint(moray_gait_problem *problem)
 static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
-    const int forces = limited(limits->joint_force) ? problem->spec.robot.links - 1 : 0;
+    const int forces = limited(limits->joint_effort) ? problem->spec.robot.links - 1 : 0;
     for (int i = 0; i < problem->size.nc; i++)
-        c[i] = i < forces ? moray_between(-limits->joint_force, limits->joint_force)
+        c[i] = i < forces ? moray_between(-limits->joint_effort, limits->joint_effort)
                           : moray_between(-limits->theta_max.upper, limits->theta_max.upper);
 }
 
@@ -106,15 +115,16 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
     for (int i = 0; i < problem->size.nx - 2 + 1; i++)
         *e++ = moray_fixed(0);
     *e++ = moray_fixed(2 * M_PI);
-    *e++ = moray_between(sin(limits->theta_max.lower), sin(limits->theta_max.upper));
+    *e++ = gait_amplitude_bounds(&problem->endpoint, limits->theta_max);
     if (problem->endpoint.power)
         *e++ = moray_at_most(limits->power);
     if (problem->endpoint.rate)
         *e++ = moray_at_most(limits->joint_rate);
 }
 
-static const char *const s_names[] = {"a", "omega", "delta", "phi_0"};
-static const char *const gait_states[] = {"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"};
+static const char *const s_names[][4] = {{"a", "omega", "delta", "phi_0"}, {"alpha", "omega", "delta", "phi_0"}};
+static const char *const gait_states[][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
+                                             {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
 
 static moray_status make_ocp(moray_gait_problem *problem)
 {
@@ -129,7 +139,9 @@ static moray_status make_ocp(moray_gait_problem *problem)
         x0[r] = r == at || r == at + 1 ? moray_fixed(0) : moray_free();
     fill_path_bounds(problem, c);
     fill_event_bounds(problem, e);
-    const double largest = 2 * problem->spec.robot.l * sin(limits->theta_max.upper); // of a, by (33)
+    const bool control = problem->spec.model == MORAY_CONTROL_ORIENTED;
+    const double largest = control ? 2 * problem->spec.robot.l * sin(limits->theta_max.upper) // of a, by (33)
+                                   : 2 * limits->theta_max.upper;                             // of alpha, by (27)
     const moray_bounds s[] = {moray_between(0, largest), limits->omega, limits->delta, limits->offset};
     const moray_phase_spec phase = {
         .name = "period",
@@ -141,14 +153,14 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .tf = moray_between(2 * M_PI / limits->omega.upper, 2 * M_PI / limits->omega.lower),
         .x0 = {x0, nx},
         .c = {c, nc},
-        .x_names = problem->spec.joints == MORAY_JOINTS_ON_GAIT ? gait_states : NULL,
+        .x_names = problem->spec.joints == MORAY_JOINTS_ON_GAIT ? gait_states[problem->spec.model] : NULL,
     };
     return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = "max_speed",
                                                           .phases = 1,
                                                           .phase = &phase,
                                                           .ns = 4,
                                                           .s = {s, 4},
-                                                          .s_names = s_names,
+                                                          .s_names = s_names[problem->spec.model],
                                                           .ne = ne,
                                                           .e = {e, ne},
                                                           .endpoint_map = &problem->ends});
@@ -204,4 +216,42 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
     promise.course_speed = promise.v_x * cos(spec->course) + promise.v_y * sin(spec->course);
     promise.power = moray_solution_integrals(solution, 0)[0] / tf;
     return promise;
+}
+
+// The plant's state from the swimmer's.
+static void plant_state(const moray_gait_problem *problem, const double *full, double *x)
+{
+    const int N = problem->spec.robot.links;
+    if (problem->spec.joints != MORAY_JOINTS_ON_GAIT) {
+        memcpy(x, full, (size_t)problem->size.nx * sizeof *x);
+        return;
+    }
+    for (int half = 0; half < 2; half++, full += N + 2, x += 3) {
+        if (problem->spec.model == MORAY_CONTROL_ORIENTED) {
+            memcpy(x, full + N - 1, 3 * sizeof *x);
+            continue;
+        }
+        x[0] = 0;
+        for (int i = 0; i < N; i++)
+            x[0] += full[i] / N;
+        x[1] = full[N];
+        x[2] = full[N + 1];
+    }
+}
+
+moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
+                                      const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution)
+{
+    const int nx = problem->size.nx;
+    double s[4], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
+    if (!x)
+        return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", orbit->n);
+    for (int k = 0; k < orbit->n; k++)
+        plant_state(problem, orbit->x + k * orbit->n_states, x + k * nx);
+    moray_gait_to_parameters(gait, s);
+    const moray_samples samples = {.n = orbit->n, .time = orbit->t, .x = x};
+    const moray_guess guess = {.phase = &samples, .s = s};
+    moray_status status = moray_solve(problem->ocp, settings, &guess, solution);
+    free(x);
+    return status;
 }

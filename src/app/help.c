@@ -39,9 +39,9 @@ static void print_entry(FILE *file, const char *name, const char *text)
 static void write_name(const moray_option *row, bool flag, char *name, size_t size)
 {
     static const char *const by_type[] = {
-        [MORAY_OPTION_INT] = "N",       [MORAY_OPTION_REAL] = "X",    [MORAY_OPTION_BOOL] = "yes|no",
-        [MORAY_OPTION_CHOICE] = "NAME", [MORAY_OPTION_TEXT] = "TEXT", [MORAY_OPTION_RANGE] = "LOW:HIGH",
-        [MORAY_OPTION_PAIR] = "X,Y",
+        [MORAY_OPTION_LIMIT] = "X|none",   [MORAY_OPTION_INT] = "N",       [MORAY_OPTION_REAL] = "X",
+        [MORAY_OPTION_BOOL] = "yes|no",    [MORAY_OPTION_CHOICE] = "NAME", [MORAY_OPTION_TEXT] = "TEXT",
+        [MORAY_OPTION_RANGE] = "LOW:HIGH", [MORAY_OPTION_PAIR] = "X,Y",
     };
     const char *argument = row->argument ? row->argument : by_type[row->type];
     if (flag && row->type == MORAY_OPTION_BOOL)

@@ -121,9 +121,12 @@ static bool read_value(const moray_option *row, const char *text, char *to)
     case MORAY_OPTION_TEXT:
         return read_text(row, text, to);
     case MORAY_OPTION_REAL:
+    case MORAY_OPTION_LIMIT:
     case MORAY_OPTION_RANGE:
     case MORAY_OPTION_PAIR:
-        good = row->type == MORAY_OPTION_REAL ? read_real(row, text, real) : read_two(row, text, real);
+        good = row->type == MORAY_OPTION_REAL    ? read_real(row, text, real)
+               : row->type == MORAY_OPTION_LIMIT ? read_end(row, text, 1, real)
+                                                 : read_two(row, text, real);
         if (good)
             memcpy(to, real, row->size);
         return good;

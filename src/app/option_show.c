@@ -62,6 +62,9 @@ void moray_option_allowed(const moray_option *row, char text[MORAY_SHOWN_SIZE])
     case MORAY_OPTION_TEXT:
         snprintf(text, MORAY_SHOWN_SIZE, "a text of 1 to %zu bytes", row->size - 1);
         return;
+    case MORAY_OPTION_LIMIT:
+        snprintf(text, MORAY_SHOWN_SIZE, "none or %s", number);
+        return;
     case MORAY_OPTION_RANGE:
         snprintf(text, MORAY_SHOWN_SIZE, "LOW:HIGH or one value, LOW <= HIGH, each none or %s", number);
         return;
@@ -89,7 +92,7 @@ static bool show_reals(const moray_option *row, const void *at, char text[MORAY_
         return false;
     show_end(value[0], moray_option_scale(row), first);
     show_end(value[1], moray_option_scale(row), second);
-    if (row->type == MORAY_OPTION_REAL)
+    if (row->type == MORAY_OPTION_REAL || row->type == MORAY_OPTION_LIMIT)
         snprintf(text, MORAY_SHOWN_SIZE, "%s", first);
     else
         snprintf(text, MORAY_SHOWN_SIZE, "%s%c%s", first, row->type == MORAY_OPTION_RANGE ? ':' : ',', second);
@@ -118,6 +121,7 @@ bool moray_option_default(const moray_option *row, const void *settings, char te
         snprintf(text, MORAY_SHOWN_SIZE, "%s", at);
         return text[0] != 0;
     case MORAY_OPTION_REAL:
+    case MORAY_OPTION_LIMIT:
     case MORAY_OPTION_RANGE:
     case MORAY_OPTION_PAIR:
         return show_reals(row, at, text);

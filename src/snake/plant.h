@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
 // The control-oriented model as a map. Its outputs depend on the shape vectors phi, v_phi, ubar only through the
-// features of plant_body.h and through forms linear or quadratic in them, so all three joint forms share everything but
-// the shape vectors as functions of the inputs: a plant_form. "Shape inputs" are the inputs these vectors depend on:
-// phi, v_phi and (closed loop) the gait parameters and t or (free) ubar; on the gait only the parameters and t.
-// B = A Dbar and G = (D D^T)^{-1} throughout.
+// features of control_body.h and through forms linear or quadratic in them, so all three joint forms share everything
+// but the shape vectors as functions of the inputs: a plant_form. "Shape inputs" are the inputs these vectors depend
+// on: phi, v_phi and (closed loop) the gait parameters and t or (free) ubar; on the gait only the parameters and t. B =
+// A Dbar and G = (D D^T)^{-1} throughout.
 #ifndef MORAY_SNAKE_PLANT_H
 #define MORAY_SNAKE_PLANT_H
 
 #include <stddef.h>
 
-#include "plant_body.h"
+#include "control_body.h"
 #include "plant_reference.h"
 
 typedef struct plant plant;
@@ -69,9 +69,9 @@ enum { WORK_VECTORS = 8 };
 
 struct plant {
     const plant_form *form;
-    plant_body body;
-    int n;                      // joints, N-1
-    int n_in, n_out;            //
+    control_body body;
+    int n; // joints, N-1
+    int n_in, n_out;
     int n_shape, n_s, n_curved; // shape inputs; how many first ones move s, and phi or v_phi
     int n_last;                 // second derivatives among the shape inputs behind n_curved
     int theta, v_theta;         // places in the state; p_x, p_y and v_t, v_n follow

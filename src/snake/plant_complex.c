@@ -96,7 +96,7 @@ static void probe(const moray_robot *robot, double *in)
 
 moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec)
 {
-    struct complex_plant *plant;
+    struct complex_plant *plant = NULL;
     double in[inputs];
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));

@@ -11,17 +11,10 @@ void plant_value(void *context, const double *in, double *out)
 {
     plant *self = context;
     plant_to_values(self, in);
-    const body_point *at = &self->at;
     const int n = self->n;
-    const double v_theta = in[self->v_theta];
     if (self->form->joint_rates)
         self->form->joint_rates(self, out);
-    out[self->theta] = v_theta;                                            // (23b)
-    out[self->theta + 1] = at->v_t * at->cosine - at->v_n * at->sine;      // (23c)
-    out[self->theta + 2] = at->v_t * at->sine + at->v_n * at->cosine;      // (23d)
-    out[self->v_theta] = at->dv_theta_flow - self->body.damping * v_theta; // (23f)
-    out[self->v_theta + 1] = at->dv_t;                                     // (23g)
-    out[self->v_theta + 2] = at->dv_n;                                     // (23h) with erratum E1
+    body_rates(&self->body, &self->at, in[self->v_theta], out + self->theta, out + self->v_theta);
     if (self->forces >= 0)
         memcpy(out + self->forces, self->u, (size_t)n * sizeof *out);
     if (self->angles >= 0)

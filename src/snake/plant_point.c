@@ -5,30 +5,6 @@
 
 #include "shape.h"
 
-static void features(plant *self, double y[FEATURES])
-{
-    const int n = self->n;
-    shape_a_dbar_transposed(n + 1, self->phi, self->bt_phi);
-    aa_transposed(n, self->phi, self->aa_phi);
-    y[FEATURE_S] = 0;
-    for (int i = 0; i < n; i++)
-        y[FEATURE_S] += self->phi[i];
-    y[FEATURE_Q] = dot(n, self->phi, self->aa_phi);
-    y[FEATURE_W] = dot(n, self->bt_phi, self->v_phi);
-    y[FEATURE_Z] = dot(n, self->bt_phi, self->ubar);
-}
-
-// (15a) with (14b): D D^T u = mt ubar + c_n v_phi - kappa A D^T phi, and G A D^T = -B^T; the same as (22).
-static void joint_forces(plant *self)
-{
-    const double mt = self->body.mt, c_n = self->body.c_n;
-    for (int i = 0; i < self->n; i++)
-        self->work[i] = mt * self->ubar[i] + c_n * self->v_phi[i];
-    shape_gram_inverse(self->n + 1, self->work, self->g_load);
-    for (int i = 0; i < self->n; i++)
-        self->u[i] = self->g_load[i] + self->at.kappa * self->bt_phi[i];
-}
-
 void plant_to_values(plant *self, const double *in)
 {
     const size_t size = (size_t)self->n_in * sizeof *in;
@@ -38,10 +14,10 @@ void plant_to_values(plant *self, const double *in)
     if (self->form->shape)
         self->form->shape(self);
     double y[FEATURES];
-    features(self, y);
+    body_features(self->n + 1, self->phi, self->v_phi, self->ubar, self->bt_phi, y);
     const double body_in[BODY_INPUTS] = {in[self->theta], in[self->v_theta + 1], in[self->v_theta + 2]};
     body_values(&self->body, y, body_in, &self->at);
-    joint_forces(self);
+    body_joint_forces(&self->body, &self->at, self->v_phi, self->ubar, self->bt_phi, self->work, self->g_load, self->u);
     self->level = AT_VALUES;
 }
 
@@ -85,6 +61,7 @@ void plant_to_gradients(plant *self, const double *in)
     if (self->level == AT_GRADIENTS)
         return;
     const int N = self->n + 1;
+    aa_transposed(N - 1, self->phi, self->aa_phi);
     shape_a_dbar(N, self->v_phi, self->b_v);
     shape_a_dbar(N, self->ubar, self->b_ubar);
     shape_gram_inverse(N, self->v_phi, self->g_v);

@@ -1,25 +1,44 @@
 // SPDX-License-Identifier: MIT
-#include "plant_body.h"
+#include "control_body.h"
 
 #include <math.h>
 
 #include "control.h"
+#include "shape.h"
 
-plant_body body_of(const moray_robot *robot, const double current[2])
+control_body body_of(const moray_robot *robot, const double current[2])
 {
     const control_coefficients k = control_coefficients_of(robot);
-    return (plant_body){.N = robot->links,
-                        .m = robot->m,
-                        .mt = k.m_tilde,
-                        .c_t = robot->c_t,
-                        .c_n = robot->c_n,
-                        .c_p = k.c_p,
-                        .mu_p = k.mu_p,
-                        .ch_n = k.c_n_hat,
-                        .damping = robot->rot_damping,
-                        .turning = robot->rot_gain / (robot->links - 1),
-                        .V_x = current[0],
-                        .V_y = current[1]};
+    return (control_body){.N = robot->links,
+                          .m = robot->m,
+                          .mt = k.m_tilde,
+                          .c_t = robot->c_t,
+                          .c_n = robot->c_n,
+                          .c_p = k.c_p,
+                          .mu_p = k.mu_p,
+                          .ch_n = k.c_n_hat,
+                          .damping = robot->rot_damping,
+                          .turning = robot->rot_gain / (robot->links - 1),
+                          .V_x = current[0],
+                          .V_y = current[1]};
+}
+
+void body_features(int N, const double *phi, const double *v_phi, const double *ubar, double *bt_phi,
+                   double y[FEATURES])
+{
+    double s = 0, q = phi[N - 2] * phi[N - 2], w = 0, z = 0;
+    shape_a_dbar_transposed(N, phi, bt_phi);
+    for (int i = 0; i < N - 1; i++) {
+        const double across = phi[i] + (i > 0 ? phi[i - 1] : 0);
+        s += phi[i];
+        q += across * across;
+        w += bt_phi[i] * v_phi[i];
+        z += bt_phi[i] * ubar[i];
+    }
+    y[FEATURE_S] = s;
+    y[FEATURE_Q] = q;
+    y[FEATURE_W] = w;
+    y[FEATURE_Z] = z;
 }
 
 typedef struct pair {
@@ -27,14 +46,14 @@ typedef struct pair {
 } pair;
 
 // Solves the two equations in the accelerations, whose matrix is symmetric, for another right-hand side.
-static pair accelerations(const plant_body *body, const body_point *at, pair force)
+static pair accelerations(const control_body *body, const body_point *at, pair force)
 {
     const double coupling = 2 * body->mu_p * at->y[FEATURE_S];
     return (pair){.t = at->h_1 * (body->N * body->mt * force.t + coupling * force.n),
                   .n = at->h_1 * (body->N * body->m * force.n + coupling * force.t)};
 }
 
-static void current_in_body_frame(const plant_body *body, body_point *at)
+static void current_in_body_frame(const control_body *body, body_point *at)
 {
     at->V_t = body->V_x * at->cosine + body->V_y * at->sine;
     at->V_n = -body->V_x * at->sine + body->V_y * at->cosine;
@@ -42,7 +61,7 @@ static void current_in_body_frame(const plant_body *body, body_point *at)
     at->v_nr = at->v_n - at->V_n;
 }
 
-void body_values(const plant_body *body, const double y[FEATURES], const double in[BODY_INPUTS], body_point *at)
+void body_values(const control_body *body, const double y[FEATURES], const double in[BODY_INPUTS], body_point *at)
 {
     for (int k = 0; k < FEATURES; k++)
         at->y[k] = y[k];
@@ -63,17 +82,38 @@ void body_values(const plant_body *body, const double y[FEATURES], const double 
     const pair dv = accelerations(body, at, force); // (15b), (15c)
     at->dv_t = dv.t;
     at->dv_n = dv.n;
-    at->dv_theta_flow = body->turning * at->v_tr * s; // (20)
     at->kappa = body->mu_p * dv.t + body->c_p * at->v_tr;
 }
 
+void body_rates(const control_body *body, const body_point *at, double v_theta, double dpose[3], double dvelocity[3])
+{
+    dpose[0] = v_theta;
+    dpose[1] = at->v_t * at->cosine - at->v_n * at->sine;
+    dpose[2] = at->v_t * at->sine + at->v_n * at->cosine;
+    dvelocity[0] = body->turning * at->v_tr * at->y[FEATURE_S] - body->damping * v_theta;
+    dvelocity[1] = at->dv_t;
+    dvelocity[2] = at->dv_n;
+}
+
+// (14b) in (15a): D D^T u = mt ubar + c_n v_phi - kappa A D^T phi, and G A D^T = -(A Dbar)^T.
+void body_joint_forces(const control_body *body, const body_point *at, const double *v_phi, const double *ubar,
+                       const double *bt_phi, double *scratch, double *load, double *u)
+{
+    const int N = (int)body->N;
+    for (int i = 0; i < N - 1; i++)
+        scratch[i] = body->mt * ubar[i] + body->c_n * v_phi[i];
+    shape_gram_inverse(N, scratch, load);
+    for (int i = 0; i < N - 1; i++)
+        u[i] = load[i] + at->kappa * bt_phi[i];
+}
+
 // Derivative of the two equations by s, with the accelerations held.
-static pair force_by_s(const plant_body *body, const body_point *at)
+static pair force_by_s(const control_body *body, const body_point *at)
 {
     return (pair){2 * (body->mu_p * at->dv_n + body->c_p * at->v_nr), 2 * at->kappa};
 }
 
-static void gradient_by_features(const plant_body *body, body_point *at)
+static void gradient_by_features(const control_body *body, body_point *at)
 {
     const pair force_y[FEATURES] = {[FEATURE_S] = force_by_s(body, at),
                                     [FEATURE_Q] = {-body->ch_n * at->v_tr, 0},
@@ -87,7 +127,7 @@ static void gradient_by_features(const plant_body *body, body_point *at)
     }
 }
 
-static void gradient_by_body(const plant_body *body, body_point *at)
+static void gradient_by_body(const control_body *body, body_point *at)
 {
     const double tr_b[BODY_INPUTS] = {-at->V_n, 1, 0}, nr_b[BODY_INPUTS] = {at->V_t, 0, 1};
     const double cross = 2 * body->c_p * at->y[FEATURE_S];
@@ -102,7 +142,7 @@ static void gradient_by_body(const plant_body *body, body_point *at)
     }
 }
 
-void body_gradients(const plant_body *body, body_point *at)
+void body_gradients(const control_body *body, body_point *at)
 {
     gradient_by_features(body, at);
     gradient_by_body(body, at);
@@ -110,7 +150,7 @@ void body_gradients(const plant_body *body, body_point *at)
 
 // With M dv = F: lambda . dv has the gradient eta . (F_x - M_x dv) where M eta = lambda, and the Hessian
 // eta . (F_xy - M_x dv_y - M_y dv_x), for M is linear in s and free of the other inputs.
-body_curvature body_second(const plant_body *body, const body_point *at, const body_weights *weight)
+body_curvature body_second(const control_body *body, const body_point *at, const body_weights *weight)
 {
     const double mu_p = body->mu_p, c_p = body->c_p, bend = weight->bend, s = at->y[FEATURE_S];
     const pair eta = accelerations(body, at, (pair){weight->dv_t + mu_p * bend, weight->dv_n});
