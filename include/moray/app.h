@@ -66,7 +66,8 @@ typedef struct moray_program {
     const char *name, *summary;  // summary: what it does, for --help
     const moray_option *options; // its own rows, offsets from the start of its settings
     int n_options;
-    bool no_robot; // not about snake robots: no --robot, --model, --links, --current, --course and no INI file
+    bool no_robot;  // not about snake robots: no --robot, --model, --links, --current, --course and no INI file
+    bool no_solver; // solves no problem: no --scheme, --intervals, --tol
 } moray_program;
 
 typedef enum { MORAY_REQUEST_RUN, MORAY_REQUEST_HELP, MORAY_REQUEST_VERSION } moray_request;

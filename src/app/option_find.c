@@ -20,7 +20,8 @@ moray_status moray_options_new(moray_options *options, const moray_program *prog
     for (int i = 0; i < n_robot; i++)
         options->row[options->n++] = robot[i];
     for (int i = 0; i < n_solver; i++)
-        options->row[options->n++] = solver[i];
+        if (!program->no_solver || !solver[i].section)
+            options->row[options->n++] = solver[i];
     return moray_ok();
 }
 
