@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "options.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,12 +100,34 @@ static void print_section(FILE *file, const moray_options *options, const void *
     }
 }
 
+static void print_noun(FILE *file, const char *noun)
+{
+    for (; *noun; noun++)
+        fputc(toupper((unsigned char)*noun), file);
+}
+
+static void print_words(FILE *file, const moray_words *words)
+{
+    fputc('\n', file);
+    print_noun(file, words->noun);
+    fputs(" is one or more of:\n", file);
+    for (int i = 0; i < words->n; i++)
+        print_entry(file, words->word[i].name, words->word[i].help);
+    print_entry(file, words->all, "all of these");
+}
+
 moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file)
 {
     moray_options options;
     MORAY_TRY(moray_options_new(&options, program));
-    fprintf(file, "Usage: %s [OPTION]...\n", program->name);
+    fprintf(file, "Usage: %s [OPTION]...%s", program->name, program->words ? " " : "\n");
+    if (program->words) {
+        print_noun(file, program->words->noun);
+        fputs("...\n", file);
+    }
     print_wrapped(file, program->summary, 0, 0);
+    if (program->words)
+        print_words(file, program->words);
     print_flags(file, &options, settings);
     for (int i = 0; i < options.n; i++)
         if (options.row[i].key && is_first_of_section(&options, i))
