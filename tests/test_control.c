@@ -26,7 +26,7 @@ static scene random_scene(random_seed *seed, int N)
 static bool swim(const scene *s, double dv[2], double *u)
 {
     const int N = s->robot.links;
-    double dx[MAX_STATES], scratch[MAX_LINKS];
+    double dx[MAX_STATES], scratch[2 * MAX_LINKS];
     const bool regular = control_rates(&s->robot, s->V, s->x, s->ubar, dx, u, scratch);
     dv[0] = dx[2 * N + 2];
     dv[1] = dx[2 * N + 3];
@@ -245,7 +245,7 @@ static void check_energy_balance(random_seed *seed, int N)
 static void check_kinematics(random_seed *seed, int N)
 {
     scene s = random_scene(seed, N);
-    double dx[MAX_STATES], scratch[MAX_LINKS], v_tr, v_nr, sum = 0;
+    double dx[MAX_STATES], scratch[2 * MAX_LINKS], v_tr, v_nr, sum = 0;
     const double theta = s.x[N - 1], v_theta = s.x[2 * N + 1], v_t = s.x[2 * N + 2], v_n = s.x[2 * N + 3];
     CHECK(control_rates(&s.robot, s.V, s.x, s.ubar, dx, NULL, scratch), "forces are optional");
     relative_velocity(&s, &v_tr, &v_nr);

@@ -32,7 +32,7 @@ static double entry(const moray_pattern *pattern, const double *values, int row,
 static void test_complex_step(void)
 {
     moray_map map;
-    CHECK_OK(moray_map_from_complex(&map, 5, 4, sample, NULL, point), "a map from a complex function");
+    CHECK_OK(moray_map_from_complex(&map, 5, 4, sample, NULL, NULL, point), "a map from a complex function");
     double values[32];
     bool found;
     map.jacobian(map.self, point, values);
@@ -65,7 +65,7 @@ static void test_not_finite(void)
 {
     moray_map map;
     const double bad[5] = {1, 1, 1, 0, 1};
-    moray_status status = moray_map_from_complex(&map, 5, 4, sample, NULL, bad);
+    moray_status status = moray_map_from_complex(&map, 5, 4, sample, NULL, NULL, bad);
     CHECK(status.code == MORAY_INPUT && strstr(status.text, "output 3"), "not finite at the probe: %s", status.text);
 }
 

@@ -39,9 +39,10 @@ typedef void moray_complex_fn(void *self, const double complex *in, double compl
 
 // Makes a map of a complex-valued function: exact Jacobians by complex step, Hessians by central differences of them,
 // patterns by NaN propagation at `probe`[n_in] and at random points near it, directions merged by column colouring.
-// `self` stays the caller's. Error: MORAY_MEMORY; MORAY_INPUT when the function is not finite at the probe.
+// `release`, unless NULL, frees `self` with the map (or on error). Error: MORAY_MEMORY; MORAY_INPUT when the function
+// is not finite at the probe.
 moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *self,
-                                    const double *probe);
+                                    void (*release)(void *self), const double *probe);
 
 // The worst disagreement between a map's derivatives and an independent route, relative to 1 + |reference|.
 typedef struct moray_derivative_report {

@@ -2,12 +2,19 @@
 #ifndef MORAY_MORAY_H
 #define MORAY_MORAY_H
 
+#include "moray/app.h"
+#include "moray/dense.h"
+#include "moray/gait_problem.h"
+#include "moray/gait_trial.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/ocp.h"
 #include "moray/ode.h"
+#include "moray/results.h"
 #include "moray/scheme.h"
+#include "moray/sim.h"
 #include "moray/snake.h"
 #include "moray/status.h"
+#include "moray/swim.h"
 
 #endif

@@ -144,6 +144,7 @@ typedef struct moray_settings {
     double mesh_tolerance; // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
     int max_refinements;   // 0: finer meshes tried while the mesh error is above mesh_tolerance
     int max_iterations;    // 1000
+    double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log
     moray_progress_fn *progress;

@@ -131,4 +131,9 @@ moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
 // Error: MORAY_INPUT (robot), MORAY_MEMORY. The map owns all it needs; release with moray_map_release.
 moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 
+// The first-principles model in the same form, for MORAY_JOINTS_ON_GAIT only: x = (mean link angle, p_x, p_y, and their
+// rates), s = (alpha, omega, delta, phi_0); c: joint torques [N m], then theta_i minus their mean. Exact Jacobians by
+// complex step, Hessians differenced from them. Errors and ownership as above.
+moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec);
+
 #endif

@@ -16,6 +16,7 @@ static const double hessian_step = 6e-6; // near the cube root of the rounding u
 struct complex_self {
     moray_complex_fn *function;
     void *user;
+    void (*release_user)(void *user);
     int n_in, n_out;
     moray_pattern jac, hess;     // the map's own, kept here to be freed
     int *jac_group, *hess_group; // direction that each column belongs to
@@ -162,6 +163,8 @@ static void complex_release(moray_map *map)
     free(self->point);
     free(self->jac_values);
     free(self->gradient);
+    if (self->release_user)
+        self->release_user(self->user);
     free(self);
 }
 
@@ -193,12 +196,15 @@ static moray_status check_finite(struct complex_self *self, const double *probe)
 }
 
 moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *user,
-                                    const double *probe)
+                                    void (*release_user)(void *user), const double *probe)
 {
     struct complex_self *self = calloc(1, sizeof *self);
+    if (!self && release_user)
+        release_user(user);
     if (!self)
         return moray_error(MORAY_MEMORY, "no memory for a map");
-    *self = (struct complex_self){.function = function, .user = user, .n_in = n_in, .n_out = n_out};
+    *self = (struct complex_self){
+        .function = function, .user = user, .release_user = release_user, .n_in = n_in, .n_out = n_out};
     *map = (moray_map){.n_in = n_in, .n_out = n_out, .self = self, .release = complex_release};
     moray_status status = complex_allocate(self);
     if (!moray_failed(status))

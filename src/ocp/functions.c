@@ -95,7 +95,7 @@ static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, moray_continuous
         *p->wrapped = (struct wrapped_phase){p, function, ocp->data};
         for (int trial = 0; trial < trials && moray_failed(status); trial++) {
             phase_probe(ocp, p, trial, probe);
-            status = moray_map_from_complex(&p->own_map, n_in, n_out, call_continuous, p->wrapped, probe);
+            status = moray_map_from_complex(&p->own_map, n_in, n_out, call_continuous, p->wrapped, NULL, probe);
         }
     }
     p->map = &p->own_map;
@@ -114,7 +114,7 @@ static moray_status wrap_endpoint(moray_ocp *ocp)
     moray_status status = moray_error(MORAY_MEMORY, "no memory for the endpoint of %s", ocp->name);
     for (int trial = 0; probe && trial < trials && moray_failed(status); trial++) {
         endpoint_probe(ocp, trial, probe);
-        status = moray_map_from_complex(&ocp->own_endpoint, n_in, 1 + ocp->ne, call_endpoint, ocp, probe);
+        status = moray_map_from_complex(&ocp->own_endpoint, n_in, 1 + ocp->ne, call_endpoint, ocp, NULL, probe);
     }
     ocp->endpoint = &ocp->own_endpoint;
     free(probe);

@@ -13,6 +13,7 @@ moray_settings moray_settings_default(void)
                             .tolerance = 1e-8,
                             .mesh_tolerance = 1e-6,
                             .max_iterations = 1000,
+                            .barrier = 0.1,
                             .own_scaling = true};
 }
 
@@ -82,6 +83,7 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
 {
     return (moray_nlp_settings){.tolerance = settings->tolerance,
                                 .max_iterations = settings->max_iterations,
+                                .barrier = warm ? settings->tolerance : settings->barrier,
                                 .warm = warm,
                                 .print_level = settings->print_level,
                                 .progress = settings->progress,

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "control_body.h"
 #include "model.h"
 #include "shape.h"
 
@@ -15,83 +16,29 @@ control_coefficients control_coefficients_of(const moray_robot *robot)
                                   .m_tilde = robot->m + robot->mu_n};
 }
 
-// The joint coordinates enter (16b), (16c) and (20) only through these sums.
-typedef struct {
-    double s, q, w, z; // ebar^T phi, |A^T phi|^2, phi^T A Dbar v_phi, phi^T A Dbar ubar
-} shape_sums;
-
-static shape_sums sums_of(int N, const double *phi, const double *v_phi, const double *ubar, double *scratch)
-{
-    shape_sums sums = {.q = phi[N - 2] * phi[N - 2]};
-    shape_a_dbar_transposed(N, phi, scratch);
-    for (int i = 0; i < N - 1; i++) {
-        const double angle = phi[i] + (i > 0 ? phi[i - 1] : 0);
-        sums.s += phi[i];
-        sums.q += angle * angle;
-        sums.w += scratch[i] * v_phi[i];
-        sums.z += scratch[i] * ubar[i];
-    }
-    return sums;
-}
-
-// (16b), (16c): dv_t and dv_n in dv[2] from the velocities relative to the current. False where h_1 is not positive.
-static bool accelerations(const moray_robot *robot, shape_sums sums, double v_tr, double v_nr, double dv[2])
-{
-    const control_coefficients k = control_coefficients_of(robot);
-    const double N = robot->links, m = robot->m, c_t = robot->c_t, c_n = robot->c_n;
-    const double c_p = k.c_p, mu_p = k.mu_p, m_tilde = k.m_tilde, s = sums.s;
-    const double drag = k.c_n_hat * sums.q;
-    const double determinant = N * N * m * m_tilde - 4 * mu_p * mu_p * s * s; // 1/h_1, (17)
-    const double h_2 = 2 * N * s * (c_p * m_tilde - c_n * mu_p);
-    const double h_3 = 4 * c_p * mu_p * s * s - N * m_tilde * (N * c_t + drag);
-    const double h_4 = 2 * s * (N * c_p * m - mu_p * (N * c_t + drag));
-    const double h_5 = 4 * c_p * mu_p * s * s - N * N * m * c_n;
-    const double bending = c_p * sums.w + mu_p * sums.z;
-    dv[0] = (h_2 * v_nr + h_3 * v_tr - N * m_tilde * bending) / determinant;
-    dv[1] = (h_4 * v_tr + h_5 * v_nr - 2 * mu_p * s * bending) / determinant;
-    return determinant > 0;
-}
-
-// (22) by way of (14b) and (15a): D D^T u = m~ ubar + c_n v_phi - (mu_p dv_t + c_p v_tr) A D^T phi.
-static void joint_forces(const moray_robot *robot, const double *phi, const double *v_phi, const double *ubar,
-                         double v_tr, double dv_t, double *u, double *scratch)
-{
-    const int N = robot->links;
-    const control_coefficients k = control_coefficients_of(robot);
-    const double slope = k.mu_p * dv_t + k.c_p * v_tr;
-    shape_a_dt(N, phi, scratch);
-    for (int i = 0; i < N - 1; i++)
-        scratch[i] = k.m_tilde * ubar[i] + robot->c_n * v_phi[i] - slope * scratch[i];
-    shape_gram_inverse(N, scratch, u);
-}
-
 bool control_rates(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
                    double *u, double *scratch)
 {
     const int N = robot->links, half = N + 2;
-    const double *phi = x, *v_phi = x + half;
-    const double v_theta = x[2 * N + 1], v_t = x[2 * N + 2], v_n = x[2 * N + 3];
-    const double cosine = cos(x[N - 1]), sine = sin(x[N - 1]);
-    const double v_tr = v_t - (current[0] * cosine + current[1] * sine);
-    const double v_nr = v_n - (current[1] * cosine - current[0] * sine);
-    const shape_sums sums = sums_of(N, phi, v_phi, ubar, scratch);
-    const bool regular = accelerations(robot, sums, v_tr, v_nr, dx + 2 * N + 2);
+    const double *phi = x, *v_phi = x + half, v_theta = x[2 * N + 1];
+    const control_body body = body_of(robot, current);
+    double y[FEATURES], *bt_phi = scratch, *load = scratch + N - 1;
+    body_point at;
+    body_features(N, phi, v_phi, ubar, bt_phi, y);
+    body_values(&body, y, (const double[BODY_INPUTS]){x[N - 1], x[2 * N + 2], x[2 * N + 3]}, &at);
     for (int i = 0; i < N - 1; i++) {
         dx[i] = v_phi[i];       // (23a)
         dx[half + i] = ubar[i]; // (23e)
     }
-    dx[N - 1] = v_theta;                                                                       // (23b)
-    dx[N] = v_t * cosine - v_n * sine;                                                         // (23c)
-    dx[N + 1] = v_t * sine + v_n * cosine;                                                     // (23d)
-    dx[2 * N + 1] = -robot->rot_damping * v_theta + robot->rot_gain / (N - 1) * v_tr * sums.s; // (23f)
+    body_rates(&body, &at, v_theta, dx + N - 1, dx + 2 * N + 1);
     if (u != NULL)
-        joint_forces(robot, phi, v_phi, ubar, v_tr, dx[2 * N + 2], u, scratch);
-    return regular;
+        body_joint_forces(&body, &at, v_phi, ubar, bt_phi, load, u, u);
+    return !isnan(at.h_1);
 }
 
 static size_t scratch_bytes(int N)
 {
-    return (size_t)(N - 1) * sizeof(double);
+    return 2 * (size_t)(N - 1) * sizeof(double);
 }
 
 static void rest(int N, double theta, double p_x, double p_y, double *x)

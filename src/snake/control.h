@@ -14,7 +14,7 @@ typedef struct control_coefficients {
 control_coefficients control_coefficients_of(const moray_robot *robot);
 
 // (23) with (16c) in place of (23h) (erratum E1), and (22) unless u is NULL. x and dx[2N+4], ubar and u[N-1],
-// scratch[N-1]. False where (16) is singular, that is h_1 of (17) is not positive.
+// scratch[2(N-1)]. False where (16) is singular, that is h_1 of (17) is not positive.
 bool control_rates(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
                    double *u, double *scratch);
 

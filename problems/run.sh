@@ -1,0 +1,23 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Solves a problem: problems/run.sh NAME [OPTION]... Installs and builds what is missing first. Standard output is the
+# program's alone.
+root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd) || exit 1
+. "$root/problems/setup.sh"
+
+name=${1-}
+case $name in
+'' | */*) known= ;;
+*) [ -f "$root/problems/$name.c" ] && known=yes || known= ;;
+esac
+if [ -z "$known" ]; then
+    say "Usage: sh problems/run.sh NAME [OPTION]...${name:+ There is no problem $name.} NAME is one of:"
+    for source in "$root"/problems/*.c; do
+        [ -f "$source" ] && say "  $(basename "$source" .c)"
+    done
+    exit 2
+fi
+shift
+
+install_packages && configure "$root/build" && quietly ninja -C "$root/build" "problems/$name" || exit 1
+exec "$root/build/problems/$name" "$@"

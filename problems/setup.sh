@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+# Sourced by problems/run.sh and tests/run.sh, which set `root`: packages, configuring, building. Everything said goes to
+# standard error.
+
+say() {
+    printf '%s\n' "$*" >&2
+}
+
+# Runs a command; shows what it said only when it fails.
+quietly() {
+    log=$(mktemp) || return 1
+    if "$@" >"$log" 2>&1; then
+        rm -f "$log"
+        return 0
+    fi
+    cat "$log" >&2
+    rm -f "$log"
+    say "failed: $*"
+    return 1
+}
+
+wanted_packages() {
+    sed 's/#.*//' "$root/packages.txt"
+}
+
+missing_packages() {
+    # shellcheck disable=SC2046
+    installed=" $(dpkg-query -W -f '${db:Status-Status}=${Package} ' $(wanted_packages) 2>/dev/null) "
+    for package in $(wanted_packages); do
+        case $installed in
+        *" installed=$package "*) ;;
+        *) printf '%s ' "$package" ;;
+        esac
+    done
+}
+
+install_packages() {
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+        say "This is no Debian system; going on in the hope that it has the counterparts of packages.txt."
+        return 0
+    fi
+    missing=$(missing_packages)
+    [ -n "$missing" ] || return 0
+    as_root=
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! command -v sudo >/dev/null; then
+            say "Missing Debian packages, and neither root nor sudo to install them. As root: apt-get install $missing"
+            return 1
+        fi
+        as_root=sudo
+    fi
+    say "Installing missing Debian packages${as_root:+ with sudo}: $missing"
+    quietly $as_root apt-get update
+    # shellcheck disable=SC2086
+    quietly $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+}
+
+# configure DIRECTORY [MESON OPTIONS]
+configure() {
+    [ -f "$1/build.ninja" ] && return 0
+    say "Configuring $1"
+    directory=$1
+    shift
+    quietly meson setup "$directory" "$root" "$@"
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#ifndef APP_GAIT_ENDPOINT_H
+#define APP_GAIT_ENDPOINT_H
+
+#include "base/triplets.h"
+#include "moray/gait_problem.h"
+
+// The ends of the optimal-gait problem as a map with analytic derivatives. Objective: minus the speed along the course.
+// Events: periodicity of every state but the position, displacement across the course [m], omega T [rad], amplitude as
+// bounded by gait_amplitude_bounds, then mean power [W] and rate amplitude where limited.
+struct gait_endpoint {
+    int nx, position; // states; first of p_x, p_y
+    double course[2]; // unit vector
+    bool revolute;    // amplitude by (27), else by (33) with links of length L
+    double L;
+    bool power, rate;
+    int events;
+    triplets jac, hess;
+};
+
+// The map uses `endpoint`, which must not move. Error: MORAY_MEMORY.
+moray_status gait_endpoint_map(moray_map *map, struct gait_endpoint *endpoint);
+void gait_endpoint_free(struct gait_endpoint *endpoint);
+
+// Bounds of the amplitude event for a range of theta_max: (33) a / (L cos(delta/2)) = sin theta_max, or
+// (27) alpha / (2 sin(delta/2)) = theta_max.
+moray_bounds gait_amplitude_bounds(const struct gait_endpoint *endpoint, moray_bounds theta_max);
+
+#endif

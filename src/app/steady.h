@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#ifndef MORAY_APP_STEADY_H
+#define MORAY_APP_STEADY_H
+
+#include "moray/swim.h"
+
+// moray_swim_steady with at least `min_periods` periods. Root finding over the start heading or the gait passes the
+// largest number so far: a function of them that jumps with the number of periods may have no root.
+moray_status swim_steady(const moray_swim_setup *setup, const moray_gait *gait, double start_heading, int min_periods,
+                         moray_steady *steady, moray_swim_track *orbit, int points);
+
+#endif

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "plant_reference.h"
+
+#include <math.h>
+
+void reference_set(reference *at, const double p[GAIT_INPUTS])
+{
+    at->a = p[GAIT_A];
+    at->omega = p[GAIT_OMEGA];
+    at->phi_0 = p[GAIT_PHI_0];
+    at->t = p[GAIT_T];
+    for (int i = 0; i < at->n; i++) {
+        const double argument = p[GAIT_OMEGA] * p[GAIT_T] + i * p[GAIT_DELTA];
+        at->sine[i] = sin(argument);
+        at->cosine[i] = cos(argument);
+    }
+}
+
+void reference_values(const reference *at, double *phi, double *v, double *acc)
+{
+    const double a_omega = at->a * at->omega;
+    for (int i = 0; i < at->n; i++) {
+        phi[i] = at->a * at->sine[i] + at->phi_0;
+        v[i] = a_omega * at->cosine[i];
+        acc[i] = -a_omega * at->omega * at->sine[i];
+    }
+}
+
+// Every input makes the wave grow, turns its phase (at a rate linear in i), shifts it or, omega alone, speeds it up.
+void reference_tangent(const reference *at, int input, double *phi, double *v, double *acc)
+{
+    const double a = at->a, omega = at->omega;
+    const double grow = input == GAIT_A, shift = input == GAIT_PHI_0, faster = input == GAIT_OMEGA ? a : 0;
+    const double turn = input == GAIT_OMEGA ? a * at->t : input == GAIT_T ? a * omega : 0;
+    const double turn_by_i = input == GAIT_DELTA ? a : 0;
+    for (int i = 0; i < at->n; i++) {
+        const double S = at->sine[i], C = at->cosine[i], turn_i = turn + turn_by_i * i;
+        const double wave = grow * S + turn_i * C;
+        phi[i] = wave + shift;
+        v[i] = omega * (grow * C - turn_i * S) + faster * C;
+        acc[i] = -omega * (omega * wave + 2 * faster * S);
+    }
+}
+
+void reference_gradient(const reference *at, const double *on_phi, const double *on_v, const double *on_acc,
+                        double gradient[GAIT_INPUTS])
+{
+    const double a = at->a, omega = at->omega;
+    double by_a = 0, by_omega = 0, by_delta = 0, by_phi_0 = 0, by_phase = 0; // phase: omega t, where it stands in (25)
+    for (int i = 0; i < at->n; i++) {
+        const double S = at->sine[i], C = at->cosine[i];
+        const double x = on_phi[i] - omega * omega * on_acc[i], y = omega * on_v[i]; // scalar = a (x S + y C) + ...
+        const double turn = x * C - y * S;
+        by_a += x * S + y * C;
+        by_omega += on_v[i] * C - 2 * omega * on_acc[i] * S;
+        by_delta += i * turn;
+        by_phi_0 += on_phi[i];
+        by_phase += turn;
+    }
+    gradient[GAIT_A] = by_a;
+    gradient[GAIT_OMEGA] = a * (by_omega + at->t * by_phase);
+    gradient[GAIT_DELTA] = a * by_delta;
+    gradient[GAIT_PHI_0] = by_phi_0;
+    gradient[GAIT_T] = a * omega * by_phase;
+}
+
+// Sums over the joints of which every second derivative consists, per unit of a. Phase stands for omega t; where a
+// name has two parts it is a second derivative, else a first.
+typedef struct sums {
+    double omega, phase, delta;
+    double omega_omega, omega_phase, omega_delta, phase_phase, phase_delta, delta_delta;
+} sums;
+
+static sums sums_of(const reference *at, const double *on_phi, const double *on_v, const double *on_acc)
+{
+    const double omega = at->omega;
+    sums sum = {0};
+    for (int i = 0; i < at->n; i++) {
+        const double S = at->sine[i], C = at->cosine[i];
+        const double x = on_phi[i] - omega * omega * on_acc[i], y = omega * on_v[i]; // scalar = a (x S + y C) + ...
+        const double x_omega = -2 * omega * on_acc[i], y_omega = on_v[i];
+        const double turn = x * C - y * S, turn_omega = x_omega * C - y_omega * S, back = -x * S - y * C;
+        sum.omega += x_omega * S + y_omega * C;
+        sum.phase += turn;
+        sum.delta += i * turn;
+        sum.omega_omega += -2 * on_acc[i] * S;
+        sum.omega_phase += turn_omega;
+        sum.omega_delta += i * turn_omega;
+        sum.phase_phase += back;
+        sum.phase_delta += i * back;
+        sum.delta_delta += i * i * back;
+    }
+    return sum;
+}
+
+void reference_hessian(const reference *at, const double *on_phi, const double *on_v, const double *on_acc,
+                       double hessian[GAIT_PAIRS])
+{
+    const double a = at->a, omega = at->omega, t = at->t;
+    const sums sum = sums_of(at, on_phi, on_v, on_acc);
+    const double table[GAIT_PAIRS] = {
+        0,                                                                         // a
+        sum.omega + t * sum.phase,                                                 // omega
+        a * (sum.omega_omega + 2 * t * sum.omega_phase + t * t * sum.phase_phase), //
+        sum.delta,                                                                 // delta
+        a * (sum.omega_delta + t * sum.phase_delta),                               //
+        a * sum.delta_delta,                                                       //
+        0,
+        0,
+        0,
+        0,                                                                       // phi_0
+        omega * sum.phase,                                                       // t
+        a * (omega * sum.omega_phase + omega * t * sum.phase_phase + sum.phase), //
+        a * omega * sum.phase_delta,                                             //
+        0,                                                                       //
+        a * omega * omega * sum.phase_phase,
+    };
+    for (int k = 0; k < GAIT_PAIRS; k++)
+        hessian[k] = table[k];
+}
