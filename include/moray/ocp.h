@@ -213,6 +213,12 @@ void moray_solution_at(const moray_solution *solution, int phase, double t, doub
 // Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL.
 int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
 
+// The Hamiltonian g + lambda f, with the integrands weighted by what they cost, at the nodes: hamiltonian[count], NaN
+// where the dynamics are not collocated (start of a phase with Radau, ends of the intervals with Gauss). Returns the
+// count. It is constant where the functions of the phase do not depend on time, 0 at a free final time that nothing
+// else depends on.
+int moray_solution_hamiltonian(const moray_solution *solution, int phase, double *hamiltonian);
+
 // Sizes of the programme that was solved.
 typedef struct moray_nlp_size {
     int variables, constraints, nnz_jac, nnz_hess;
@@ -248,6 +254,8 @@ typedef struct moray_certificate {
                           // x mesh_tolerance
     double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes when each phase is integrated again
                           // from its start with the found controls; limit 100 x mesh_tolerance
+    double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
+                          // functions do not depend on time, where theory has it constant; NaN without such a phase
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.
