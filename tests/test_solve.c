@@ -232,7 +232,7 @@ static void test_infeasible_is_explained(void)
     CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "runs");
     CHECK(moray_solution_info(solution)->outcome == MORAY_NLP_INFEASIBLE &&
               strstr(moray_solution_diagnosis(solution), "Largest violation: defect of state x["),
-          "says what is violated: %s", moray_solution_diagnosis(solution));
+          "says what is violated");
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
