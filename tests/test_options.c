@@ -12,7 +12,7 @@
 typedef struct settings {
     moray_common common;
     int count, mode;
-    double real, angle, range[2], turn[2], pair[2];
+    double real, angle, limit, range[2], turn[2], pair[2];
     bool yes;
     char word[8];
 } settings;
@@ -24,6 +24,7 @@ static const moray_option rows[] = {
     {AT(CHOICE, mode), .choices = modes, .help = "h"},
     {AT(REAL, real), .min = -INFINITY, .max = 5, .open = true, .unit = "m", .help = "h"},
     {AT(REAL, angle), .min = -180, .max = 180, .unit = "deg", .help = "h"},
+    {AT(LIMIT, limit), .min = 0, .max = INFINITY, .open = true, .unit = "deg/s", .help = "h"},
     {AT(RANGE, range), .help = "h"},
     {AT(RANGE, turn), .min = 0, .max = 90, .unit = "deg/s", .help = "h"},
     {AT(PAIR, pair), .help = "h"},
@@ -43,7 +44,7 @@ static moray_status parse(settings *s, const char *const arguments[8])
     for (int i = 0; i < 8 && arguments[i]; i++)
         argv[argc++] = (char *)arguments[i];
     moray_request request;
-    *s = (settings){.common = moray_common_defaults(), .range = {0, INFINITY}, .word = "word"};
+    *s = (settings){.common = moray_common_defaults(), .limit = INFINITY, .range = {0, INFINITY}, .word = "word"};
     return moray_app_parse(&program, argc, argv, s, &request);
 }
 #define PARSE(s, ...) parse((s), (const char *const[8]){__VA_ARGS__})
@@ -78,6 +79,10 @@ static void test_values(void)
     CHECK(strcmp(s.word, "1234567") == 0 && s.yes, "text to its last byte, bool by word");
     CHECK_OK(PARSE(&s, "--set", "range=none", "--set", "count=2147483647"), "none alone");
     CHECK(isinf(s.range[0]) && isinf(s.range[1]) && s.count == 2147483647, "both ends unlimited");
+    CHECK_OK(PARSE(&s, "--set", "limit=90"), "a limit");
+    CHECK_NEAR(s.limit, M_PI / 2, 1e-15, "in rad/s");
+    CHECK_OK(PARSE(&s, "--set", "limit=90", "--set", "limit=none"), "no limit");
+    CHECK(isinf(s.limit) && s.limit > 0, "is infinite: %g", s.limit);
     CHECK_OK(PARSE(&s, "--current", "-0.1,0.2", "--course=45", "--links", "5", "--links=6"), "shared options");
     CHECK(s.common.robot.links == 6, "the last of several wins: %d", s.common.robot.links);
     CHECK(s.common.current[0] == -0.1 && s.common.current[1] == 0.2, "a value may begin with a dash");
@@ -123,6 +128,11 @@ static void test_bad_values(void)
         "real=--",
         "real",
         "=1",
+        "limit=0",
+        "limit=-1",
+        "limit=None",
+        "limit=1:2",
+        "limit=inf",
     };
     for (unsigned i = 0; i < sizeof bad / sizeof *bad; i++) {
         settings s;
@@ -273,6 +283,7 @@ static size_t size_of(const moray_option *row)
     case MORAY_OPTION_CHOICE:
         return sizeof(int);
     case MORAY_OPTION_REAL:
+    case MORAY_OPTION_LIMIT:
         return sizeof(double);
     case MORAY_OPTION_BOOL:
         return sizeof(bool);

@@ -360,7 +360,8 @@ typedef struct notes {
 static bool note(double t, const double *x, void *self)
 {
     notes *n = self;
-    n->worst = fmax(n->worst, fabs(x[0] - cos(t)));
+    const double error = fabs(x[0] - cos(t));
+    n->worst = error <= n->worst ? n->worst : error;
     return ++n->seen != n->stop_after;
 }
 

@@ -19,7 +19,7 @@ typedef enum {
     MORAY_OPTION_BOOL,   // bool; as a flag it takes no argument and means yes
     MORAY_OPTION_CHOICE, // int or enum: index into `choices`
     MORAY_OPTION_TEXT,   // char[], not empty
-    MORAY_OPTION_LIMIT,  // double; "none" is infinite
+    MORAY_OPTION_LIMIT,  // double; "none" is max, so infinite where max is
     MORAY_OPTION_RANGE,  // double[2] from "low:high"; "none" is the end of what is allowed; one number is both ends
     MORAY_OPTION_PAIR    // double[2] from "x,y"
 } moray_option_type;

@@ -138,6 +138,7 @@ typedef struct moray_settings {
     double tolerance;      // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
     double mesh_tolerance; // 1e-6: largest relative error between nodes that the certificate accepts
     int max_iterations;    // 1000
+    double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log
     moray_progress_fn *progress;

@@ -73,8 +73,7 @@ moray_status moray_swim_hold_course(const moray_swim_setup *setup, const moray_g
     return hold(setup, gait, course, course, steady);
 }
 
-// What is matched: a field of moray_steady, and the power of omega with which it grows in water of high Reynolds
-// number.
+// What is matched, and the power of omega with which it grows at constant shape where drag is linear in velocity.
 typedef struct {
     const char *name, *unit;
     double target, exponent;

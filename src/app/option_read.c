@@ -73,6 +73,15 @@ static bool read_two(const moray_option *row, const char *text, double *value)
     return read_end(row, first, 0, &value[0]) && read_end(row, separator + 1, 1, &value[1]) && value[0] <= value[1];
 }
 
+static bool read_reals(const moray_option *row, const char *text, double *value)
+{
+    if (row->type == MORAY_OPTION_REAL)
+        return read_real(row, text, value);
+    if (row->type == MORAY_OPTION_LIMIT)
+        return read_end(row, text, 1, value);
+    return read_two(row, text, value);
+}
+
 // Position of text in the NULL-terminated list, or -1.
 static int position(const char *const *list, const char *text)
 {
@@ -124,10 +133,7 @@ static bool read_value(const moray_option *row, const char *text, char *to)
     case MORAY_OPTION_LIMIT:
     case MORAY_OPTION_RANGE:
     case MORAY_OPTION_PAIR:
-        good = row->type == MORAY_OPTION_REAL    ? read_real(row, text, real)
-               : row->type == MORAY_OPTION_LIMIT ? read_end(row, text, 1, real)
-                                                 : read_two(row, text, real);
-        if (good)
+        if ((good = read_reals(row, text, real)))
             memcpy(to, real, row->size);
         return good;
     }

@@ -1,28 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "moray/swim.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "app/swim_plant.h"
+#include "sim/times.h"
 
 static moray_status check_plan(const moray_swim_plan *plan)
 {
-    if (!(plan->t1 >= plan->t0 && isfinite(plan->t0) && isfinite(plan->t1)))
-        return moray_error(MORAY_INPUT, "simulation from t0 = %g to t1 = %g: t1 must not lie before t0", plan->t0,
-                           plan->t1);
+    MORAY_TRY(sim_check_times(plan->t0, plan->t1, plan->times, plan->n_times));
     if (plan->n_changes < 1 || !(plan->schedule[0].t <= plan->t0))
         return moray_error(MORAY_INPUT, "the schedule needs a gait that begins not after t0 = %g", plan->t0);
     for (int i = 1; i < plan->n_changes; i++) {
         if (!(plan->schedule[i].t > plan->schedule[i - 1].t))
             return moray_error(MORAY_INPUT, "schedule[%d].t = %g: must lie after that of the gait before, %g", i,
                                plan->schedule[i].t, plan->schedule[i - 1].t);
-    }
-    for (int i = 0; i < plan->n_times; i++) {
-        const double earliest = i > 0 ? plan->times[i - 1] : plan->t0;
-        if (!(plan->times[i] >= earliest && plan->times[i] <= plan->t1))
-            return moray_error(MORAY_INPUT, "times[%d] = %g: must lie between %g and %g", i, plan->times[i], earliest,
-                               plan->t1);
     }
     return moray_ok();
 }

@@ -113,6 +113,8 @@ static bool set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_
     ok = ok && AddIpoptIntOption(problem, (char *)"max_iter", settings->max_iterations);
     ok = ok && AddIpoptIntOption(problem, (char *)"print_level", settings->print_level);
     ok = ok && AddIpoptStrOption(problem, (char *)"sb", (char *)"yes"); // no banner
+    if (settings->barrier > 0)
+        ok = ok && AddIpoptNumOption(problem, (char *)"mu_init", settings->barrier);
     ok = ok && AddIpoptStrOption(problem, (char *)"linear_solver", (char *)"mumps");
     if (nlp->x_scale || nlp->g_scale || nlp->f_scale != 0) {
         ok = ok && AddIpoptStrOption(problem, (char *)"nlp_scaling_method", (char *)"user-scaling");
@@ -181,7 +183,7 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
 
 moray_nlp_settings moray_nlp_settings_default(void)
 {
-    return (moray_nlp_settings){.tolerance = 1e-8, .max_iterations = 1000};
+    return (moray_nlp_settings){.tolerance = 1e-8, .max_iterations = 1000, .barrier = 0.1};
 }
 
 const char *moray_nlp_outcome_text(moray_nlp_outcome outcome)

@@ -11,6 +11,7 @@ moray_settings moray_settings_default(void)
                             .tolerance = 1e-8,
                             .mesh_tolerance = 1e-6,
                             .max_iterations = 1000,
+                            .barrier = 0.1,
                             .own_scaling = true};
 }
 
@@ -64,6 +65,7 @@ static moray_status run(moray_solution *solution, const moray_guess *guess)
         MORAY_TRY(choose_scales(t, solution->iterate.x));
     const moray_nlp_settings nlp_settings = {.tolerance = settings->tolerance,
                                              .max_iterations = settings->max_iterations,
+                                             .barrier = settings->barrier,
                                              .print_level = settings->print_level,
                                              .progress = settings->progress,
                                              .observer = settings->observer};

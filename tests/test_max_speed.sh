@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+# The program max_speed as a user meets it. Arguments: the program, the source directory.
+case $1 in
+/*) program=$1 ;;
+*) program=$PWD/$1 ;;
+esac
+source=$2
+. "$source/tests/tap.sh"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+
+run() {
+    "$program" "$@" >out 2>err </dev/null
+    code=$?
+}
+
+# number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
+number() {
+    [ $# -eq 1 ] && set -- . "$1"
+    awk -v block="\"$1\"" -v key="\"$2\"" 'index($0, block) || block == "\".\"" { seen = 1 }
+        seen && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
+}
+
+# near VALUE EXPECTED TOLERANCE
+near() {
+    awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { exit !(a != "" && a - b <= t && b - a <= t) }'
+}
+
+# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it, no --out.
+refuse() {
+    text=$1
+    shift
+    run "$@" --json --out fresh
+    check "exit 2: $(cat err)" [ $code -eq 2 ]
+    check "one line that says '$text'" eval '[ "$(wc -l <err)" -eq 1 ] && grep -qF -e "$text" err'
+    check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
+}
+
+# ---- The default, from the paper's gait and from 20 random starts (paper-notes, section 5)
+run --json --set starts=21 --out results
+check "solved and certified: $(cat err)" [ $code -eq 0 ]
+check "speed on the control-oriented model $(number predicted speed_m_s)" near "$(number predicted speed_m_s)" 0.2597 1e-4
+check "at $(number predicted power_W) W" near "$(number predicted power_W)" 0.3972 5e-5
+check "delta $(number delta_deg)" near "$(number delta_deg)" 34.9 0.1
+check "omega $(number omega_deg_s)" near "$(number omega_deg_s)" 104.3 0.1
+check "theta_max $(number theta_max_deg) at its bound" near "$(number theta_max_deg)" 20 1e-5
+check "from every start" [ "$(number starts_at_optimum)" = 21 ]
+check "paper's gait, first-principles, $(number baseline validated)" \
+    eval 'sed -n "/\"baseline\"/,\$p" out | sed -n "/\"validated\"/,/}/p" >block &&
+          near "$(sed -n "s/.*\"speed_m_s\":[ \t]*\([0-9.e-]*\).*/\1/p" block)" 0.2293 1e-4 &&
+          near "$(sed -n "s/.*\"power_W\":[ \t]*\([0-9.e-]*\).*/\1/p" block)" 0.2646 1e-4'
+check "a loss on the first-principles model is a negative gain" \
+    awk -v g="$(number gain speed_percent_at_equal_power)" 'BEGIN { exit !(g < -1 && g > -20) }'
+for file in summary.json trajectory.csv start.svg report.html; do
+    check "--out has $file" [ -s results/$file ]
+done
+check "nothing else" [ "$(ls -A results | wc -l)" -eq 4 ]
+check "summary.json is what --json prints" cmp -s out results/summary.json
+check "the first line of trajectory.csv names and has units" \
+    eval 'head -n 1 results/trajectory.csv | grep -q "^t \[s\],theta \[rad\],p_x \[m\]"'
+
+run --quiet
+check "the table says plainly that the gait loses" grep -q 'LOSES on the first-principles model' out
+check "and puts both models' gains side by side" grep -q 'The control-oriented model, on which it was optimised' out
+
+# ---- Currents
+run --current 0.1,0.1 --json
+check "a current it can stem: exit 0" [ $code -eq 0 ]
+run --current=-0.5,0
+check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.5000 m/s of it run against" err'
+run --current 0,0.4
+check "a cross current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.4000 m/s of it run across" err'
+
+# ---- Bad input
+printf '[robot]\nlinks = 10\nspeed = 3\n' >unknown.ini
+: >file
+refuse 'unknown.ini:3' --robot unknown.ini
+refuse "no_such.ini" --robot no_such.ini
+refuse '--links = 1' --links 1
+refuse 'm_kg = -1' --set m_kg=-1
+refuse 'c_n = nan' --set c_n=nan
+refuse 'delta_deg = 50:30' --set delta_deg=50:30
+refuse 'theta_max_deg = 95' --set theta_max_deg=95
+refuse 'power_W = 0' --set power_W=0
+refuse 'power_w' --set power_w=1
+refuse 'scheme = euler' --scheme euler
+run --json --out file/below
+check "an unwritable --out fails before the solve: $(cat err)" \
+    eval '[ $code -eq 2 ] && [ ! -s out ] && [ "$(wc -l <err)" -eq 1 ] && grep -q "file/below" err'
+tap_done
