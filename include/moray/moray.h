@@ -4,6 +4,7 @@
 
 #include "moray/app.h"
 #include "moray/dense.h"
+#include "moray/gait_input.h"
 #include "moray/gait_problem.h"
 #include "moray/gait_trial.h"
 #include "moray/map.h"
