@@ -3,7 +3,7 @@
 // The one file that knows Ipopt. Written for 3.11 (char * options) and kept valid for 3.14.
 #include "moray/nlp.h"
 
-#include <coin/IpStdCInterface.h>
+#include <IpStdCInterface.h> // the folder (coin or coin-or) is the package's business
 #include <math.h>
 #include <string.h>
 #include <time.h>
