@@ -5,6 +5,8 @@
 
 static const paper_study studies[] = {
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
+    {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
+     paper_forces},
 };
 enum { N_STUDIES = sizeof studies / sizeof *studies };
 _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room for every study");

@@ -45,7 +45,7 @@ typedef struct paper {
 // Does the study and tells what it finds. An error ends this study only: its text says why.
 typedef moray_status paper_run(paper *p);
 
-paper_run paper_mapping;
+paper_run paper_mapping, paper_forces;
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------
 // What these give is freed after the last study.
@@ -67,6 +67,15 @@ moray_gait paper_gait(const paper *p, moray_model model, double theta_max);
 // (see moray_swim_steady). steady may be NULL. Error: those of moray_swim_steady.
 moray_status paper_orbit(paper *p, moray_model model, const moray_gait *gait, int points, moray_steady *steady,
                          moray_swim_track **orbit);
+
+// Half of largest less least of n values a stride apart: the amplitude of an oscillation.
+double paper_half_range(const double *values, int stride, int n);
+
+// The same for any swimmer, and for that of the settings in another current.
+moray_status paper_orbit_of(paper *p, const moray_swim_setup *setup, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit);
+moray_status paper_orbit_in(paper *p, const double current[2], moray_model model, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit);
 
 // ---- Telling -------------------------------------------------------------------------------------------------------
 

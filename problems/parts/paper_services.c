@@ -105,10 +105,34 @@ moray_gait paper_gait(const paper *p, moray_model model, double theta_max)
 moray_status paper_orbit(paper *p, moray_model model, const moray_gait *gait, int points, moray_steady *steady,
                          moray_swim_track **orbit)
 {
-    const moray_swim_setup setup = moray_basin_setup(&p->basin, model);
+    return paper_orbit_in(p, p->basin.current, model, gait, points, steady, orbit);
+}
+
+moray_status paper_orbit_in(paper *p, const double current[2], moray_model model, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit)
+{
+    moray_swim_setup setup = moray_basin_setup(&p->basin, model);
+    setup.current[0] = current[0];
+    setup.current[1] = current[1];
+    return paper_orbit_of(p, &setup, gait, points, steady, orbit);
+}
+
+moray_status paper_orbit_of(paper *p, const moray_swim_setup *setup, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit)
+{
     moray_steady unused;
     MORAY_TRY(own_track(p, orbit));
-    return moray_swim_steady(&setup, gait, 0, steady ? steady : &unused, *orbit, points);
+    return moray_swim_steady(setup, gait, 0, steady ? steady : &unused, *orbit, points);
+}
+
+double paper_half_range(const double *values, int stride, int n)
+{
+    double low = values[0], high = values[0];
+    for (int k = 1; k < n; k++) {
+        low = fmin(low, values[k * stride]);
+        high = fmax(high, values[k * stride]);
+    }
+    return (high - low) / 2;
 }
 
 // ---- Telling -------------------------------------------------------------------------------------------------------
