@@ -71,11 +71,12 @@ static moray_status draw_period(paper *p)
 // Errors of the two approximations by theta_max, in percent of the amplitude of (29).
 static moray_status draw_errors(paper *p)
 {
-    enum { ANGLES = 45, FORMS = 2, ROWS = 1 + 2 * FORMS };
+    enum { ANGLES = 45, FORMS = 2, ROWS = 1 + 2 * FORMS, SHOWN = 3 };
+    static const int shown[SHOWN] = {1, 2, 4}; // (30) is worst at its peak
     static const char *const labels[ROWS] = {"theta_max", "(30), largest error", "(31), largest error",
                                              "(30), amplitude", "(31), amplitude"};
     double values[ROWS][ANGLES];
-    moray_curve curves[2 * FORMS];
+    moray_curve curves[SHOWN];
     moray_column columns[ROWS];
     for (int k = 0; k < ANGLES; k++) {
         const distance_errors e = distance_errors_of(p->robot->l, (k + 1) * DEG, p->settings->delta);
@@ -87,15 +88,15 @@ static moray_status draw_errors(paper *p)
     }
     for (int j = 0; j < ROWS; j++)
         columns[j] = (moray_column){.name = labels[j], .unit = j ? "%" : "deg", .values = values[j]};
-    for (int c = 0; c < 2 * FORMS; c++)
-        curves[c] = (moray_curve){.label = labels[1 + c], .x = values[0], .y = values[1 + c], .n = ANGLES};
+    for (int c = 0; c < SHOWN; c++)
+        curves[c] = (moray_curve){.label = labels[shown[c]], .x = values[0], .y = values[shown[c]], .n = ANGLES};
     MORAY_TRY(paper_csv(p, "errors", columns, ROWS, ANGLES));
     return paper_figure(p, &(moray_figure){.name = "errors",
                                            .title = "Errors of (30) and (31) against (29)",
                                            .x_label = "theta_max [deg]",
                                            .y_label = "error [% of the amplitude]",
                                            .curves = curves,
-                                           .n_curves = 2 * FORMS});
+                                           .n_curves = SHOWN});
 }
 
 static moray_status show_errors(paper *p)
