@@ -8,6 +8,7 @@ static const paper_study studies[] = {
     {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
      paper_forces},
     {"links", "how the links move and what the fluid does to them (Properties 2 and 4)", paper_links},
+    {"offset", "turning rate by joint offset and by speed (Property 3)", paper_offset},
 };
 enum { N_STUDIES = sizeof studies / sizeof *studies };
 _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room for every study");
