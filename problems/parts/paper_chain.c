@@ -94,7 +94,7 @@ static void read_state(const moray_robot *robot, double psi, const double *x, co
     *force = N * robot->m * p_x[2];
 }
 
-static moray_status fill(paper *p, const moray_gait *gait, chain *c)
+static moray_status read_orbit(paper *p, const moray_gait *gait, chain *c)
 {
     moray_swimmer *swimmer = p->basin.swimmer[MORAY_FIRST_PRINCIPLES];
     const int N = p->robot->links, n = moray_swimmer_states(swimmer);
@@ -120,5 +120,9 @@ moray_status chain_swim(paper *p, const double current[2], const moray_gait *gai
     c->link = calloc((size_t)(CHAIN_POINTS * c->N), sizeof *c->link);
     MORAY_TRY(paper_own(p, c->link, free));
     MORAY_TRY(paper_numbers(p, CHAIN_POINTS, &c->force));
-    return fill(p, gait, c);
+    moray_swimmer *swimmer = p->basin.swimmer[MORAY_FIRST_PRINCIPLES];
+    moray_swimmer_set_current(swimmer, current[0], current[1]);
+    const moray_status status = read_orbit(p, gait, c);
+    moray_swimmer_set_current(swimmer, p->basin.current[0], p->basin.current[1]);
+    return status;
 }

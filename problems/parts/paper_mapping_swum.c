@@ -5,11 +5,6 @@
 
 enum { POINTS = 721 };
 
-static void release_swimmer(void *swimmer)
-{
-    moray_swimmer_free(swimmer);
-}
-
 // One period of the gait of a model of the robot with N links.
 static moray_status swim(paper *p, moray_model model, const swum_amplitudes *s, moray_swimmer **swimmer,
                          moray_swim_track **orbit)
@@ -17,9 +12,7 @@ static moray_status swim(paper *p, moray_model model, const swum_amplitudes *s, 
     moray_robot robot = *p->robot;
     moray_swim_setup setup = moray_basin_setup(&p->basin, model);
     robot.links = s->N;
-    MORAY_TRY(moray_swimmer_new(swimmer, &robot, model));
-    MORAY_TRY(paper_own(p, *swimmer, release_swimmer));
-    moray_swimmer_set_reading(*swimmer, p->settings->reading);
+    MORAY_TRY(paper_swimmer(p, &robot, model, p->settings->reading, swimmer));
     setup.swimmer = *swimmer;
     const moray_gait gait = {
         .amplitude = model == MORAY_CONTROL_ORIENTED ? s->a : s->alpha, .omega = p->settings->omega, .delta = s->delta};

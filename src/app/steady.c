@@ -21,9 +21,9 @@ static moray_status check(const moray_swim_setup *setup, const moray_gait *gait,
     const moray_swim_settings *settings = &setup->settings;
     if (!(gait->omega > 0 && isfinite(gait->omega)))
         return moray_error(MORAY_INPUT, "omega = %g: a steady gait needs a finite omega above 0", gait->omega);
-    if (!isfinite(gait->amplitude) || !isfinite(gait->delta) || !isfinite(gait->offset))
-        return moray_error(MORAY_INPUT, "gait amplitude = %g, delta = %g, offset = %g: must be finite", gait->amplitude,
-                           gait->delta, gait->offset);
+    if (!isfinite(gait->amplitude) || !isfinite(gait->delta) || !isfinite(gait->offset) || !isfinite(gait->taper))
+        return moray_error(MORAY_INPUT, "gait amplitude = %g, delta = %g, offset = %g, taper = %g: must be finite",
+                           gait->amplitude, gait->delta, gait->offset, gait->taper);
     if (!isfinite(start_heading) || !isfinite(setup->current[0]) || !isfinite(setup->current[1]))
         return moray_error(MORAY_INPUT, "start heading = %g, current = (%g, %g): must be finite", start_heading,
                            setup->current[0], setup->current[1]);
