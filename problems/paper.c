@@ -7,6 +7,7 @@ static const paper_study studies[] = {
     {"straight", "straight motion with growing amplitude: Fig. 7", paper_straight},
     {"turning", "turning there and back: Fig. 8", paper_turning},
     {"linearising", "the linearising control law (22)", paper_linearising},
+    {"ground", "the ground robot as a special case", paper_ground},
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
 };
 enum { N_STUDIES = sizeof studies / sizeof *studies };

@@ -45,7 +45,7 @@ typedef struct paper {
 // Does the study and tells what it finds. An error ends this study only: its text says why.
 typedef moray_status paper_run(paper *p);
 
-paper_run paper_mapping, paper_straight, paper_turning, paper_linearising;
+paper_run paper_mapping, paper_straight, paper_turning, paper_linearising, paper_ground;
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------
 // What these give is freed after the last study.
