@@ -111,6 +111,10 @@ typedef struct moray_ocp moray_ocp;
 moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
 void moray_ocp_free(moray_ocp *ocp);
 
+// Number of phases; states and controls of one of them.
+int moray_ocp_phases(const moray_ocp *ocp);
+void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
+
 // ---- Trajectories, guesses
 // -----------------------------------------------------------------------------------------------
 
