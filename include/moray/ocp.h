@@ -125,22 +125,28 @@ typedef struct moray_samples {
     const double *time, *x, *u;
 } moray_samples;
 
+typedef struct moray_solution moray_solution;
+
 // A guess: samples of each phase (piecewise linear, stretched to the phase's own first and last time), parameters
 // s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, u in the middle
 // of its bounds.
 typedef struct moray_guess {
     const moray_samples *phase;
     const double *s;
+    const moray_solution *from; // NULL; a solution of a problem of the same sizes on any mesh and scheme: all from it
 } moray_guess;
+
+moray_guess moray_guess_from_solution(const moray_solution *solution); // borrows
 
 // ---- Solving
 // ---------------------------------------------------------------------------------------------------------------
 
 typedef struct moray_settings {
     const char *scheme;    // "hermite-simpson"
-    int intervals;         // 20, of equal length, in every phase
+    int intervals;         // 20, of equal length, in every phase; 0: the meshes and the scheme of guess->from
     double tolerance;      // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
-    double mesh_tolerance; // 1e-6: largest relative error between nodes that the certificate accepts
+    double mesh_tolerance; // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
+    int max_refinements;   // 0: finer meshes tried while the mesh error is above mesh_tolerance
     int max_iterations;    // 1000
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
@@ -151,12 +157,12 @@ typedef struct moray_settings {
 
 moray_settings moray_settings_default(void);
 
-typedef struct moray_solution moray_solution;
-
 // Transcribes and solves from `guess` (NULL: from the bounds). The solution keeps what it needs of the problem but must
-// not outlive it; free with moray_solution_free. Returns MORAY_OK with *solution set whenever the solver ran, converged
-// or not: read moray_solution_info(...)->outcome and, when it is not MORAY_NLP_SOLVED, moray_solution_diagnosis.
-// Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY, MORAY_NUMERIC (functions not finite at the guess).
+// not outlive it; free with moray_solution_free. A refined mesh starts from the interpolated solution of the last; when
+// one is not solved, the solution is that of the last solved (with the outcome of the failed where interrupted).
+// Returns MORAY_OK with *solution set whenever the solver ran, converged or not: read moray_solution_info(...)->outcome
+// and, when it is not MORAY_NLP_SOLVED, moray_solution_diagnosis. Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY,
+// MORAY_NUMERIC (functions not finite at the guess).
 moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
                          moray_solution **solution);
 void moray_solution_free(moray_solution *solution);
@@ -167,7 +173,8 @@ const double *moray_solution_parameters(const moray_solution *solution);        
 const double *moray_solution_integrals(const moray_solution *solution, int phase); // q[nq]
 void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf);
 
-// State x[nx] and control u[nu] at time t (clamped to the phase) from the collocation polynomials. Either may be NULL.
+// State x[nx] and control u[nu] at time t (clamped to the phase) from the collocation polynomials, the control kept
+// within its bounds, which a polynomial leaves beside a jump. Either may be NULL.
 void moray_solution_at(const moray_solution *solution, int phase, double t, double *x, double *u);
 
 // The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the
@@ -179,6 +186,19 @@ typedef struct moray_nlp_size {
     int variables, constraints, nnz_jac, nnz_hess;
 } moray_nlp_size;
 moray_nlp_size moray_solution_size(const moray_solution *solution);
+
+// One mesh that was tried.
+typedef struct moray_mesh_record {
+    int intervals, nodes, variables; // of all phases
+    moray_nlp_outcome outcome;
+    int iterations;
+    double seconds;
+    double error; // see moray_certificate.mesh_error; NaN where not solved
+    double objective;
+} moray_mesh_record;
+
+// The meshes that were tried, first to last; [*meshes], owned by the solution.
+const moray_mesh_record *moray_solution_history(const moray_solution *solution, int *meshes);
 
 // One text of several lines that says what hurts: the largest scaled violation by name, phase and time, and the active
 // bounds. Owned by the solution.

@@ -4,17 +4,8 @@
 #ifndef OCP_LAYOUT_H
 #define OCP_LAYOUT_H
 
+#include "ocp/mesh.h"
 #include "ocp/problem.h"
-
-// Intervals of one phase: edges[intervals + 1] from 0 to 1, stages[intervals].
-struct mesh {
-    int intervals;
-    double *edge;
-    int *stages;
-};
-
-moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages);
-void mesh_free(struct mesh *mesh);
 
 // A point of the mesh. Neighbouring intervals share the point between them.
 struct node {

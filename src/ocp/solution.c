@@ -36,6 +36,12 @@ moray_nlp_size moray_solution_size(const moray_solution *solution)
     return (moray_nlp_size){nlp->n, nlp->m, nlp->nnz_jac, nlp->nnz_hess};
 }
 
+const moray_mesh_record *moray_solution_history(const moray_solution *solution, int *meshes)
+{
+    *meshes = solution->meshes;
+    return solution->history;
+}
+
 const char *moray_solution_diagnosis(const moray_solution *solution)
 {
     return solution->diagnosis;
@@ -76,6 +82,8 @@ void moray_solution_at(const moray_solution *solution, int p, double time, doubl
         for (int r = 0; u && r < nu; r++)
             u[r] += ell[j] * solution->iterate.x[node[j].x + nx + r];
     }
+    for (int r = 0; u && r < nu; r++)
+        u[r] = fmin(fmax(u[r], t->ocp->phase[p].u[r].lower), t->ocp->phase[p].u[r].upper);
 }
 
 // Where f is collocated its coefficient in the Lagrangian is T weight times the costate. At other points the costate is
