@@ -211,11 +211,13 @@ const char *moray_solution_diagnosis(const moray_solution *solution);
 typedef struct moray_certificate {
     bool pass;
     double kkt;           // optimality and feasibility in user units; limit 100 x tolerance
-    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|); limit mesh_tolerance
+    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|), and of the same of
+                          // integrands g and integrals q; limit mesh_tolerance
     double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
                           // x mesh_tolerance
-    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes when each phase is integrated again
-                          // from its start with the found controls; limit 100 x mesh_tolerance
+    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
+                          // when each phase is integrated again from its start with the found controls; limit 100 x
+                          // mesh_tolerance
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.
