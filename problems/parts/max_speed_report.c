@@ -34,22 +34,6 @@ static void verdict(const max_speed *run, char *text, size_t size)
              run->promise.power, run->paper.steady[run->common.model].power);
 }
 
-static void certificate_line(const max_speed *run, char *text, size_t size)
-{
-    const moray_certificate *c = &run->certificate;
-    snprintf(text, size, "Certificate: %s (KKT %.1e, mesh error %.1e, between nodes %.1e, re-simulation %.1e)",
-             c->pass ? "pass" : "FAIL", c->kkt, c->mesh_error, c->between_nodes, c->resimulation);
-}
-
-static void solver_line(const max_speed *run, char *text, size_t size)
-{
-    const moray_nlp_info *info = moray_solution_info(run->solution);
-    const moray_nlp_size n = moray_solution_size(run->solution);
-    snprintf(text, size, "%s, %d intervals: %s in %d iterations, %.2f s (%d variables, %d constraints)",
-             run->common.scheme, run->common.intervals, moray_nlp_outcome_text(info->outcome), info->iterations,
-             info->seconds, n.variables, n.constraints);
-}
-
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
 enum { tables = 3 };
@@ -98,9 +82,9 @@ static void print_tables(const max_speed *run)
     if (run->starts > 1)
         printf("%d of %d starts ended at this optimum, none at a better one.\n", run->agreeing, run->starts);
     printf("\n");
-    solver_line(run, text, sizeof text);
+    moray_solver_line(run->solution, run->common.scheme, run->common.intervals, text, sizeof text);
     printf("%s\n", text);
-    certificate_line(run, text, sizeof text);
+    moray_certificate_line(&run->certificate, text, sizeof text);
     printf("%s\n", text);
 }
 
@@ -142,30 +126,11 @@ static void json_gain(moray_json *json, const max_speed *run)
 
 static void json_solver(moray_json *json, const max_speed *run)
 {
-    const moray_nlp_info *info = moray_solution_info(run->solution);
-    const moray_nlp_size size = moray_solution_size(run->solution);
-    const moray_certificate *c = &run->certificate;
-    moray_json_open(json, "solver");
-    moray_json_text(json, "status", moray_nlp_outcome_text(info->outcome));
-    moray_json_number(json, "iterations", info->iterations);
-    moray_json_number(json, "objective", moray_solution_objective(run->solution));
-    moray_json_number(json, "nvar", size.variables);
-    moray_json_number(json, "ncon", size.constraints);
-    moray_json_number(json, "nnz_jac", size.nnz_jac);
-    moray_json_number(json, "nnz_hess", size.nnz_hess);
-    moray_json_number(json, "time_s", info->seconds);
-    moray_json_number(json, "eval_time_s", info->evaluation_seconds);
-    moray_json_text(json, "linear_solver", "mumps");
+    moray_solver_to_json(json, run->solution);
     moray_json_number(json, "starts", run->starts);
     moray_json_number(json, "starts_at_optimum", run->agreeing);
     moray_json_close(json);
-    moray_json_open(json, "certificate");
-    moray_json_bool(json, "pass", c->pass);
-    moray_json_number(json, "kkt", c->kkt);
-    moray_json_number(json, "mesh_error", c->mesh_error);
-    moray_json_number(json, "between_nodes", c->between_nodes);
-    moray_json_number(json, "resimulation", c->resimulation);
-    moray_json_close(json);
+    moray_certificate_to_json(json, &run->certificate);
 }
 
 static moray_json *make_json(const max_speed *run)
