@@ -13,6 +13,7 @@
 #include "moray/ocp.h"
 #include "moray/ode.h"
 #include "moray/results.h"
+#include "moray/run.h"
 #include "moray/scheme.h"
 #include "moray/sim.h"
 #include "moray/snake.h"
