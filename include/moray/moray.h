@@ -10,6 +10,7 @@
 #include "moray/nlp.h"
 #include "moray/ocp.h"
 #include "moray/ode.h"
+#include "moray/orbit.h"
 #include "moray/results.h"
 #include "moray/scheme.h"
 #include "moray/sim.h"
