@@ -5,6 +5,7 @@
 #include "moray/app.h"
 #include "moray/dense.h"
 #include "moray/gait_problem.h"
+#include "moray/gait_search.h"
 #include "moray/gait_trial.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
