@@ -15,6 +15,7 @@
 #include "moray/ode.h"
 #include "moray/orbit.h"
 #include "moray/results.h"
+#include "moray/run.h"
 #include "moray/scheme.h"
 #include "moray/search.h"
 #include "moray/sim.h"
