@@ -8,6 +8,8 @@ static const paper_study studies[] = {
     {"turning", "turning there and back: Fig. 8", paper_turning},
     {"linearising", "the linearising control law (22)", paper_linearising},
     {"ground", "the ground robot as a special case", paper_ground},
+    {"eel", "eel-like motion, the paper's future work", paper_eel},
+    {"fit", "constants of the rotational dynamics (20) for the given robot", paper_fit},
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
 };
 enum { N_STUDIES = sizeof studies / sizeof *studies };
@@ -36,6 +38,12 @@ static const moray_option options[] = {
     ANGLE("theta_max_deg", theta_max, 0, 90, "deg", "link-angle amplitude of (24), where a study does not vary it"),
     ANGLE("omega_deg_s", omega, 0, 3600, "deg/s", "gait frequency, where a study does not vary it"),
     ANGLE("delta_deg", delta, 0, 180, "deg", "phase shift between joints; 360/(N-1) unless given"),
+    {.section = "problem",
+     .key = "write_ini",
+     .argument = "FILE",
+     .type = MORAY_OPTION_TEXT,
+     MORAY_AT(paper_settings, write_ini),
+     .help = "study fit: the robot's INI file, to write the fitted constants into"},
 };
 
 static paper_settings defaults(void)

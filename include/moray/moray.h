@@ -13,6 +13,7 @@
 #include "moray/ode.h"
 #include "moray/results.h"
 #include "moray/scheme.h"
+#include "moray/search.h"
 #include "moray/sim.h"
 #include "moray/snake.h"
 #include "moray/status.h"

@@ -94,11 +94,10 @@ static moray_status draw(paper *p, double ratio, const findings *f)
     moray_curve curves[3] = {[2] = {.label = "control-oriented with Assumption 4 in place of 5",
                                     .x = theta_max_deg,
                                     .y = f->simpler,
-                                    .n = AMPLITUDES}};
+                                    .n = AMPLITUDES,
+                                    .style = MORAY_CURVE_MARKED}};
     for (int k = 0; k < 2; k++)
         curves[k] = paper_model_curve(paper_model_order[k], theta_max_deg, f->speed[paper_model_order[k]], AMPLITUDES);
-    for (int k = 0; k < 3; k++)
-        curves[k].style = MORAY_CURVE_MARKED;
     const moray_column columns[] = {
         {"theta_max", "deg", theta_max_deg, 1},
         {"speed first-principles", "m/s", f->speed[MORAY_FIRST_PRINCIPLES], 1},
@@ -131,7 +130,7 @@ moray_status paper_ground(paper *p)
         MORAY_TRY(tell(p, ratios[r], &f));
         MORAY_TRY(paper_say(p,
                             "At c_n = %g c_t the control-oriented model's speed is within 5 %% of the first-principles "
-                            "model's up to %g deg; with Assumption 4, as in earlier ground models, up to %g deg.",
+                            "model's up to %g deg; with Assumption 4 in place of 5, up to %g deg.",
                             ratios[r], covered_to(f.excess, 5), covered_to(f.simpler_excess, 5)));
         MORAY_TRY(draw(p, ratios[r], &f));
     }

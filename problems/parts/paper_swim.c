@@ -87,7 +87,11 @@ const moray_model paper_model_order[2] = {MORAY_FIRST_PRINCIPLES, MORAY_CONTROL_
 
 moray_curve paper_model_curve(moray_model model, const double *x, const double *y, int n)
 {
-    return (moray_curve){.label = paper_model_names[model], .x = x, .y = y, .n = n};
+    return (moray_curve){.label = paper_model_names[model],
+                         .x = x,
+                         .y = y,
+                         .n = n,
+                         .style = n < 30 ? MORAY_CURVE_MARKED : MORAY_CURVE_LINE};
 }
 
 moray_status paper_compare(paper *p, const char *name, const char *title, const char *x_label, const char *y_label,

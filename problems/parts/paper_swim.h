@@ -38,7 +38,7 @@ typedef enum { PAPER_P_X, PAPER_P_Y, PAPER_V_X, PAPER_V_Y, PAPER_HEADING_DEG } p
 moray_status paper_series(paper *p, const moray_swim_track *track, paper_quantity quantity, double **values);
 
 // Figures of both models: the first-principles model first, as a solid line, and over it, dashed, the control-oriented
-// one, which oscillates less. paper_compare: y[model][n] over x[n]; name and texts as in moray_figure.
+// one, which oscillates less; few points are marked. paper_compare: y[model][n] over x[n]; name and texts as in moray_figure.
 extern const moray_model paper_model_order[2];
 moray_curve paper_model_curve(moray_model model, const double *x, const double *y, int n);
 moray_status paper_compare(paper *p, const char *name, const char *title, const char *x_label, const char *y_label,
