@@ -11,6 +11,12 @@ static const paper_study studies[] = {
     {"eel", "eel-like motion, the paper's future work", paper_eel},
     {"fit", "constants of the rotational dynamics (20) for the given robot", paper_fit},
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
+    {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
+     paper_forces},
+    {"links", "how the links move and what the fluid does to them (Properties 2 and 4)", paper_links},
+    {"offset", "turning rate by joint offset and by speed (Property 3)", paper_offset},
+    {"errata", "the misprints of the paper, swum as printed and as corrected (E1-E4 and the sign in (13))",
+     paper_errata},
 };
 enum { N_STUDIES = sizeof studies / sizeof *studies };
 _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room for every study");
@@ -52,6 +58,15 @@ static paper_settings defaults(void)
         .common = moray_common_defaults(), .theta_max = 20 * DEG, .omega = 120 * DEG, .delta = NAN};
     settings.common.current[0] = settings.common.current[1] = 0.1;
     return settings;
+}
+
+static moray_status check_write_ini(const paper_settings *settings)
+{
+    for (int i = 0; i < N_STUDIES; i++)
+        if (studies[i].run == paper_fit && !settings->chosen[i] && settings->write_ini[0])
+            return moray_error(MORAY_INPUT, "write_ini = %.100s: is for the study fit, which is not named",
+                               settings->write_ini);
+    return moray_ok();
 }
 
 // --as-printed; delta, which by Assumption 2 is 2 pi/(N-1).
@@ -154,7 +169,9 @@ int main(int argc, char **argv)
     int exit_code;
     if (!moray_app_start(&program, argc, argv, &settings, &exit_code))
         return exit_code;
-    moray_status status = complete(&settings);
+    moray_status status = check_write_ini(&settings);
+    if (!moray_failed(status))
+        status = complete(&settings);
     if (!moray_failed(status))
         status = prepare(&p, &settings);
     if (!moray_failed(status))

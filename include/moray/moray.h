@@ -9,6 +9,7 @@
 #include "moray/gait_trial.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
+#include "moray/num.h"
 #include "moray/ocp.h"
 #include "moray/ode.h"
 #include "moray/results.h"

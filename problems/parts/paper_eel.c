@@ -24,10 +24,11 @@ typedef struct {
     double equal_speed[2][TAPERS], equal_cost[2][TAPERS], omega[2][TAPERS]; // at the power of no taper; NaN: cannot
 } findings;
 
-static moray_status swim(paper *p, const moray_basin *still, moray_model model, findings *f)
+static moray_status swim(paper *p, moray_model model, findings *f)
 {
-    const moray_swim_setup setup = moray_basin_setup(still, model);
+    moray_swim_setup setup = {.settings = p->basin.settings};
     moray_steady steady;
+    MORAY_TRY(paper_swimmer(p, p->robot, model, p->settings->reading, &setup.swimmer));
     for (int i = 0; i < TAPERS; i++) {
         const moray_gait gait = tapered(p, model, tapers[i]);
         paper_progress(p, "%s, taper %g", paper_model_names[model], tapers[i]);
@@ -118,38 +119,26 @@ static double by_formula(const paper *p, moray_model model, double taper, int i)
     return middle * hypot(1 + taper * s, taper / (N - 2) * (model == MORAY_CONTROL_ORIENTED ? half : 1 / half));
 }
 
-// Half of what the orientation of each link sweeps over in the orbit.
-static void swings(const moray_swimmer *swimmer, const moray_swim_track *orbit, double *scratch, double *amplitude)
+// Half of what the orientation of each link sweeps over in a period of steady swimming.
+static moray_status simulate_links(paper *p, moray_model model, double taper, double *amplitude)
 {
-    const int N = moray_swimmer_robot(swimmer)->links;
-    double *angle = scratch + 2 * N, *least = angle + N, *most = least + N;
-    for (int k = 0; k < orbit->n; k++) {
-        moray_swimmer_links(swimmer, orbit->x + (size_t)k * orbit->n_states, scratch, scratch + N, angle);
-        for (int i = 0; i < N; i++) {
-            least[i] = k == 0 ? angle[i] : fmin(least[i], angle[i]);
-            most[i] = k == 0 ? angle[i] : fmax(most[i], angle[i]);
-        }
-    }
-    for (int i = 0; i < N; i++)
-        amplitude[i] = (most[i] - least[i]) / 2 / DEG;
-}
-
-static moray_status simulate_links(paper *p, const moray_basin *still, moray_model model, double taper,
-                                   double *amplitude)
-{
+    const double still[2] = {0, 0};
+    const int N = p->robot->links;
     const moray_gait gait = tapered(p, model, taper);
-    const moray_swim_setup setup = moray_basin_setup(still, model);
-    moray_steady steady;
-    moray_swim_track orbit;
-    double *scratch;
-    MORAY_TRY(paper_numbers(p, 5 * (size_t)p->robot->links, &scratch));
-    MORAY_TRY(moray_swim_steady(&setup, &gait, 0, &steady, &orbit, POINTS));
-    swings(setup.swimmer, &orbit, scratch, amplitude);
-    moray_swim_track_free(&orbit);
+    const moray_swimmer *swimmer = p->basin.swimmer[model];
+    moray_swim_track *orbit;
+    double *angle, *unused;
+    MORAY_TRY(paper_numbers(p, (size_t)N * POINTS, &angle));
+    MORAY_TRY(paper_numbers(p, 2 * (size_t)N, &unused));
+    MORAY_TRY(paper_orbit_in(p, still, model, &gait, POINTS, NULL, &orbit));
+    for (int k = 0; k < orbit->n; k++)
+        moray_swimmer_links(swimmer, orbit->x + (size_t)k * orbit->n_states, unused, unused + N, angle + k * N);
+    for (int i = 0; i < N; i++)
+        amplitude[i] = paper_half_range(angle + i, N, orbit->n) / DEG;
     return moray_ok();
 }
 
-static moray_status draw_links(paper *p, const moray_basin *still, moray_model model)
+static moray_status draw_links(paper *p, moray_model model)
 {
     const int N = p->robot->links;
     double *data;
@@ -162,7 +151,7 @@ static moray_status draw_links(paper *p, const moray_basin *still, moray_model m
         double *formula = data + (1 + 2 * k) * N, *simulated = formula + N;
         for (int i = 0; i < N; i++)
             formula[i] = by_formula(p, model, taper, i) / DEG;
-        MORAY_TRY(simulate_links(p, still, model, taper, simulated));
+        MORAY_TRY(simulate_links(p, model, taper, simulated));
         curves[k] = (moray_curve){.label = paper_label(p, "taper %g, derived", taper), data, formula, N};
         curves[SHOWN + k] = (moray_curve){.label = paper_label(p, "taper %g, simulated", taper),
                                           .x = data,
@@ -182,11 +171,11 @@ static moray_status draw_links(paper *p, const moray_basin *still, moray_model m
 // ---- All of it
 // ---------------------------------------------------------------------------------------------------------
 
-static moray_status study(paper *p, const moray_basin *still)
+moray_status paper_eel(paper *p)
 {
     findings f;
     for (int k = 0; k < 2; k++)
-        MORAY_TRY(swim(p, still, paper_model_order[k], &f));
+        MORAY_TRY(swim(p, paper_model_order[k], &f));
     MORAY_TRY(tell(p, &f));
     MORAY_TRY(paper_say(p,
                         "The amplitude of joint i is alpha (1 + taper s_i), with s_i from -1 at the tail to 1 at the "
@@ -197,16 +186,6 @@ static moray_status study(paper *p, const moray_basin *still)
                         "of it comes the swing that all links share, which the water decides."));
     MORAY_TRY(draw(p, &f));
     for (int k = 0; k < 2; k++)
-        MORAY_TRY(draw_links(p, still, paper_model_order[k]));
+        MORAY_TRY(draw_links(p, paper_model_order[k]));
     return moray_ok();
-}
-
-moray_status paper_eel(paper *p)
-{
-    const double current[2] = {0, 0};
-    moray_basin still;
-    MORAY_TRY(moray_basin_new(&still, p->robot, current, 0));
-    const moray_status status = study(p, &still);
-    moray_basin_free(&still);
-    return status;
 }

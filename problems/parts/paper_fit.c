@@ -110,6 +110,7 @@ static moray_status try_constants(fitting *fit, constants *c)
     robot.rot_damping = c->damping;
     robot.rot_gain = c->gain;
     MORAY_TRY(moray_swimmer_new(&swimmer, &robot, MORAY_CONTROL_ORIENTED));
+    moray_swimmer_set_reading(swimmer, fit->p->settings->reading);
     const moray_status status = turn(fit, swimmer, fit->trial);
     moray_swimmer_free(swimmer);
     compare(fit, c);

@@ -43,10 +43,9 @@ typedef struct {
 static moray_status crawl(paper *p, double ratio, findings *f)
 {
     const moray_robot robot = ground_robot(p, ratio);
-    const double still[2] = {0, 0};
     moray_swimmer *swimmer[2];
     for (int model = 0; model < 2; model++)
-        MORAY_TRY(paper_swimmer(p, &robot, (moray_model)model, still, &swimmer[model]));
+        MORAY_TRY(paper_swimmer(p, &robot, (moray_model)model, p->settings->reading, &swimmer[model]));
     for (int i = 0; i < AMPLITUDES; i++) {
         paper_progress(p, "c_n/c_t = %g, theta_max %g deg", ratio, theta_max_deg[i]);
         for (int model = 0; model < 2; model++) {

@@ -6,10 +6,6 @@
 
 #include "paper.h"
 
-// A swimmer of a robot in a current, p's own. Error: MORAY_INPUT (robot), MORAY_MEMORY.
-moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model, const double current[2],
-                           moray_swimmer **swimmer);
-
 // What is swum: from rest at (0, p_y), straight along x, with the gaits of a schedule.
 typedef struct paper_swim_plan {
     moray_model model;
@@ -38,7 +34,8 @@ typedef enum { PAPER_P_X, PAPER_P_Y, PAPER_V_X, PAPER_V_Y, PAPER_HEADING_DEG } p
 moray_status paper_series(paper *p, const moray_swim_track *track, paper_quantity quantity, double **values);
 
 // Figures of both models: the first-principles model first, as a solid line, and over it, dashed, the control-oriented
-// one, which oscillates less; few points are marked. paper_compare: y[model][n] over x[n]; name and texts as in moray_figure.
+// one, which oscillates less; few points are marked. paper_compare: y[model][n] over x[n]; name and texts as in
+// moray_figure.
 extern const moray_model paper_model_order[2];
 moray_curve paper_model_curve(moray_model model, const double *x, const double *y, int n);
 moray_status paper_compare(paper *p, const char *name, const char *title, const char *x_label, const char *y_label,
