@@ -28,16 +28,12 @@ moray_status paper_swim(paper *p, const paper_swim_plan *plan, double duration, 
     return paper_swim_at(p, plan, times, n, track);
 }
 
-moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x,
-                                 double *v_y)
+moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x)
 {
     const double span = n_periods * 2 * M_PI / plan->schedule[0].gait.omega, times[] = {duration - span, duration};
     moray_swim_track *track;
     MORAY_TRY(paper_swim_at(p, plan, times, 2, &track));
-    if (v_x)
-        *v_x = (track->pose[1].p_x - track->pose[0].p_x) / span;
-    if (v_y)
-        *v_y = (track->pose[1].p_y - track->pose[0].p_y) / span;
+    *v_x = (track->pose[1].p_x - track->pose[0].p_x) / span;
     return moray_ok();
 }
 

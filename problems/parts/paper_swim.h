@@ -21,10 +21,8 @@ moray_status paper_swim_at(paper *p, const paper_swim_plan *plan, const double *
 // Simulates for a duration, with samples every `step` [s] from 0 on.
 moray_status paper_swim(paper *p, const paper_swim_plan *plan, double duration, double step, moray_swim_track **track);
 
-// Mean velocity over ground [m/s] in the last n_periods whole periods of a single gait, swum for a duration; one of the
-// two may be NULL.
-moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x,
-                                 double *v_y);
+// Mean velocity over ground along x [m/s] in the last n_periods whole periods of a single gait, swum for a duration.
+moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x);
 
 // The heading [rad] at t on average over a period that ends there, from a finely sampled track.
 double paper_mean_heading(const moray_swim_track *track, double t, double period);
