@@ -1,40 +1,49 @@
 // SPDX-License-Identifier: MIT
 //
-// The first-principles model with its joints on the gait, as a map: six states, exact Jacobians by complex step.
+// The first-principles model with its joints on the gait, as a map: six states, or eight with a moving offset; exact
+// Jacobians by complex step.
 #include "complex_model.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <tgmath.h>
 
-enum { states = 6, parameters = 4, inputs = states + parameters + 1 };
+enum { body = 6, most_inputs = 13 };
 
 struct complex_plant {
     moray_plant_spec spec;
+    moray_plant_size size;
     double complex *block;
     double complex *theta, *dtheta, *phi, *dphi, *ubar, *ddtheta, *u; // N or N-1 each, in the block
     complex_link_z *links;
 };
 
-// (25) and its derivatives
-static void gait_motion(const struct complex_plant *plant, const double complex *s, double complex t)
+// (25) and its derivatives; the offset and its own.
+static void gait_motion(const struct complex_plant *plant, const double complex *s, double complex t,
+                        const double complex offset[3])
 {
-    const double complex alpha = s[0], omega = s[1], delta = s[2], offset = s[3];
+    const double complex alpha = s[0], omega = s[1], delta = s[2];
     for (int i = 0; i < plant->spec.robot.links - 1; i++) {
         const double complex sine = sin(omega * t + i * delta), cosine = cos(omega * t + i * delta);
-        plant->phi[i] = alpha * sine + offset;
-        plant->dphi[i] = alpha * omega * cosine;
-        plant->ubar[i] = -alpha * omega * omega * sine;
+        plant->phi[i] = alpha * sine + offset[0];
+        plant->dphi[i] = alpha * omega * cosine + offset[1];
+        plant->ubar[i] = -alpha * omega * omega * sine + offset[2];
     }
 }
 
-// in = [heading, p_x, p_y, their rates, alpha, omega, delta, phi_0, t]
+// in = [heading, p_x, p_y, their rates, alpha, omega, delta, phi_0, t], or with phi_0, phi_0', phi_0'' before alpha
 static void evaluate(void *self, const double complex *in, double complex *out)
 {
     struct complex_plant *plant = self;
     const moray_robot *robot = &plant->spec.robot;
     const int N = robot->links;
-    gait_motion(plant, in + states, in[inputs - 1]);
+    const moray_plant_size *size = &plant->size;
+    const double complex *s = in + size->nx + size->nu;
+    const bool steered = plant->spec.joints == MORAY_JOINTS_STEERED;
+    if (steered)
+        gait_motion(plant, s, s[3], in + body);
+    else
+        gait_motion(plant, s, s[4], (double complex[]){s[3], 0, 0});
     complex_angles_z(N, in[0], plant->phi, plant->theta);
     complex_angles_z(N, in[3], plant->dphi, plant->dtheta);
     const complex_motion_z motion = {plant->theta, plant->dtheta, in[4], in[5], plant->ubar};
@@ -48,7 +57,9 @@ static void evaluate(void *self, const double complex *in, double complex *out)
     out[3] = mean;
     out[4] = ddp[0];
     out[5] = ddp[1];
-    out += states;
+    if (steered)
+        memcpy(out + body, in + body + 1, 2 * sizeof *out);
+    out += size->nx;
     for (int i = 0; i < N - 1 && plant->spec.path_forces; i++)
         *out++ = plant->u[i];
     for (int i = 0; i < N && plant->spec.path_angles; i++)
@@ -72,6 +83,7 @@ static moray_status plant_new(struct complex_plant **result, const moray_plant_s
     struct complex_plant *plant = calloc(1, sizeof *plant);
     if (plant) {
         plant->spec = *spec;
+        plant->size = moray_plant_sizes(spec);
         plant->block = calloc(7 * N, sizeof *plant->block);
         plant->links = calloc(N, sizeof *plant->links);
     }
@@ -88,22 +100,28 @@ static moray_status plant_new(struct complex_plant **result, const moray_plant_s
 }
 
 // Where patterns are looked for: a swimming robot in the middle of a stroke.
-static void probe(const moray_robot *robot, double *in)
+static void probe(const moray_plant_spec *spec, double *in)
 {
-    const double speed = robot->l, typical[inputs] = {0.1, 0, 0, 0.2, speed, 0.3 * speed, 0.2, 2, 0.7, 0.01, 0.4};
-    memcpy(in, typical, sizeof typical);
+    const double speed = spec->robot.l, state[body] = {0.1, 0, 0, 0.2, speed, 0.3 * speed};
+    const double on_gait[] = {0.2, 2, 0.7, 0.01, 0.4}, steered[] = {0.01, 0.003, 0.002, 0.2, 2, 0.7, 0.4};
+    memcpy(in, state, sizeof state);
+    if (spec->joints == MORAY_JOINTS_STEERED)
+        memcpy(in + body, steered, sizeof steered);
+    else
+        memcpy(in + body, on_gait, sizeof on_gait);
 }
 
 moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec)
 {
     struct complex_plant *plant = NULL;
-    double in[inputs];
+    double in[most_inputs];
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));
-    if (spec->joints != MORAY_JOINTS_ON_GAIT)
+    if (spec->joints != MORAY_JOINTS_ON_GAIT && spec->joints != MORAY_JOINTS_STEERED)
         return moray_error(MORAY_INPUT, "joints: the first-principles plant has its joints on the gait");
     MORAY_TRY(plant_new(&plant, spec));
-    probe(&spec->robot, in);
-    const int outputs = states + moray_plant_sizes(spec).nc + 1;
-    return moray_map_from_complex(map, inputs, outputs, evaluate, plant, plant_free, in);
+    probe(spec, in);
+    const moray_plant_size *size = &plant->size;
+    return moray_map_from_complex(map, size->nx + size->nu + size->ns + 1, size->nx + size->nc + 1, evaluate, plant,
+                                  plant_free, in);
 }
