@@ -144,4 +144,9 @@ moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 // as above.
 moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec);
 
+// The control-oriented model averaged over a period of the gait, to second order in a, in the form of
+// MORAY_JOINTS_STEERED without path outputs: the undulation is gone, so that a mesh need only resolve the turning.
+// Derivatives, errors and ownership as of moray_complex_plant.
+moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec);
+
 #endif
