@@ -88,6 +88,12 @@ void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, 
 // Joint coordinates and rates (N-1 each) of the state.
 void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
 
+// The six states of the plants with the joints on the gait, see below: of a full state of the model; and the full state
+// whose joints are on the gait at t.
+void moray_state_body(moray_model model, int links, const double *x, double body[6]);
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
+                           double *x);
+
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
 bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);

@@ -17,7 +17,7 @@ enum { states = 8, inputs = 13 };
 
 typedef struct average {
     control_body body;
-    int n; // joints
+    int n;           // joints
     double Q_0, G_0; // |A^T e|^2 and e^T G e, G = (D D^T)^{-1}
 } average;
 
@@ -55,8 +55,8 @@ static void accelerations(const control_body *b, const means *y, double complex 
 {
     const double complex coupling = 2 * b->mu_p * y->s;
     const double complex M_tt = b->N * b->m - lift * b->mu_p, M_nn = b->N * b->mt;
-    const double complex f_t = -b->c_p * y->w + 2 * b->c_p * y->s * y->v_nr -
-                               (b->N * b->c_t + b->ch_n * y->q - lift * b->c_p) * y->v_tr;
+    const double complex f_t =
+        -b->c_p * y->w + 2 * b->c_p * y->s * y->v_nr - (b->N * b->c_t + b->ch_n * y->q - lift * b->c_p) * y->v_tr;
     const double complex f_n = 2 * b->c_p * y->s * y->v_tr - b->N * b->c_n * y->v_nr;
     const double complex determinant = M_tt * M_nn - coupling * coupling;
     *dv_t = (M_nn * f_t + coupling * f_n) / determinant;
