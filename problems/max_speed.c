@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The fastest gait along a course in a current, on the control-oriented or the first-principles model, proved by
-// simulating both.
+// The fastest gait along a course in a current: optimised on the control-oriented model, from there on the
+// first-principles model, and proved by simulating both.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,12 +40,12 @@ static const moray_option options[] = {
      .choices = joint_forms,
      .help = "six states with the joints on the gait, or all states with the joint controller (34)"},
     {.section = "solver",
-     .key = "starts",
+     .key = "random_starts",
      .type = MORAY_OPTION_INT,
-     MORAY_AT(max_speed, starts),
-     .min = 1,
+     MORAY_AT(max_speed, random_starts),
+     .min = 0,
      .max = 10000,
-     .help = "the first start is the paper's gait, the others are random"},
+     .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"},
 };
 
 static const moray_program program = {
@@ -69,16 +69,11 @@ static max_speed defaults(void)
                      .offset_angle = {-10 * DEG, 10 * DEG},
                      .power = NAN,
                      .joint_rate = INFINITY,
-                     .joint_effort = INFINITY,
-                     .starts = 1};
+                     .joint_effort = INFINITY};
+    run.common.model = MORAY_FIRST_PRINCIPLES;
     strcpy(run.common.scheme, "lobatto5");
     run.common.intervals = usual_intervals;
     return run;
-}
-
-static bool complex_model(const max_speed *run)
-{
-    return run->common.model == MORAY_FIRST_PRINCIPLES;
 }
 
 static double limit(double value)
@@ -86,22 +81,25 @@ static double limit(double value)
     return isfinite(value) ? value : MORAY_INFINITY;
 }
 
-static moray_status make_problem(max_speed *run, const double current[2], moray_gait_problem **problem)
+// The joints' own limits and form are those of --model.
+static moray_status make_problem(const max_speed *run, const stage *at, const double current[2],
+                                 moray_gait_problem **problem)
 {
-    const double *offset = complex_model(run) ? run->offset_angle : run->offset;
+    const bool revolute = at->model == MORAY_FIRST_PRINCIPLES, own = at->model == run->common.model;
+    const double *offset = revolute ? run->offset_angle : run->offset;
     const moray_gait_problem_spec spec = {
         .robot = run->common.robot,
-        .model = run->common.model,
-        .joints = run->joints,
+        .model = at->model,
+        .joints = own ? run->joints : MORAY_JOINTS_ON_GAIT,
         .current = {current[0], current[1]},
         .course = run->common.course,
         .limits = {.theta_max = moray_between(run->theta_max[0], run->theta_max[1]),
                    .omega = moray_between(run->omega[0], run->omega[1]),
                    .delta = moray_between(run->delta[0], run->delta[1]),
                    .offset = moray_between(offset[0], offset[1]),
-                   .power = limit(run->power),
-                   .joint_rate = limit(run->joint_rate * (complex_model(run) ? DEG : 1)),
-                   .joint_effort = limit(run->joint_effort)}};
+                   .power = limit(at->power),
+                   .joint_rate = own ? limit(run->joint_rate * (revolute ? DEG : 1)) : MORAY_INFINITY,
+                   .joint_effort = own ? limit(run->joint_effort) : MORAY_INFINITY}};
     return moray_gait_problem_new(problem, &spec);
 }
 
@@ -116,8 +114,8 @@ static bool show_iteration(void *observer, const moray_progress *at)
 }
 
 // From the steady orbit of the gait on the problem's model, swum straight along the course.
-static moray_status solve_from(max_speed *run, const moray_gait_problem *problem, const moray_gait *gait,
-                               moray_solution **solution)
+static moray_status solve_from(max_speed *run, const stage *at, const moray_gait_problem *problem,
+                               const moray_gait *gait, moray_solution **solution)
 {
     const moray_settings settings = {.scheme = run->common.scheme,
                                      .intervals = run->common.intervals,
@@ -128,7 +126,7 @@ static moray_status solve_from(max_speed *run, const moray_gait_problem *problem
                                      .own_scaling = true,
                                      .progress = show_iteration,
                                      .observer = run};
-    const moray_swim_setup setup = moray_basin_setup(&run->basin, run->common.model);
+    const moray_swim_setup setup = moray_basin_setup(&run->basin, at->model);
     moray_steady steady;
     moray_swim_track orbit = {0};
     moray_status status = moray_swim_hold_course(&setup, gait, run->common.course, &steady);
@@ -145,11 +143,11 @@ static double uniform(double low, double high)
     return low + (high - low) * drand48();
 }
 
-static moray_gait random_gait(const max_speed *run)
+static moray_gait random_gait(const max_speed *run, moray_model model)
 {
     const double theta_max = uniform(run->theta_max[0], run->theta_max[1]);
     moray_gait gait = {.omega = uniform(run->omega[0], run->omega[1]), .delta = uniform(run->delta[0], run->delta[1])};
-    gait.amplitude = moray_amplitude_from_theta_max(&run->common.robot, run->common.model, theta_max, gait.delta);
+    gait.amplitude = moray_amplitude_from_theta_max(&run->common.robot, model, theta_max, gait.delta);
     return gait;
 }
 
@@ -166,93 +164,99 @@ static bool better(const moray_solution *one, const moray_solution *other)
     return moray_solution_objective(one) < moray_solution_objective(other);
 }
 
-static void keep_best(max_speed *run, moray_solution *solution)
+static void keep_best(stage *at, moray_solution *solution)
 {
     const double same = 1e-6;
-    const bool level = run->solution && solved(solution) && solved(run->solution) &&
-                       fabs(moray_solution_objective(solution) - moray_solution_objective(run->solution)) < same;
-    if (level)
-        run->agreeing++;
-    if (!level && better(solution, run->solution))
-        run->agreeing = 1;
-    if (better(solution, run->solution)) {
-        moray_solution_free(run->solution);
-        run->solution = solution;
-    } else {
-        moray_solution_free(solution);
-    }
+    const bool level = at->solution && solved(solution) && solved(at->solution) &&
+                       fabs(moray_solution_objective(solution) - moray_solution_objective(at->solution)) < same;
+    const bool takes_over = better(solution, at->solution);
+    at->agreeing = level ? at->agreeing + 1 : takes_over ? 1 : at->agreeing;
+    moray_solution_free(takes_over ? at->solution : solution);
+    if (takes_over)
+        at->solution = solution;
 }
 
-static moray_status solve_all(max_speed *run)
+// Known gaits to start from.
+struct starts {
+    moray_gait gait[2];
+    int n;
+};
+
+// From the known gaits, then, on the model asked for, from random ones.
+static moray_status solve_all(max_speed *run, stage *at, const struct starts *known)
 {
+    const int random = at->model == run->common.model ? run->random_starts : 0;
     srand48(1);
-    for (int k = 0; k < run->starts; k++) {
-        const moray_gait gait = k ? random_gait(run) : run->paper.gait[run->common.model];
+    at->starts = known->n + random;
+    for (int k = 0; k < at->starts; k++) {
+        const moray_gait gait = k < known->n ? known->gait[k] : random_gait(run, at->model);
         moray_solution *solution = NULL;
-        moray_status status = solve_from(run, run->problem, &gait, &solution);
+        moray_status status = solve_from(run, at, at->problem, &gait, &solution);
         if (!moray_failed(status))
-            keep_best(run, solution);
+            keep_best(at, solution);
         else if (k == 0)
             return status;
     }
     return moray_ok();
 }
 
-// Why there is no gait that makes way: measured against what the best gait swims in still water within the same limits.
-static moray_status explain_failure(max_speed *run)
+// What the best gait swims in still water within the same limits; NaN when that cannot be found either.
+static double still_water_speed(max_speed *run, const stage *at)
 {
-    const double *V = run->common.current, c = cos(run->common.course), s = sin(run->common.course);
-    const double along = V[0] * c + V[1] * s, across = fabs(V[1] * c - V[0] * s), still[2] = {0, 0};
-    const char *diagnosis = moray_solution_diagnosis(run->solution);
+    const double still[2] = {0, 0};
     moray_gait_problem *problem = NULL;
     moray_solution *solution = NULL;
-    double U = NAN;
-    if ((V[0] != 0 || V[1] != 0) && !moray_failed(make_problem(run, still, &problem)) &&
-        !moray_failed(solve_from(run, problem, &run->paper.gait[run->common.model], &solution)) && solved(solution))
-        U = moray_gait_problem_promise(problem, solution).speed;
+    double speed = NAN;
+    if (!moray_failed(make_problem(run, at, still, &problem)) &&
+        !moray_failed(solve_from(run, at, problem, &run->paper.gait[at->model], &solution)) && solved(solution))
+        speed = moray_gait_problem_promise(problem, solution).speed;
     moray_solution_free(solution);
     moray_gait_problem_free(problem);
+    return speed;
+}
+
+// Why there is no gait that makes way.
+static moray_status explain_failure(max_speed *run, const stage *at)
+{
+    const double *V = run->common.current, c = cos(run->common.course), s = sin(run->common.course);
+    const double along = V[0] * c + V[1] * s, across = fabs(V[1] * c - V[0] * s);
+    const double U = V[0] != 0 || V[1] != 0 ? still_water_speed(run, at) : NAN;
     if (across >= U)
-        return moray_error(
-            MORAY_NOT_SOLVED,
-            "current = %g,%g: the robot cannot stem it: %.4f m/s of it run across the course, and within "
-            "the limits the robot swims %.4f m/s at most",
-            V[0], V[1], across, U);
+        return moray_error(MORAY_NOT_SOLVED,
+                           "current = %g,%g: the robot cannot stem it: %.4f m/s of it run across the course, and "
+                           "within the limits the robot swims %.4f m/s at most",
+                           V[0], V[1], across, U);
     if (sqrt(U * U - across * across) + along <= 0)
-        return moray_error(
-            MORAY_NOT_SOLVED,
-            "current = %g,%g: the robot cannot stem it: %.4f m/s of it run against the course, and within "
-            "the limits the robot makes %.4f m/s along it at most",
-            V[0], V[1], -along, sqrt(U * U - across * across));
-    return moray_error(MORAY_NOT_SOLVED, "%.280s", diagnosis);
+        return moray_error(MORAY_NOT_SOLVED,
+                           "current = %g,%g: the robot cannot stem it: %.4f m/s of it run against the course, and "
+                           "within the limits the robot makes %.4f m/s along it at most",
+                           V[0], V[1], -along, sqrt(U * U - across * across));
+    return moray_error(MORAY_NOT_SOLVED, "%.280s", moray_solution_diagnosis(at->solution));
 }
 
-static bool makes_way(const max_speed *run)
+static moray_status optimise(max_speed *run, stage *at, const struct starts *known)
 {
-    return solved(run->solution) && moray_gait_problem_promise(run->problem, run->solution).course_speed > 0;
-}
-
-static moray_status optimise(max_speed *run)
-{
-    MORAY_TRY(make_problem(run, run->common.current, &run->problem));
-    moray_status status = solve_all(run);
-    moray_ticker_end(&run->ticker);
-    if (moray_failed(status))
-        return status;
-    if (moray_solution_info(run->solution)->outcome == MORAY_NLP_INTERRUPTED)
-        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations",
-                           moray_solution_info(run->solution)->iterations);
-    if (!makes_way(run))
-        return explain_failure(run);
-    run->promise = moray_gait_problem_promise(run->problem, run->solution);
+    MORAY_TRY(make_problem(run, at, run->common.current, &at->problem));
+    MORAY_TRY(solve_all(run, at, known));
+    const moray_nlp_info *info = moray_solution_info(at->solution);
+    at->promise = moray_gait_problem_promise(at->problem, at->solution);
+    if (info->outcome == MORAY_NLP_INTERRUPTED)
+        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations", info->iterations);
+    if (!solved(at->solution) || at->promise.course_speed <= 0)
+        return explain_failure(run, at);
     const moray_integrator integrator = moray_sim_integrator(&run->basin.settings.sim);
-    return moray_certify(run->solution, &integrator, &run->certificate);
+    return moray_certify(at->solution, &integrator, &at->certificate);
 }
 
-static moray_status prove(max_speed *run)
+static moray_status optimise_and_prove(max_speed *run, moray_model model, const struct starts *known)
 {
-    MORAY_TRY(moray_gait_trial_run(&run->basin, &run->promise.gait, run->common.model, &run->best));
-    run->gain = moray_gait_gain_over(&run->basin, &run->best, &run->paper);
+    stage *at = &run->stage[model];
+    at->model = model;
+    at->power = isnan(run->power) ? run->paper.steady[model].power : run->power;
+    MORAY_TRY(optimise(run, at, known));
+    moray_ticker_show(&run->ticker, "max_speed: the optimised gait on both models");
+    MORAY_TRY(moray_gait_trial_run(&run->basin, &at->promise.gait, model, &at->trial));
+    at->gain = moray_gait_gain_over(&run->basin, &at->trial, &run->paper);
     return moray_ok();
 }
 
@@ -263,24 +267,34 @@ static moray_status work(max_speed *run)
     int stages;
     if (isfinite(run->joint_effort) && run->common.intervals == usual_intervals)
         run->common.intervals = effort_intervals;
-    run->ticker = moray_ticker_start(stderr, run->common.quiet);
     MORAY_TRY(moray_scheme_parse(run->common.scheme, &family, &stages));
     MORAY_TRY(moray_basin_new(&run->basin, &run->common.robot, run->common.current, run->common.course));
     moray_ticker_show(&run->ticker, "max_speed: the paper's gait on both models");
     MORAY_TRY(moray_gait_trial_run(&run->basin, &paper, MORAY_CONTROL_ORIENTED, &run->paper));
-    if (isnan(run->power))
-        run->power = run->paper.steady[run->common.model].power;
-    MORAY_TRY(optimise(run));
-    moray_ticker_show(&run->ticker, "max_speed: the optimised gait on both models");
-    moray_status status = prove(run);
-    moray_ticker_end(&run->ticker);
-    return status;
+    const struct starts one = {{run->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
+    MORAY_TRY(optimise_and_prove(run, MORAY_CONTROL_ORIENTED, &one));
+    if (run->common.model == MORAY_CONTROL_ORIENTED)
+        return moray_ok();
+    const struct starts two = {{run->stage[MORAY_CONTROL_ORIENTED].trial.gait[MORAY_FIRST_PRINCIPLES],
+                                run->paper.gait[MORAY_FIRST_PRINCIPLES]},
+                               2};
+    return optimise_and_prove(run, MORAY_FIRST_PRINCIPLES, &two);
+}
+
+static bool certified(const max_speed *run)
+{
+    bool pass = true;
+    for (int model = 0; model <= (int)run->common.model; model++)
+        pass = pass && run->stage[model].certificate.pass;
+    return pass;
 }
 
 static void release(max_speed *run)
 {
-    moray_solution_free(run->solution);
-    moray_gait_problem_free(run->problem);
+    for (int model = 0; model < 2; model++) {
+        moray_solution_free(run->stage[model].solution);
+        moray_gait_problem_free(run->stage[model].problem);
+    }
     moray_basin_free(&run->basin);
 }
 
@@ -290,12 +304,13 @@ int main(int argc, char **argv)
     int exit_code;
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;
+    run.ticker = moray_ticker_start(stderr, run.common.quiet);
     moray_status status = work(&run);
     moray_ticker_end(&run.ticker);
     if (!moray_failed(status))
         status = max_speed_report(&run);
     exit_code = moray_app_end(&program, &run, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !run.certificate.pass)
+    if (exit_code == MORAY_EXIT_SOLVED && !certified(&run))
         exit_code = MORAY_EXIT_CERTIFICATE;
     release(&run);
     return exit_code;

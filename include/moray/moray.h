@@ -4,10 +4,12 @@
 
 #include "moray/app.h"
 #include "moray/dense.h"
+#include "moray/gait_input.h"
 #include "moray/gait_problem.h"
 #include "moray/gait_trial.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
+#include "moray/num.h"
 #include "moray/ocp.h"
 #include "moray/ode.h"
 #include "moray/results.h"

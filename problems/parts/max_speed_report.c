@@ -9,45 +9,49 @@ static const char *const model_names[] = {"control-oriented", "first-principles"
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
-// What the model that was optimised on says of the gain, at the powers found (equal where the limit is the paper's).
-static double promised_percent(const max_speed *run)
+enum { text_size = 1000 };
+
+static double percent(double value, double reference)
 {
-    return 100 * (run->promise.speed / run->paper.steady[run->common.model].speed - 1);
+    return 100 * (value / reference - 1);
 }
 
-static void verdict(const max_speed *run, char *text, size_t size)
+// The gain on the first-principles model at equal power, and beside it what the model of the stage promises.
+static void verdict(const max_speed *run, const stage *at, char *text)
 {
-    const double gain = run->gain.speed_percent_at_equal_power, promised = promised_percent(run);
-    const double power = run->paper.steady[MORAY_FIRST_PRINCIPLES].power;
+    const double gain = at->gain.speed_percent_at_equal_power;
+    const moray_steady *here = &run->paper.steady[at->model], *there = &run->paper.steady[MORAY_FIRST_PRINCIPLES];
     if (isnan(gain)) {
-        snprintf(text, size, "No verdict at equal power on the first-principles model: %.250s",
-                 run->gain.why_no_speed.text);
+        snprintf(text, text_size, "The %s optimum: no comparison at equal power on the first-principles model: %.250s",
+                 model_names[at->model], at->gain.why_no_speed.text);
         return;
     }
-    const char *outcome = gain < -0.05  ? "The optimised gait LOSES"
-                          : gain > 0.05 ? "The optimised gait wins"
-                                        : "The optimised gait neither wins nor loses";
-    snprintf(text, size,
-             "%s on the first-principles model: at the paper gait's power there (%.4f W) it is %.2f %% %s than the "
-             "paper's. (The %s model, on which it was optimised, promises %+.2f %% at %.4f W against %.4f W.)",
-             outcome, power, fabs(gain), gain < 0 ? "slower" : "faster", model_names[run->common.model], promised,
-             run->promise.power, run->paper.steady[run->common.model].power);
+    const char *outcome = gain < -0.05 ? "LOSES" : gain > 0.05 ? "wins" : "neither wins nor loses";
+    int used = snprintf(text, text_size,
+                        "The %s optimum %s on the first-principles model: at the paper gait's power there (%.4f W) it "
+                        "is %.2f %% %s than the paper's gait",
+                        model_names[at->model], outcome, there->power, fabs(gain), gain < 0 ? "slower" : "faster");
+    if (!isnan(at->gain.power_percent_at_equal_speed))
+        used += snprintf(text + used, (size_t)(text_size - used), ", at its speed (%.4f m/s) it needs %.2f %% %s power",
+                         there->speed, fabs(at->gain.power_percent_at_equal_speed),
+                         at->gain.power_percent_at_equal_speed < 0 ? "less" : "more");
+    snprintf(text + used, (size_t)(text_size - used),
+             ". The %s model itself promised %+.2f %% speed for %+.2f %% power.", model_names[at->model],
+             percent(at->promise.speed, here->speed), percent(at->promise.power, here->power));
 }
 
-static void certificate_line(const max_speed *run, char *text, size_t size)
+static void solver_line(const max_speed *run, const stage *at, char *text)
 {
-    const moray_certificate *c = &run->certificate;
-    snprintf(text, size, "Certificate: %s (KKT %.1e, mesh error %.1e, between nodes %.1e, re-simulation %.1e)",
+    const moray_nlp_info *info = moray_solution_info(at->solution);
+    const moray_nlp_size n = moray_solution_size(at->solution);
+    const moray_certificate *c = &at->certificate;
+    snprintf(text, text_size,
+             "%s: %s, %d intervals, %d variables, %s in %d iterations, %.2f s (%d of %d starts end here, none better); "
+             "certificate: %s (KKT %.1e, mesh error "
+             "%.1e, between nodes %.1e, re-simulation %.1e)",
+             model_names[at->model], run->common.scheme, run->common.intervals, n.variables,
+             moray_nlp_outcome_text(info->outcome), info->iterations, info->seconds, at->agreeing, at->starts,
              c->pass ? "pass" : "FAIL", c->kkt, c->mesh_error, c->between_nodes, c->resimulation);
-}
-
-static void solver_line(const max_speed *run, char *text, size_t size)
-{
-    const moray_nlp_info *info = moray_solution_info(run->solution);
-    const moray_nlp_size n = moray_solution_size(run->solution);
-    snprintf(text, size, "%s, %d intervals: %s in %d iterations, %.2f s (%d variables, %d constraints)",
-             run->common.scheme, run->common.intervals, moray_nlp_outcome_text(info->outcome), info->iterations,
-             info->seconds, n.variables, n.constraints);
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
@@ -61,47 +65,46 @@ struct tables {
 
 static void make_tables(const max_speed *run, struct tables *t)
 {
-    const moray_gait_trial *const trials[] = {&run->paper, &run->best};
+    const moray_gait_trial *const trials[] = {&run->paper, &run->stage[0].trial, &run->stage[1].trial};
+    const int columns = 2 + (int)run->common.model;
+    const double course = run->common.course;
     const int rows[tables] = {
-        moray_gait_rows(&run->common.robot, trials, 2, t->rows[0]),
-        moray_steady_rows(MORAY_CONTROL_ORIENTED, trials, 2, run->common.course, t->rows[1]),
-        moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, 2, run->common.course, t->rows[2]),
+        moray_gait_rows(&run->common.robot, trials, columns, t->rows[0]),
+        moray_steady_rows(MORAY_CONTROL_ORIENTED, trials, columns, course, t->rows[1]),
+        moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, course, t->rows[2]),
     };
-    const char *const titles[tables] = {"Gait", "Simulated, control-oriented model",
-                                        "Simulated, first-principles model"};
+    const char *const titles[tables] = {"Gait", "Swum on the control-oriented model",
+                                        "Swum on the first-principles model"};
     for (int k = 0; k < tables; k++)
         t->table[k] = (moray_table){.title = titles[k],
-                                    .columns = {"paper's", "optimised"},
-                                    .n_columns = 2,
+                                    .columns = {"paper's", "control opt.", "first-pr. opt."},
+                                    .n_columns = columns,
                                     .rows = t->rows[k],
                                     .n_rows = rows[k]};
 }
 
 static void print_tables(const max_speed *run)
 {
-    char text[600];
+    char text[text_size];
     struct tables t;
-    printf(
-        "%d links, current (%g, %g) m/s, course %g deg; optimised on the %s model with a mean joint power of at most "
-        "%.4g W\n\n",
-        run->common.robot.links, run->common.current[0], run->common.current[1], run->common.course / DEG,
-        model_names[run->common.model], run->power);
+    printf("%d links, current (%g, %g) m/s, course %g deg; mean joint power at most", run->common.robot.links,
+           run->common.current[0], run->common.current[1], run->common.course / DEG);
+    for (int model = 0; model <= (int)run->common.model; model++)
+        printf("%s %.4g W (%s model)", model ? " and" : "", run->stage[model].power, model_names[model]);
+    printf("\n\n");
     make_tables(run, &t);
     for (int k = 0; k < tables; k++) {
         moray_table_print(&t.table[k], stdout);
         printf("\n");
     }
-    verdict(run, text, sizeof text);
-    printf("%s\n", text);
-    if (!isnan(run->gain.power_percent_at_equal_speed))
-        printf("At the paper gait's speed there it needs %+.2f %% power.\n", run->gain.power_percent_at_equal_speed);
-    if (run->starts > 1)
-        printf("%d of %d starts ended at this optimum, none at a better one.\n", run->agreeing, run->starts);
-    printf("\n");
-    solver_line(run, text, sizeof text);
-    printf("%s\n", text);
-    certificate_line(run, text, sizeof text);
-    printf("%s\n", text);
+    for (int model = 0; model <= (int)run->common.model; model++) {
+        verdict(run, &run->stage[model], text);
+        printf("%s\n\n", text);
+    }
+    for (int model = 0; model <= (int)run->common.model; model++) {
+        solver_line(run, &run->stage[model], text);
+        printf("%s\n", text);
+    }
 }
 
 // ---- JSON ----------------------------------------------------------------------------------------------------------
@@ -118,12 +121,11 @@ static void json_head(moray_json *json, const max_speed *run)
     moray_json_number(json, "course_deg", run->common.course / DEG);
     moray_json_text(json, "scheme", run->common.scheme);
     moray_json_number(json, "intervals", run->common.intervals);
-    moray_json_number(json, "power_limit_W", run->power);
 }
 
-static void json_promise(moray_json *json, const max_speed *run)
+static void json_promise(moray_json *json, const stage *at)
 {
-    const moray_gait_promise *promise = &run->promise;
+    const moray_gait_promise *promise = &at->promise;
     moray_json_open(json, "predicted");
     moray_json_number(json, "speed_m_s", promise->speed);
     moray_json_number(json, "course_speed_m_s", promise->course_speed);
@@ -132,23 +134,23 @@ static void json_promise(moray_json *json, const max_speed *run)
     moray_json_close(json);
 }
 
-static void json_gain(moray_json *json, const max_speed *run)
+static void json_gain(moray_json *json, const moray_gait_gain *gain)
 {
     moray_json_open(json, "gain");
-    moray_json_number(json, "speed_percent_at_equal_power", run->gain.speed_percent_at_equal_power);
-    moray_json_number(json, "power_percent_at_equal_speed", run->gain.power_percent_at_equal_speed);
+    moray_json_number(json, "speed_percent_at_equal_power", gain->speed_percent_at_equal_power);
+    moray_json_number(json, "power_percent_at_equal_speed", gain->power_percent_at_equal_speed);
     moray_json_close(json);
 }
 
-static void json_solver(moray_json *json, const max_speed *run)
+static void json_solver(moray_json *json, const stage *at)
 {
-    const moray_nlp_info *info = moray_solution_info(run->solution);
-    const moray_nlp_size size = moray_solution_size(run->solution);
-    const moray_certificate *c = &run->certificate;
+    const moray_nlp_info *info = moray_solution_info(at->solution);
+    const moray_nlp_size size = moray_solution_size(at->solution);
+    const moray_certificate *c = &at->certificate;
     moray_json_open(json, "solver");
     moray_json_text(json, "status", moray_nlp_outcome_text(info->outcome));
     moray_json_number(json, "iterations", info->iterations);
-    moray_json_number(json, "objective", moray_solution_objective(run->solution));
+    moray_json_number(json, "objective", moray_solution_objective(at->solution));
     moray_json_number(json, "nvar", size.variables);
     moray_json_number(json, "ncon", size.constraints);
     moray_json_number(json, "nnz_jac", size.nnz_jac);
@@ -156,8 +158,8 @@ static void json_solver(moray_json *json, const max_speed *run)
     moray_json_number(json, "time_s", info->seconds);
     moray_json_number(json, "eval_time_s", info->evaluation_seconds);
     moray_json_text(json, "linear_solver", "mumps");
-    moray_json_number(json, "starts", run->starts);
-    moray_json_number(json, "starts_at_optimum", run->agreeing);
+    moray_json_number(json, "starts", at->starts);
+    moray_json_number(json, "starts_at_optimum", at->agreeing);
     moray_json_close(json);
     moray_json_open(json, "certificate");
     moray_json_bool(json, "pass", c->pass);
@@ -168,21 +170,32 @@ static void json_solver(moray_json *json, const max_speed *run)
     moray_json_close(json);
 }
 
+static void json_stage(moray_json *json, const max_speed *run, const stage *at)
+{
+    moray_json_number(json, "power_limit_W", at->power);
+    moray_gait_to_json(json, "gait", &run->common.robot, at->trial.gait);
+    json_promise(json, at);
+    moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, run->common.course);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->common.course);
+    json_gain(json, &at->gain);
+    json_solver(json, at);
+}
+
 static moray_json *make_json(const max_speed *run)
 {
     moray_json *json = moray_json_new();
     json_head(json, run);
-    moray_gait_to_json(json, "gait", &run->common.robot, run->best.gait);
-    json_promise(json, run);
-    moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &run->best, run->common.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &run->best, run->common.course);
+    json_stage(json, run, last_stage(run));
     moray_json_open(json, "baseline");
     moray_gait_to_json(json, "gait", &run->common.robot, run->paper.gait);
     moray_steady_to_json(json, "predicted", MORAY_CONTROL_ORIENTED, &run->paper, run->common.course);
     moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &run->paper, run->common.course);
     moray_json_close(json);
-    json_gain(json, run);
-    json_solver(json, run);
+    if (run->common.model == MORAY_FIRST_PRINCIPLES) {
+        moray_json_open(json, "control_oriented_optimum");
+        json_stage(json, run, &run->stage[MORAY_CONTROL_ORIENTED]);
+        moray_json_close(json);
+    }
     return json;
 }
 
@@ -206,14 +219,14 @@ static moray_status write_trajectory(const max_speed *run, moray_output *output)
     char(*joint_names)[16] = calloc((size_t)joints, sizeof *joint_names);
     moray_status status = data && columns && joint_names ? moray_ok() : moray_error(MORAY_MEMORY, "no memory");
     double t0, tf, *x = data + samples * width, *phi = x + states;
-    moray_solution_times(run->solution, 0, &t0, &tf);
+    moray_solution_times(last_stage(run)->solution, 0, &t0, &tf);
     for (int k = 0; k < samples && !moray_failed(status); k++) {
         double *row = data + k * width;
         row[0] = t0 + (tf - t0) * k / (samples - 1);
-        moray_solution_at(run->solution, 0, row[0], x, NULL);
+        moray_solution_at(last_stage(run)->solution, 0, row[0], x, NULL);
         memcpy(row + 1, x + full, 3 * sizeof *row);
         memcpy(row + 4, x + states - 3, 3 * sizeof *row);
-        moray_gait_reference(&run->promise.gait, joints, row[0], phi, phi + joints, phi + 2 * joints);
+        moray_gait_reference(&last_stage(run)->promise.gait, joints, row[0], phi, phi + joints, phi + 2 * joints);
         memcpy(row + 7, phi, (size_t)joints * sizeof *row);
     }
     for (int j = 0; j < width && !moray_failed(status); j++) {
@@ -237,33 +250,43 @@ static moray_status write_trajectory(const max_speed *run, moray_output *output)
     return status;
 }
 
-// Speed along the course from rest, both gaits on both models: what the reader wants to see of the proof.
+// Speed along the course from rest, every gait on both models: what the reader wants to see of the proof.
 static moray_status draw_start(const max_speed *run, moray_output *output)
 {
-    enum { points = 301 };
-    const double horizon = 30;
-    static double time[points], speed[4][points];
-    const char *const labels[] = {"paper's gait, control-oriented", "optimised, control-oriented",
-                                  "paper's gait, first-principles", "optimised, first-principles"};
-    moray_curve curves[4];
-    for (int k = 0; k < 4; k++) {
-        const moray_gait_trial *trial = k % 2 ? &run->best : &run->paper;
-        MORAY_TRY(moray_gait_trial_speeds(&run->basin, trial, (moray_model)(k / 2), horizon, points, time, speed[k]));
-        curves[k] = (moray_curve){.label = labels[k], .x = time, .y = speed[k], .n = points};
-    }
+    enum { points = 301, most = 6 };
+    const double horizon = 15;
+    const char *const labels[most] = {
+        "paper's gait, control-oriented model",      "control optimum, control-oriented model",
+        "first-pr. optimum, control-oriented model", "paper's gait, first-principles model",
+        "control optimum, first-principles model",   "first-pr. optimum, first-principles model"};
+    const int gaits = 2 + (int)run->common.model;
+    const moray_gait_trial *const trials[] = {&run->paper, &run->stage[0].trial, &run->stage[1].trial};
+    double *data = calloc((most + 1) * points, sizeof *data), *time = data + most * points;
+    moray_curve curves[most];
+    moray_status status = data ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a figure");
+    int n = 0;
+    for (int model = 0; model < 2; model++)
+        for (int k = 0; k < gaits && !moray_failed(status); k++, n++) {
+            double *speed = data + n * points;
+            status = moray_gait_trial_speeds(&run->basin, trials[k], (moray_model)model, horizon, points, time, speed);
+            curves[n] = (moray_curve){.label = labels[3 * model + k], .x = time, .y = speed, .n = points};
+        }
     const moray_figure figure = {.name = "start",
                                  .title = "From rest: speed along the course, mean over the last period",
                                  .x_label = "time [s]",
                                  .y_label = "speed along the course [m/s]",
                                  .curves = curves,
-                                 .n_curves = 4};
-    return moray_output_figure(output, &figure);
+                                 .n_curves = n};
+    if (!moray_failed(status))
+        status = moray_output_figure(output, &figure);
+    free(data);
+    return status;
 }
 
 static moray_status write_files(const max_speed *run, const moray_json *json)
 {
     moray_output *output = run->common.output;
-    char text[600];
+    char text[text_size];
     struct tables t;
     FILE *file;
     MORAY_TRY(moray_output_file(output, "summary.json", &file));
@@ -272,7 +295,7 @@ static moray_status write_files(const max_speed *run, const moray_json *json)
     moray_status figure = draw_start(run, output);
     if (moray_failed(figure) && !run->common.quiet)
         fprintf(stderr, "max_speed: no figure: %s\n", figure.text);
-    verdict(run, text, sizeof text);
+    verdict(run, last_stage(run), text);
     make_tables(run, &t);
     const moray_report report = {.title = "max_speed",
                                  .text = text,

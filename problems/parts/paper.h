@@ -16,6 +16,8 @@ enum { PAPER_STUDIES = 32, PAPER_TABLES = 12 };
 typedef struct paper_settings {
     moray_common common;            // robot, current, output
     double theta_max, omega, delta; // of the gait that studies take where they do not vary it
+    moray_reading reading;          // of the control-oriented model
+    bool as_printed;                // reading = printed
     bool chosen[PAPER_STUDIES];
 } paper_settings;
 
@@ -43,7 +45,7 @@ typedef struct paper {
 // Does the study and tells what it finds. An error ends this study only: its text says why.
 typedef moray_status paper_run(paper *p);
 
-paper_run paper_mapping;
+paper_run paper_mapping, paper_straight, paper_turning;
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------
 // What these give is freed after the last study.

@@ -5,6 +5,7 @@
 
 #include "paper_main.h"
 
+const char *const paper_reading_names[] = {"corrected", "23h", "l", "printed", NULL};
 const char *const paper_model_names[2] = {"control-oriented", "first-principles"};
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------

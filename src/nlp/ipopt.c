@@ -3,7 +3,7 @@
 // The one file that knows Ipopt. Written for 3.11 (char * options) and kept valid for 3.14.
 #include "moray/nlp.h"
 
-#include <coin/IpStdCInterface.h>
+#include <IpStdCInterface.h> // the folder (coin or coin-or) is the package's business
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -122,10 +122,12 @@ static bool set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_
                                           (double *)nlp->g_scale);
     }
     if (settings->warm) {
+        static const char *const pushes[] = {"warm_start_bound_push", "warm_start_bound_frac",
+                                             "warm_start_slack_bound_push", "warm_start_slack_bound_frac",
+                                             "warm_start_mult_bound_push"};
         ok = ok && AddIpoptStrOption(problem, (char *)"warm_start_init_point", (char *)"yes");
-        ok = ok && AddIpoptNumOption(problem, (char *)"mu_init", 1e-6);
-        ok = ok && AddIpoptNumOption(problem, (char *)"warm_start_bound_push", 1e-9);
-        ok = ok && AddIpoptNumOption(problem, (char *)"warm_start_mult_bound_push", 1e-9);
+        for (unsigned i = 0; i < sizeof pushes / sizeof *pushes; i++)
+            ok = ok && AddIpoptNumOption(problem, (char *)pushes[i], 1e-9);
     }
     return ok && SetIntermediateCallback(problem, on_iteration);
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "ocp/names.h"
 #include "ocp/solution.h"
 
 enum { named_size = 160, listed = 6 };

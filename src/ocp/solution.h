@@ -10,7 +10,9 @@ struct moray_solution {
     struct transcription *transcription;
     moray_settings settings;
     moray_nlp_info info;
-    moray_iterate iterate; // all in one block, owned
+    moray_iterate iterate;      // all in one block, owned
+    moray_mesh_record *history; // [settings.max_refinements + 1], owned
+    int meshes;
     char diagnosis[diagnosis_size];
 };
 
@@ -20,6 +22,9 @@ moray_status fill_guess(struct transcription *t, const moray_guess *guess, doubl
 
 // Chooses x_scale and g_scale of the programme from bounds and the guess. Error: MORAY_MEMORY, MORAY_NUMERIC.
 moray_status choose_scales(struct transcription *t, const double *x);
+
+// Fills the multipliers of `to` with those of a solution of the same problem on any mesh. Error: MORAY_MEMORY.
+moray_status carry_multipliers(const moray_solution *from, moray_solution *to);
 
 // Writes the diagnosis text.
 void diagnose(moray_solution *solution);
