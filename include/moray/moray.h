@@ -7,6 +7,7 @@
 #include "moray/gait_input.h"
 #include "moray/gait_problem.h"
 #include "moray/gait_trial.h"
+#include "moray/heading.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"
@@ -17,6 +18,7 @@
 #include "moray/sim.h"
 #include "moray/snake.h"
 #include "moray/status.h"
+#include "moray/steering.h"
 #include "moray/swim.h"
 
 #endif
