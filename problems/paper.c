@@ -6,7 +6,15 @@
 static const paper_study studies[] = {
     {"straight", "straight motion with growing amplitude: Fig. 7", paper_straight},
     {"turning", "turning there and back: Fig. 8", paper_turning},
+    {"linearising", "the linearising control law (22)", paper_linearising},
+    {"ground", "the ground robot as a special case", paper_ground},
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
+    {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
+     paper_forces},
+    {"links", "how the links move and what the fluid does to them (Properties 2 and 4)", paper_links},
+    {"offset", "turning rate by joint offset and by speed (Property 3)", paper_offset},
+    {"errata", "the misprints of the paper, swum as printed and as corrected (E1-E4 and the sign in (13))",
+     paper_errata},
 };
 enum { N_STUDIES = sizeof studies / sizeof *studies };
 _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room for every study");
