@@ -26,20 +26,27 @@ typedef struct wave {
     double complex Q_1, W, G_1, sigma; // |A^T wave|^2, thrust, wave^T G wave, |sum of the wave|^2
 } wave;
 
+// Sum along the m-th diagonal of G, of entries j (N - k) / N for j <= k.
+static double gram_diagonal(int N, int m)
+{
+    const double K = N - 1 - m; // entries: sum over j = 1..K of j (K + 1 - j)
+    return K * (K + 1) * (K + 2) / (6 * N);
+}
+
 static wave wave_of(const average *self, double complex delta)
 {
     const int n = self->n, N = n + 1;
     wave out = {.Q_1 = 2 + (n - 1) * (2 + 2 * cos(delta)), .sigma = n};
-    for (int j = 1; j <= n; j++)
-        out.G_1 += j * (double)(N - j) / N;
+    const double complex turn = 2 * cos(delta); // cos((m+1) delta) = turn cos(m delta) - cos((m-1) delta), sin likewise
+    double complex c = cos(delta), c_before = 1, s = sin(delta), s_before = 0;
+    out.G_1 = gram_diagonal(N, 0);
     for (int m = 1; m < n; m++) {
-        const double complex c = cos(m * delta);
-        double gram = 0; // sum of G along the m-th diagonal
-        for (int j = 1; j + m <= n; j++)
-            gram += j * (double)(N - j - m) / N;
-        out.W -= (n - m) * (1 - (double)m / N) * sin(m * delta);
-        out.G_1 += 2 * gram * c;
+        out.W -= (n - m) * (1 - (double)m / N) * s;
+        out.G_1 += 2 * gram_diagonal(N, m) * c;
         out.sigma += 2 * (n - m) * c;
+        const double complex c_next = turn * c - c_before, s_next = turn * s - s_before;
+        c_before = c, c = c_next;
+        s_before = s, s = s_next;
     }
     return out;
 }
