@@ -97,7 +97,7 @@ static void test_derivatives(const moray_plant_spec *spec, const moray_map *map,
         weight[i] = tap_random(seed, -1, 1);
     moray_derivative_report report;
     CHECK_OK(moray_check_derivatives(map, in, weight, &report), "checked");
-    CHECK(report.jacobian_error < 1e-9 && report.hessian_error < 1e-7,
+    CHECK(report.jacobian_error < 1e-9 && report.hessian_error < 1e-9,
           "N = %d, %s: Jacobian %.1e, Hessian %.1e (row %d, column %d) from differences", spec->robot.links,
           form_names[spec->joints], report.jacobian_error, report.hessian_error, report.hessian_row,
           report.hessian_col);

@@ -158,7 +158,7 @@ moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 
 // The first-principles model in the same form, for MORAY_JOINTS_ON_GAIT and MORAY_JOINTS_STEERED only, with alpha in
 // place of a: x = (mean link angle, p_x, p_y, and their rates), steered phi_0 and phi_0' too; c: joint torques [N m],
-// then theta_i minus their mean. Exact Jacobians by complex step, Hessians differenced from them. Errors and ownership
+// then theta_i minus their mean. Exact Jacobians and Hessians by complex step. Errors and ownership
 // as above.
 moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec);
 
