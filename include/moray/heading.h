@@ -33,7 +33,9 @@ typedef struct moray_heading_weights {
     double steering; // of (phi_0'' / limit of phi_0)^2 [s^4]
 } moray_heading_weights;
 
-// The problem of following the reference: the objective is the mean over [t0, t1] of the weighted sum.
+// The problem of following the reference: the objective is the mean over [t0, t1] of the weighted sum. The error is
+// that of the heading without its undulation: the mean link angle of the first-principles model swings by some 4 deg
+// with every stroke, which no offset within its limits would stop.
 typedef struct moray_heading_task moray_heading_task;
 typedef struct moray_heading_spec {
     moray_robot robot;
@@ -43,6 +45,7 @@ typedef struct moray_heading_spec {
     moray_steering_limits limits;
     moray_heading_weights weight;
     const moray_reference *reference; // must outlive the problem
+    double undulation[2];             // of the heading: factors of cos and sin of omega t [rad]
     double max_error;                 // largest |error| allowed [rad]; MORAY_INFINITY: any
     double t0, t1;
     double start[MORAY_STEERING_STATES]; // state at t0

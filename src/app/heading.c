@@ -18,10 +18,11 @@ static void extra(void *self, const double complex *in, double complex *out)
 {
     const moray_heading_task *task = self;
     const moray_heading_spec *spec = &task->spec;
-    const double complex t = in[MORAY_STEERING_STATES + 1 + MORAY_STEERING_PARAMETERS];
+    const double complex *s = in + MORAY_STEERING_STATES + 1, t = s[MORAY_STEERING_PARAMETERS];
     double rate;
     const double reference = moray_reference_at(spec->reference, creal(t), &rate);
-    const double complex error = in[0] - (reference + rate * (t - creal(t)));
+    const double complex swing = spec->undulation[0] * ccos(s[1] * t) + spec->undulation[1] * csin(s[1] * t);
+    const double complex error = in[0] - swing - (reference + rate * (t - creal(t)));
     const double complex steering = in[MORAY_STEERING_STATES] / spec->limits.offset;
     if (task->tube)
         *out++ = error;
