@@ -32,7 +32,14 @@ refuse() {
     check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
 }
 
-# within VALUE EXPECTED TOLERANCE
-within() {
+# number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
+number() {
+    [ $# -eq 1 ] && set -- . "$1"
+    awk -v block="\"$1\"" -v key="\"$2\"" 'index($0, block) || block == "\".\"" { seen = 1 }
+        seen && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
+}
+
+# near VALUE EXPECTED TOLERANCE
+near() {
     awk -v is="$1" -v want="$2" -v by="$3" 'BEGIN { exit !(is != "" && want != "" && is - want <= by && want - is <= by) }'
 }
