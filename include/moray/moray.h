@@ -9,6 +9,7 @@
 #include "moray/gait_search.h"
 #include "moray/gait_trial.h"
 #include "moray/heading.h"
+#include "moray/helm.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"
