@@ -21,7 +21,7 @@ static void random_input(unsigned long long *seed, double in[11])
 static void full_state(int N, const double *in, double *x, double *ubar)
 {
     double *phi = calloc(2 * (size_t)N, sizeof *phi), *dphi = phi + N;
-    const moray_gait gait = {in[6], in[7], in[8], in[9]};
+    const moray_gait gait = {.amplitude = in[6], .omega = in[7], .delta = in[8], .offset = in[9]};
     moray_gait_reference(&gait, N - 1, in[10], phi, dphi, ubar);
     for (int rate = 0; rate < 2; rate++) {
         double *angle = x + rate * (N + 2), *joint = rate ? dphi : phi, sum = 0;

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include <complex.h>
+
 #include "moray/snake.h"
 
 #define DEG (M_PI / 180)
@@ -77,11 +79,54 @@ static void test_gait(void)
     CHECK_NEAR(back.offset, gait.offset, 1e-15, "mapping and back, offset");
 }
 
+// The joints of a tapered wave as phasors of sin(omega t).
+static double complex joint_phasor(const moray_gait *gait, int n, int i)
+{
+    double phi[16], quarter[16], unused[16];
+    moray_gait_reference(gait, n, 0, phi, unused, unused);
+    moray_gait_reference(gait, n, M_PI / 2 / gait->omega, quarter, unused, unused);
+    return quarter[i] + I * phi[i];
+}
+
+// What moray/snake.h says of the link angles of a tapered gait: for the revolute joints (1) is solved for angles whose
+// amplitudes in the travelling frame are linear along the body, for the prismatic ones (12) is evaluated.
+static void test_taper(void)
+{
+    enum { N = 9, n = N - 1 };
+    const double l = 0.07, tau = -0.4, delta = 0.7;
+    const moray_gait gait = {.amplitude = 0.04, .omega = 2, .delta = delta, .taper = tau};
+    double complex joint[n], link[N] = {0};
+    for (int i = 0; i < n; i++) {
+        joint[i] = joint_phasor(&gait, n, i);
+        link[i + 1] = link[i] - joint[i];
+    }
+    CHECK_NEAR(cabs(joint[0]), 0.04 * 1.4, 1e-15, "first joint");
+    CHECK_NEAR(cabs(joint[n - 1]), 0.04 * 0.6, 1e-15, "last joint");
+    const double complex back = cexp(-I * delta);
+    const double complex common =
+        -(link[0] - 2 * link[1] * back + link[2] * back * back) / ((1 - back) * (1 - back)); // no second difference
+    for (int i = 0; i < N; i++) {
+        const double s = 2 * (i - 0.5) / (N - 2) - 1, by_cot = tau / tan(delta / 2) / (N - 2);
+        const double by_tan = tau * tan(delta / 2) / (N - 2);
+        CHECK_NEAR(cabs(link[i] + common), 0.04 / (2 * sin(delta / 2)) * hypot(1 + tau * s, by_cot), 1e-14,
+                   "link angle of revolute joints");
+        if (i > 0 && i < N - 1)
+            CHECK_NEAR(cabs(joint[i - 1] + joint[i]) / (4 * l),
+                       0.04 / (2 * l) * cos(delta / 2) * hypot(1 + tau * s, by_tan), 1e-14,
+                       "link angle of prismatic joints");
+    }
+    CHECK_NEAR(cabs(joint_phasor(&gait, 1, 0)), 0.04, 1e-17, "a single joint is the middle of its body");
+    const moray_robot robot = moray_robot_paper();
+    CHECK_NEAR(moray_gait_map(&robot, &gait, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES).taper, tau, 0,
+               "the taper is the same in both models");
+}
+
 int main(void)
 {
     test_printed_coefficients();
     test_bad_robots();
     test_amplitude_table();
     test_gait();
+    test_taper();
     return tap_done();
 }

@@ -62,10 +62,24 @@ typedef struct moray_common {
 // The paper's robot in still water, control-oriented model, Hermite-Simpson on 40 intervals to 1e-8.
 moray_common moray_common_defaults(void);
 
+// Arguments without a flag, each a word of this list; at least one is to be given.
+typedef struct moray_word {
+    const char *name, *help;
+} moray_word;
+typedef struct moray_words {
+    const char *noun; // what a word names, as in "unknown study"; in capitals in the usage line
+    const moray_word *word;
+    int n;
+    const char *all; // the word for all of them
+    size_t offset;   // of bool[n] in the settings: which are given
+} moray_words;
+
 typedef struct moray_program {
     const char *name, *summary;  // summary: what it does, for --help
     const moray_option *options; // its own rows, offsets from the start of its settings
     int n_options;
+    const moray_words *words;   // NULL: no arguments without a flag
+    const char *const *without; // flags of shared options that it does not have, NULL-terminated; NULL: has all
     bool no_robot; // not about snake robots: no --robot, --model, --links, --current, --course and no INI file
 } moray_program;
 

@@ -44,6 +44,7 @@ moray_json *moray_json_new(void);
 void moray_json_open(moray_json *json, const char *key);                 // an object inside the current one
 void moray_json_open_list(moray_json *json, const char *key);            // a list inside the current one
 void moray_json_close(moray_json *json);                                 // back to the enclosing one
+int moray_json_depth(const moray_json *json);                            // how many are open inside the first
 void moray_json_number(moray_json *json, const char *key, double value); // round-trips; NaN and infinity become null
 void moray_json_numbers(moray_json *json, const char *key, const double *values, int n);
 void moray_json_text(moray_json *json, const char *key, const char *text); // NULL becomes null
@@ -114,15 +115,26 @@ typedef struct moray_figure {
 // Error: MORAY_IO saying what gnuplot said; MORAY_INPUT, MORAY_MEMORY as for moray_output_file.
 moray_status moray_output_figure(moray_output *output, const moray_figure *figure);
 
+// A part of a report under its own heading: paragraphs (one a line) or NULL, tables, figures whose names begin with
+// `figures`.
+typedef struct moray_section {
+    const char *title, *text, *figures;
+    const moray_table *tables;
+    int n_tables;
+} moray_section;
+
 typedef struct moray_report {
     const char *title, *text; // text: a paragraph, or NULL
     const moray_table *tables;
     int n_tables;
+    const moray_section *sections;
+    int n_sections;
     int argc; // the command line that made it
     char **argv;
 } moray_report;
 
-// report.html: one self-contained page with the tables and every figure drawn so far. Error: as moray_output_file.
+// report.html: one self-contained page with the tables and every figure drawn so far; those of no section come first.
+// Error: as moray_output_file.
 moray_status moray_output_report(moray_output *output, const moray_report *report);
 
 // ---- Progress ------------------------------------------------------------------------------------------------------

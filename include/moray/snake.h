@@ -41,22 +41,26 @@ moray_status moray_robot_check(const moray_robot *robot);
 
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
-// Gait (25): phi_ref,i(t) = amplitude sin(omega t + (i-1) delta) + offset, i = 1..N-1. amplitude and offset are a and
-// phi_0 in m for the control-oriented model, alpha and phi_0 in rad for the first-principles model.
+// Gait (25): phi_ref,i(t) = A_i sin(omega t + (i-1) delta) + offset, i = 1..N-1. A_i and offset are a and phi_0 in m
+// for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Eel-like motion, beyond the
+// paper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail, to 1 at the
+// last (0 where N = 2). The plants for the transcription, below, know no taper.
 typedef struct moray_gait {
-    double amplitude, omega, delta, offset;
+    double amplitude, omega, delta, offset, taper;
 } moray_gait;
 
 // phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
 void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi);
 
 // Amplitude from the link-angle amplitude theta_max of (24), and back: (27) alpha = 2 sin(delta/2) theta_max;
-// (33) a = 2l cos(delta/2) sin theta_max.
+// (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body: by (1), link i then swings
+// with alpha/(2 sin(delta/2)) sqrt((1 + taper s)^2 + (taper cot(delta/2)/(N-2))^2), by (12) with
+// a/(2l) cos(delta/2) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2), s being s_i halfway between its two joints.
 double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta);
 double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude, double delta);
 
-// The same gait for the other model: equal theta_max, omega, delta; offset in the same ratio to the amplitude, with the
-// opposite sign (erratum E3).
+// The same gait for the other model: equal theta_max, omega, delta, taper; offset in the same ratio to the amplitude,
+// with the opposite sign (erratum E3).
 moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
 
 // ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------
@@ -75,6 +79,18 @@ moray_model moray_swimmer_model(const moray_swimmer *swimmer);
 int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
 
 void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
+
+// How a swimmer of the control-oriented model reads the paper. Misprints can be swum as printed, to see what they do;
+// the plants below have no such choice.
+typedef enum {
+    MORAY_READ_CORRECTED = 0,
+    MORAY_READ_23H_PRINTED = 1, // (23h) with h_4 and h_5 as printed (erratum E1)
+    MORAY_READ_L_PRINTED = 2,   // l of (8), (12), (13) half a link, as everywhere else (erratum E2)
+    MORAY_READ_PRINTED = 3      // both
+} moray_reading;
+
+// Corrected unless set; without effect on the first-principles model.
+void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
 
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].

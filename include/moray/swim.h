@@ -36,6 +36,7 @@ typedef struct moray_swim_plan {
     int n_times;
     moray_swim_observer *observe;
     void *observer;
+    moray_sim_statistics *statistics; // receives those of the run; may be NULL
 } moray_swim_plan;
 
 // Simulates from t0 to t1 in the swimmer's current; x[2N+4] is start and end state, *energy the joint work [J] (may be

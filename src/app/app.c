@@ -27,11 +27,15 @@ moray_exit moray_exit_of(moray_code code)
     return MORAY_EXIT_NOT_SOLVED;
 }
 
-static moray_status assign(const moray_arguments *arguments, void *settings)
+static moray_status assign(const moray_options *options, const moray_arguments *arguments, void *settings)
 {
     for (int i = 0; i < arguments->n; i++) {
         const moray_assignment *item = &arguments->item[i];
         char name[64];
+        if (!item->row) {
+            moray_word_mark(options->words, item->value, settings);
+            continue;
+        }
         snprintf(name, sizeof name, "%s%s", item->by_flag ? "--" : "",
                  item->by_flag ? item->row->flag : item->row->key);
         MORAY_TRY(moray_option_read(item->row, name, item->value, settings));
@@ -43,10 +47,12 @@ static moray_status assign(const moray_arguments *arguments, void *settings)
 static moray_status fill(const moray_options *options, const moray_arguments *arguments, void *settings)
 {
     moray_common *common = settings;
-    MORAY_TRY(assign(arguments, settings));
+    MORAY_TRY(assign(options, arguments, settings));
+    if (options->words)
+        MORAY_TRY(moray_words_check(options->words, settings));
     if (common->robot_file[0])
         MORAY_TRY(moray_ini_read(options, common->robot_file, settings));
-    MORAY_TRY(assign(arguments, settings));
+    MORAY_TRY(assign(options, arguments, settings));
     return moray_common_make_robot(common);
 }
 

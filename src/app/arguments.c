@@ -94,11 +94,22 @@ static moray_status bad_option(const reading *r, const char *argument)
     return moray_error(MORAY_INPUT, "--%s takes no value", match->name);
 }
 
+static moray_status take_word(reading *r, const char *text)
+{
+    const moray_words *words = r->options->words;
+    if (!words)
+        return moray_error(MORAY_INPUT, "unexpected argument %.60s; options begin with --", *text ? text : "(empty)");
+    if (!moray_word_known(words, text))
+        return moray_word_unknown(words, text);
+    add_assignment(r, NULL, false, text);
+    return moray_ok();
+}
+
 static moray_status take_argument(reading *r, int key, const char *value)
 {
     switch (key) {
     case ARGP_KEY_ARG:
-        return moray_error(MORAY_INPUT, "unexpected argument %.60s; options begin with --", *value ? value : "(empty)");
+        return take_word(r, value);
     case KEY_SET:
         return take_set(r, value);
     case KEY_HELP:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "options.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,10 +83,11 @@ static bool is_first_of_section(const moray_options *options, int at)
     return true;
 }
 
-static void print_section(FILE *file, const moray_options *options, const void *settings, const char *section)
+static void print_section(FILE *file, const moray_options *options, const void *settings, const char *section,
+                          bool in_files)
 {
     char name[80], text[80];
-    fprintf(file, "\nKeys for --set, in INI files under [%s]:\n", section);
+    fprintf(file, in_files ? "\nKeys for --set, in INI files under [%s]:\n" : "\nKeys of the %s for --set:\n", section);
     for (int i = 0; i < options->n; i++) {
         const moray_option *row = &options->row[i];
         if (!row->key || strcmp(row->section, section) != 0)
@@ -99,20 +101,44 @@ static void print_section(FILE *file, const moray_options *options, const void *
     }
 }
 
+static void print_noun(FILE *file, const char *noun)
+{
+    for (; *noun; noun++)
+        fputc(toupper((unsigned char)*noun), file);
+}
+
+static void print_words(FILE *file, const moray_words *words)
+{
+    fputc('\n', file);
+    print_noun(file, words->noun);
+    fputs(" is one or more of:\n", file);
+    for (int i = 0; i < words->n; i++)
+        print_entry(file, words->word[i].name, words->word[i].help);
+    print_entry(file, words->all, "all of these");
+}
+
 moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file)
 {
     moray_options options;
     MORAY_TRY(moray_options_new(&options, program));
-    fprintf(file, "Usage: %s [OPTION]...\n", program->name);
+    fprintf(file, "Usage: %s [OPTION]...%s", program->name, program->words ? " " : "\n");
+    if (program->words) {
+        print_noun(file, program->words->noun);
+        fputs("...\n", file);
+    }
     print_wrapped(file, program->summary, 0, 0);
+    if (program->words)
+        print_words(file, program->words);
     print_flags(file, &options, settings);
     for (int i = 0; i < options.n; i++)
         if (options.row[i].key && is_first_of_section(&options, i))
-            print_section(file, &options, settings, options.row[i].section);
+            print_section(file, &options, settings, options.row[i].section, !program->no_robot);
     fputc('\n', file);
+    if (!program->no_robot)
+        print_wrapped(file, "The INI file overrides the defaults, the command line overrides both.", 0, 0);
     print_wrapped(file,
-                  "The INI file overrides the defaults, the command line overrides both. Exit status: 0 solved and "
-                  "certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 interrupted.",
+                  "Exit status: 0 solved and certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 "
+                  "interrupted.",
                   0, 0);
     free(options.row);
     if (fflush(file) || ferror(file))

@@ -59,6 +59,11 @@ void moray_json_close(moray_json *json)
         json->depth--;
 }
 
+int moray_json_depth(const moray_json *json)
+{
+    return json ? json->depth : 0;
+}
+
 // Raw, since cJSON itself prints 15 digits wherever they are right to 1 ulp.
 static cJSON *number(double value)
 {

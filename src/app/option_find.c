@@ -5,6 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool has(const moray_program *program, const moray_option *shared)
+{
+    for (const char *const *flag = program->without; flag && *flag; flag++)
+        if (shared->flag && strcmp(shared->flag, *flag) == 0)
+            return false;
+    return true;
+}
+
 moray_status moray_options_new(moray_options *options, const moray_program *program)
 {
     int n_robot, n_solver;
@@ -15,12 +23,15 @@ moray_status moray_options_new(moray_options *options, const moray_program *prog
     if (!options->row)
         return moray_error(MORAY_MEMORY, "no memory for the table of options");
     options->n = 0;
+    options->words = program->words;
     for (int i = 0; i < program->n_options; i++)
         options->row[options->n++] = program->options[i];
     for (int i = 0; i < n_robot; i++)
-        options->row[options->n++] = robot[i];
+        if (has(program, &robot[i]))
+            options->row[options->n++] = robot[i];
     for (int i = 0; i < n_solver; i++)
-        options->row[options->n++] = solver[i];
+        if (has(program, &solver[i]))
+            options->row[options->n++] = solver[i];
     return moray_ok();
 }
 

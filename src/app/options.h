@@ -10,6 +10,7 @@
 typedef struct moray_options {
     moray_option *row;
     int n;
+    const moray_words *words; // NULL: none
 } moray_options;
 
 // Error: MORAY_MEMORY. Free row with free().
@@ -44,7 +45,15 @@ enum { MORAY_SHOWN_SIZE = 200 };
 void moray_option_allowed(const moray_option *row, char text[MORAY_SHOWN_SIZE]);
 bool moray_option_default(const moray_option *row, const void *settings, char text[MORAY_SHOWN_SIZE]);
 
-// What the command line said, in its order; by_flag tells --flag VALUE from --set KEY=VALUE.
+// Whether the word is on the list, and the error that then names the nearest one.
+bool moray_word_known(const moray_words *words, const char *name);
+moray_status moray_word_unknown(const moray_words *words, const char *name);
+
+// Marks a known word, or all, as given. Error of the check: MORAY_INPUT when none is.
+void moray_word_mark(const moray_words *words, const char *name, void *settings);
+moray_status moray_words_check(const moray_words *words, const void *settings);
+
+// What the command line said, in its order; by_flag tells --flag VALUE from --set KEY=VALUE. A word has no row.
 typedef struct moray_assignment {
     const moray_option *row;
     bool by_flag;

@@ -82,6 +82,48 @@ static void write_argument(FILE *page, const char *argument)
         fputc('\'', page);
 }
 
+static const moray_section *section_of(const moray_report *report, const char *file)
+{
+    for (int i = 0; i < report->n_sections; i++)
+        if (strncmp(file, report->sections[i].figures, strlen(report->sections[i].figures)) == 0)
+            return &report->sections[i];
+    return NULL;
+}
+
+// The figures of one section, or of none.
+static void write_figures(FILE *page, const moray_output *output, const moray_report *report,
+                          const moray_section *section)
+{
+    for (int i = 0; moray_output_name(output, i); i++) {
+        const char *name = moray_output_name(output, i);
+        if (strstr(name, ".svg") && section_of(report, name) == section)
+            embed(page, moray_output_stream(output, i));
+    }
+}
+
+static void write_paragraphs(FILE *page, const char *text)
+{
+    fputs("<p>", page);
+    for (; *text; text++)
+        if (*text == '\n')
+            fputs("</p>\n<p>", page);
+        else
+            escape(page, (char[]){*text, 0});
+    fputs("</p>\n", page);
+}
+
+static void write_section(FILE *page, const moray_output *output, const moray_report *report,
+                          const moray_section *section)
+{
+    element(page, "h2", section->title);
+    fputc('\n', page);
+    if (section->text)
+        write_paragraphs(page, section->text);
+    for (int i = 0; i < section->n_tables; i++)
+        write_table(page, &section->tables[i]);
+    write_figures(page, output, report, section);
+}
+
 static void write_page(FILE *page, const moray_output *output, const moray_report *report)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n", page);
@@ -100,9 +142,9 @@ static void write_page(FILE *page, const moray_output *output, const moray_repor
         element(page, "p", report->text);
     for (int i = 0; i < report->n_tables; i++)
         write_table(page, &report->tables[i]);
-    for (int i = 0; moray_output_name(output, i); i++)
-        if (strstr(moray_output_name(output, i), ".svg"))
-            embed(page, moray_output_stream(output, i));
+    write_figures(page, output, report, NULL);
+    for (int i = 0; i < report->n_sections; i++)
+        write_section(page, output, report, &report->sections[i]);
     fputs("<h2>Made by</h2>\n<pre>", page);
     for (int i = 0; i < report->argc; i++) {
         fputs(i ? " " : "", page);

@@ -6,10 +6,8 @@
 
 #include "app/swim_plant.h"
 
-enum { FINEST = 360 };              // samples of a period, at least
-static const double TURNING = 1e-3; // heading drift of a turning gait [rad a period]
-static const double TREND = 1e-5;   // largest relative change of speed and power a period that counts as steady
-static const double SLOW = 1e-3;    // speeds [m/s] and powers [W] below agree absolutely
+static const double TREND = 1e-5; // largest relative change of speed and power a period that counts as steady
+static const double SLOW = 1e-3;  // speeds [m/s] and powers [W] below agree absolutely
 
 moray_swim_settings moray_swim_settings_default(void)
 {
@@ -21,9 +19,9 @@ static moray_status check(const moray_swim_setup *setup, const moray_gait *gait,
     const moray_swim_settings *settings = &setup->settings;
     if (!(gait->omega > 0 && isfinite(gait->omega)))
         return moray_error(MORAY_INPUT, "omega = %g: a steady gait needs a finite omega above 0", gait->omega);
-    if (!isfinite(gait->amplitude) || !isfinite(gait->delta) || !isfinite(gait->offset))
-        return moray_error(MORAY_INPUT, "gait amplitude = %g, delta = %g, offset = %g: must be finite", gait->amplitude,
-                           gait->delta, gait->offset);
+    if (!isfinite(gait->amplitude) || !isfinite(gait->delta) || !isfinite(gait->offset) || !isfinite(gait->taper))
+        return moray_error(MORAY_INPUT, "gait amplitude = %g, delta = %g, offset = %g, taper = %g: must be finite",
+                           gait->amplitude, gait->delta, gait->offset, gait->taper);
     if (!isfinite(start_heading) || !isfinite(setup->current[0]) || !isfinite(setup->current[1]))
         return moray_error(MORAY_INPUT, "start heading = %g, current = (%g, %g): must be finite", start_heading,
                            setup->current[0], setup->current[1]);

@@ -54,6 +54,8 @@ static moray_status run_plant(swim_plant *plant, const moray_sim_settings *setti
     if (!moray_failed(status)) {
         status = follow(sim, plant, plan);
         memcpy(plant->x, moray_sim_state(sim), (size_t)ode.n * sizeof *plant->x);
+        if (plan->statistics)
+            *plan->statistics = moray_sim_get_statistics(sim);
     }
     moray_sim_free(sim);
     return status;

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+//
+// The paper, to be run: its figures, propositions and properties as studies on both models.
+#include "parts/paper_main.h"
+
+static const paper_study studies[] = {
+    {"straight", "straight motion with growing amplitude: Fig. 7", paper_straight},
+    {"turning", "turning there and back: Fig. 8", paper_turning},
+    {"linearising", "the linearising control law (22)", paper_linearising},
+    {"ground", "the ground robot as a special case", paper_ground},
+    {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
+    {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
+     paper_forces},
+    {"links", "how the links move and what the fluid does to them (Properties 2 and 4)", paper_links},
+    {"offset", "turning rate by joint offset and by speed (Property 3)", paper_offset},
+    {"errata", "the misprints of the paper, swum as printed and as corrected (E1-E4 and the sign in (13))",
+     paper_errata},
+};
+enum { N_STUDIES = sizeof studies / sizeof *studies };
+_Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room for every study");
+
+#define ANGLE(name, field, low, high, in, text)                                                                        \
+    {                                                                                                                  \
+        .section = "problem", .key = name, .type = MORAY_OPTION_REAL, MORAY_AT(paper_settings, field), .min = low,     \
+        .max = high, .open = true, .unit = in, .help = text                                                            \
+    }
+
+_Static_assert(sizeof(moray_reading) == sizeof(int), "choices are stored as int");
+
+static const moray_option options[] = {
+    {.section = "problem",
+     .key = "reading",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(paper_settings, reading),
+     .choices = paper_reading_names,
+     .help = "equations of the control-oriented model: corrected; with (23h) as printed (erratum E1); with l of (8), "
+             "(12), (13) as printed (E2); with both"},
+    {.flag = "as-printed",
+     .type = MORAY_OPTION_BOOL,
+     MORAY_AT(paper_settings, as_printed),
+     .help = "as --set reading=printed"},
+    ANGLE("theta_max_deg", theta_max, 0, 90, "deg", "link-angle amplitude of (24), where a study does not vary it"),
+    ANGLE("omega_deg_s", omega, 0, 3600, "deg/s", "gait frequency, where a study does not vary it"),
+    ANGLE("delta_deg", delta, 0, 180, "deg", "phase shift between joints; 360/(N-1) unless given"),
+};
+
+static paper_settings defaults(void)
+{
+    paper_settings settings = {
+        .common = moray_common_defaults(), .theta_max = 20 * DEG, .omega = 120 * DEG, .delta = NAN};
+    settings.common.current[0] = settings.common.current[1] = 0.1;
+    return settings;
+}
+
+// --as-printed; delta, which by Assumption 2 is 2 pi/(N-1).
+static moray_status complete(paper_settings *settings)
+{
+    if (settings->as_printed)
+        settings->reading = MORAY_READ_PRINTED;
+    const int N = settings->common.robot.links;
+    if (!isnan(settings->delta))
+        return moray_ok();
+    settings->delta = 2 * M_PI / (N - 1);
+    if (N > 3)
+        return moray_ok();
+    return moray_error(MORAY_INPUT,
+                       "links = %d: with delta = 2 pi/(N-1) = %g deg the joints do not move; set delta_deg", N,
+                       settings->delta / DEG);
+}
+
+static moray_status prepare(paper *p, const paper_settings *settings)
+{
+    *p = (paper){.settings = settings,
+                 .robot = &settings->common.robot,
+                 .output = settings->common.output,
+                 .ticker = moray_ticker_start(stderr, settings->common.quiet)};
+    for (int model = 0; model < 2; model++) {
+        p->gait[model] = (moray_gait){.omega = settings->omega, .delta = settings->delta};
+        p->gait[model] = paper_gait(p, (moray_model)model, settings->theta_max);
+    }
+    MORAY_TRY(moray_basin_new(&p->basin, p->robot, settings->common.current, 0));
+    moray_swimmer_set_reading(p->basin.swimmer[MORAY_CONTROL_ORIENTED], settings->reading);
+    p->json = moray_json_new();
+    paper_json_head(p->json, settings);
+    return moray_ok();
+}
+
+// The study's object is closed at the end whatever it left open in it.
+static void run_study(paper *p, const paper_study *study, paper_chapter *chapter)
+{
+    const int depth = moray_json_depth(p->json);
+    *chapter = (paper_chapter){.study = study};
+    p->study = study->name;
+    p->telling = &chapter->telling;
+    if (!p->settings->common.json)
+        printf("---- %s: %s\n\n", study->name, study->summary);
+    paper_progress(p, "%s", study->summary);
+    moray_json_open(p->json, study->name);
+    chapter->status = study->run(p);
+    moray_ticker_end(&p->ticker);
+    if (moray_failed(chapter->status))
+        fprintf(stderr, "paper: %s: %s\n", study->name, chapter->status.text);
+    while (moray_json_depth(p->json) > depth + 1)
+        moray_json_close(p->json);
+    paper_json_end(p->json, chapter->status);
+    moray_json_close(p->json);
+}
+
+static moray_status finish(const paper *p, const paper_chapter *chapters, int n)
+{
+    int failed = 0;
+    for (int i = 0; i < n; i++)
+        failed += moray_failed(chapters[i].status);
+    if (p->output)
+        MORAY_TRY(paper_write(p, chapters, n));
+    if (p->settings->common.json)
+        MORAY_TRY(moray_json_write(p->json, stdout));
+    if (failed)
+        return moray_error(MORAY_NOT_SOLVED, "%d of %d studies failed", failed, n);
+    return moray_ok();
+}
+
+static moray_status work(paper *p)
+{
+    paper_chapter chapters[N_STUDIES];
+    int n = 0;
+    moray_json_open(p->json, "studies");
+    for (int i = 0; i < N_STUDIES; i++)
+        if (p->settings->chosen[i])
+            run_study(p, &studies[i], &chapters[n++]);
+    moray_json_close(p->json);
+    return finish(p, chapters, n);
+}
+
+int main(int argc, char **argv)
+{
+    moray_word word[N_STUDIES];
+    for (int i = 0; i < N_STUDIES; i++)
+        word[i] = (moray_word){.name = studies[i].name, .help = studies[i].summary};
+    const moray_words words = {
+        .noun = "study", .word = word, .n = N_STUDIES, .all = "all", .offset = offsetof(paper_settings, chosen)};
+    static const char *const without[] = {"model", "course", "scheme", "intervals", "tol", NULL};
+    const moray_program program = {
+        .name = "paper",
+        .summary = "Runs studies of the paper on both of its models and shows them beside what it claims.",
+        .options = options,
+        .n_options = sizeof options / sizeof *options,
+        .words = &words,
+        .without = without};
+    paper_settings settings = defaults();
+    paper p = {0};
+    int exit_code;
+    if (!moray_app_start(&program, argc, argv, &settings, &exit_code))
+        return exit_code;
+    moray_status status = complete(&settings);
+    if (!moray_failed(status))
+        status = prepare(&p, &settings);
+    if (!moray_failed(status))
+        status = work(&p);
+    exit_code = moray_app_end(&program, &settings, status);
+    moray_json_free(p.json);
+    moray_basin_free(&p.basin);
+    paper_release(&p);
+    return exit_code;
+}

@@ -1,0 +1,38 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Runs what README.md and results/ show, and writes it there: results/NAME/{command.txt,table.txt,...}, and the table
+# between the lines `<!-- NAME -->` and `<!-- end -->` of README.md. sh results/update.sh [NAME...]; without names, all.
+root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd) || exit 1
+cd "$root" || exit 1
+wanted=" $* "
+
+# show NAME PROGRAM [ARGUMENT...]: one run.
+show() {
+    name=$1
+    shift
+    case $wanted in
+    *" $name "* | "  ") ;;
+    *) return 0 ;;
+    esac
+    mkdir -p "results/$name" || exit 1
+    if ! sh problems/run.sh "$@" --quiet --out "results/$name" >table.tmp; then
+        rm -f table.tmp
+        echo "failed: sh problems/run.sh $*" >&2
+        exit 1
+    fi
+    mv table.tmp "results/$name/table.txt"
+    echo "sh problems/run.sh $*" >"results/$name/command.txt"
+    awk -v name="$name" -v table="results/$name/table.txt" '
+        $0 == "<!-- end -->" { inside = 0 }
+        !inside { print }
+        $0 == "<!-- " name " -->" {
+            inside = 1
+            print "```text"
+            while ((getline line < table) > 0) print line
+            print "```"
+        }' README.md >README.tmp && mv README.tmp README.md
+}
+
+show max_speed max_speed
+show max_speed_free max_speed --set theta_max_deg=1:60
+show min_energy min_energy
