@@ -121,7 +121,7 @@ static void check_suggestion(const moray_ocp_spec *spec, moray_settings settings
         exit(1);
     const moray_nlp_outcome found = moray_solution_info(solution)->outcome;
     if (outcome == GAVE_UP)
-        CHECK(found == MORAY_NLP_INFEASIBLE || found == GAVE_UP, "%s", moray_nlp_outcome_text(found));
+        CHECK(found == MORAY_NLP_INFEASIBLE || found == MORAY_NLP_STALLED, "%s", moray_nlp_outcome_text(found));
     else
         CHECK(found == outcome, "%s", moray_nlp_outcome_text(found));
     check_says(moray_solution_diagnosis(solution), expected);
