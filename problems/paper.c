@@ -6,6 +6,8 @@
 static const paper_study studies[] = {
     {"straight", "straight motion with growing amplitude: Fig. 7", paper_straight},
     {"turning", "turning there and back: Fig. 8", paper_turning},
+    {"linearising", "the linearising control law (22)", paper_linearising},
+    {"ground", "the ground robot as a special case", paper_ground},
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
     {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
      paper_forces},

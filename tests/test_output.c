@@ -193,7 +193,7 @@ static void test_unwritable(void)
 
 static const double t[] = {0, 1, 2, 3}, x[] = {0, 1, NAN, 0.5}, y[] = {1, 2, 3, 4};
 static const moray_curve curves[] = {
-    {.label = "with 'quotes' \"and\" `ls`", .x = t, .y = x, .n = 4},
+    {.label = "with 'quotes' '' \"and\" `ls`", .x = t, .y = x, .n = 4},
     {.label = "b_1^2", .x = t, .y = y, .n = 4, .style = MORAY_CURVE_MARKED},
     {.label = "c", .x = t, .y = y, .n = 2, .stride = 2, .style = MORAY_CURVE_POINTS},
 };
@@ -213,7 +213,7 @@ static void test_figure(void)
     char *svg = content("it's $(touch pwned) \"here\"/figure.svg");
     CHECK(strstr(svg, "<svg") && strstr(svg, "</svg>"), "a whole SVG");
     CHECK(strstr(svg, "time [s]") && strstr(svg, "θ [deg]") && strstr(svg, "b_1^2"), "axes and legend as given");
-    CHECK(strstr(svg, "with 'quotes' \"and\" `ls`"), "quotes are only quotes");
+    CHECK(strstr(svg, "with 'quotes' '' \"and\" `ls`"), "quotes are only quotes");
     CHECK(strstr(svg, "touch pwned") && access("pwned", F_OK) != 0 && entries("it's $(touch pwned) \"here\"") == 1,
           "a title is no command");
     CHECK(strstr(svg, "rgb(  0, 114, 178)") && strstr(svg, "rgb(213,  94,   0)") && strstr(svg, "stroke-dasharray"),

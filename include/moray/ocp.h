@@ -147,6 +147,10 @@ typedef struct moray_ocp_derivative_report {
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at any of the points.
 moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report);
 
+// Number of phases; states and controls of one of them.
+int moray_ocp_phases(const moray_ocp *ocp);
+void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
+
 // ---- Trajectories, guesses
 // -----------------------------------------------------------------------------------------------
 
@@ -249,11 +253,13 @@ const char *moray_solution_diagnosis(const moray_solution *solution);
 typedef struct moray_certificate {
     bool pass;
     double kkt;           // optimality and feasibility in user units; limit 100 x tolerance
-    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|); limit mesh_tolerance
+    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|), and of the same of
+                          // integrands g and integrals q; limit mesh_tolerance
     double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
                           // x mesh_tolerance
-    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes when each phase is integrated again
-                          // from its start with the found controls; limit 100 x mesh_tolerance
+    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
+                          // when each phase is integrated again from its start with the found controls; limit 100 x
+                          // mesh_tolerance
     double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
                           // functions do not depend on time, where theory has it constant; NaN without such a phase
 } moray_certificate;

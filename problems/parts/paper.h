@@ -45,7 +45,7 @@ typedef struct paper {
 // Does the study and tells what it finds. An error ends this study only: its text says why.
 typedef moray_status paper_run(paper *p);
 
-paper_run paper_straight, paper_turning;
+paper_run paper_straight, paper_turning, paper_linearising, paper_ground;
 paper_run paper_mapping, paper_forces, paper_links, paper_offset, paper_errata;
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------

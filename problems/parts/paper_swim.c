@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "paper_swim.h"
 
+static void release_swimmer(void *swimmer)
+{
+    moray_swimmer_free(swimmer);
+}
+
+moray_status paper_swimmer_in(paper *p, const moray_robot *robot, moray_model model, const double current[2],
+                           moray_swimmer **swimmer)
+{
+    MORAY_TRY(moray_swimmer_new(swimmer, robot, model));
+    moray_swimmer_set_current(*swimmer, current[0], current[1]);
+    return paper_own(p, *swimmer, release_swimmer);
+}
+
 moray_status paper_swim_at(paper *p, const paper_swim_plan *plan, const double *times, int n, moray_swim_track **track)
 {
     moray_swimmer *swimmer = plan->swimmer ? plan->swimmer : p->basin.swimmer[plan->model];

@@ -6,6 +6,10 @@
 
 #include "paper.h"
 
+// A swimmer of a robot in a current, p's own. Error: MORAY_INPUT (robot), MORAY_MEMORY.
+moray_status paper_swimmer_in(paper *p, const moray_robot *robot, moray_model model, const double current[2],
+                           moray_swimmer **swimmer);
+
 // What is swum: from rest at (0, p_y), straight along x, with the gaits of a schedule.
 typedef struct paper_swim_plan {
     moray_model model;

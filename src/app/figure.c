@@ -21,13 +21,14 @@ static const struct {
 };
 enum { N_LOOKS = sizeof looks / sizeof *looks };
 
-// A text in gnuplot's single quotes, where only the quote itself and a line's end mean something.
+// A text in gnuplot's single quotes, where only the quote itself and a line's end mean something; quotes are appended in
+// double ones, for gnuplot cannot read two of them doubled.
 static void quote(FILE *script, const char *text)
 {
     fputc('\'', script);
     for (const char *c = text ? text : ""; *c; c++)
         if (*c == '\'')
-            fputs("''", script);
+            fputs("'.\"'\".'", script);
         else
             fputc((unsigned char)*c < ' ' ? ' ' : *c, script);
     fputc('\'', script);
