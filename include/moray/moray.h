@@ -8,6 +8,8 @@
 #include "moray/gait_problem.h"
 #include "moray/gait_search.h"
 #include "moray/gait_trial.h"
+#include "moray/heading.h"
+#include "moray/helm.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"
@@ -21,6 +23,7 @@
 #include "moray/sim.h"
 #include "moray/snake.h"
 #include "moray/status.h"
+#include "moray/steering.h"
 #include "moray/swim.h"
 
 #endif
