@@ -10,7 +10,7 @@
 #include <string.h>
 
 enum { MOST_ITERATIONS = 40, MOST_HALVINGS = 8 };
-static const double CLOSED = 1e-11; // largest defect that counts as none
+static const double CLOSED = 1e-12; // largest defect that counts as none
 
 moray_orbit_spec moray_orbit_spec_default(const moray_robot *robot, moray_model model)
 {
