@@ -19,7 +19,7 @@ moray_status moray_gait_search_new(moray_gait_search **search, const moray_gait_
                                    int intervals);
 void moray_gait_search_free(moray_gait_search *search);
 
-// Searches for the fastest gait along the course from *gait, and leaves the best one found there, with its orbit in
+// Searches from *gait for the gait of the problem's goal, and leaves the best one found there, with its orbit in
 // *result: of those within the limits, unless info->violation says (relative to the limit) that there is none. Error:
 // those of moray_search and moray_orbit_solve.
 moray_status moray_gait_search_run(moray_gait_search *search, const moray_search_settings *settings, moray_gait *gait,

@@ -64,7 +64,7 @@ typedef struct moray_floquet {
     double complex multiplier[6];
     moray_mode mode[6]; // translations, rotation, then the others, the largest in modulus first
     double largest;     // modulus among the others
-    bool stable;        // it is below 1
+    bool stable;        // it is below 1 by more than 1e-9, about what rounding and mesh leave
 } moray_floquet;
 moray_status moray_orbit_floquet(moray_orbit *orbit, moray_floquet *floquet);
 

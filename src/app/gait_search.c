@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VARIABLES = 3, MOST_LIMITS = 5 }; // theta_max, omega, delta; power, rate, effort, offset from above and below
+enum { VARIABLES = 3 }; // theta_max, omega, delta
 
 struct moray_gait_search {
     moray_gait_problem_spec spec;
@@ -106,17 +106,18 @@ static void by_variables(const moray_gait_search *search, const double *x, const
     out[2] = scale * (by[2] + by[0] * by_delta);
 }
 
-// Places one limit: value / limit <= 1.
+// Where constraints go.
 struct limits_writer {
     const moray_gait_search *search;
     const double *x;
     double *c, *jacobian; // jacobian NULL: not wanted
 };
 
-static void write_limit(struct limits_writer *to, double value, const double *by, double limit)
+// (value - limit) / unit <= 0, for a value with derivatives by (amplitude, omega, delta).
+static void write_limit(struct limits_writer *to, double value, const double *by, double limit, double unit)
 {
-    *to->c++ = value / limit - 1;
-    by_variables(to->search, to->x, by, 1 / limit, to->jacobian);
+    *to->c++ = (value - limit) / unit;
+    by_variables(to->search, to->x, by, 1 / unit, to->jacobian);
     to->jacobian += to->jacobian ? VARIABLES : 0;
 }
 
@@ -127,18 +128,35 @@ static void write_limits(const moray_gait_search *search, const double *x, const
     const double amplitude = at->gait.amplitude, omega = at->gait.omega, rate[4] = {omega, amplitude, 0, 0};
     struct limits_writer to = {search, x, c, jacobian};
     if (limited(limits->power))
-        write_limit(&to, at->steady.power, by->power, limits->power);
+        write_limit(&to, at->steady.power, by->power, limits->power, limits->power);
     if (limited(limits->joint_rate))
-        write_limit(&to, amplitude * omega, rate, limits->joint_rate);
+        write_limit(&to, amplitude * omega, rate, limits->joint_rate, limits->joint_rate);
     if (limited(limits->joint_effort))
-        write_limit(&to, at->steady.peak_effort, by->peak_effort, limits->joint_effort);
+        write_limit(&to, at->steady.peak_effort, by->peak_effort, limits->joint_effort, limits->joint_effort);
+    if (limits->course_speed > 0)
+        write_limit(&to, moray_course_speed(&at->steady, search->spec.course), by->course_speed, limits->course_speed,
+                    -limits->course_speed);
     if (flows(&search->spec)) {
         const double unit = search->spec.model == MORAY_FIRST_PRINCIPLES ? 1 : 2 * search->spec.robot.l;
-        *to.c++ = (at->gait.offset - limits->offset.upper) / unit;
-        by_variables(search, x, by->steering, 1 / unit, to.jacobian);
-        *to.c++ = (limits->offset.lower - at->gait.offset) / unit;
-        by_variables(search, x, by->steering, -1 / unit, to.jacobian ? to.jacobian + VARIABLES : NULL);
+        write_limit(&to, at->gait.offset, by->steering, limits->offset.upper, unit);
+        write_limit(&to, at->gait.offset, by->steering, limits->offset.lower, -unit);
     }
+}
+
+// Minus the speed along the course, or joint work per distance along it.
+static double write_goal(const moray_gait_search *search, const double *x, const moray_orbit_result *at,
+                         const moray_orbit_gradient *by, double *gradient)
+{
+    const double speed = moray_course_speed(&at->steady, search->spec.course), power = at->steady.power;
+    double thrift[VARIABLES];
+    if (search->spec.goal == MORAY_GAIT_FASTEST) {
+        by_variables(search, x, by->course_speed, -1, gradient);
+        return -speed;
+    }
+    for (int p = 0; p < VARIABLES; p++)
+        thrift[p] = by->power[p] / speed - by->course_speed[p] * power / (speed * speed);
+    by_variables(search, x, thrift, 1, gradient);
+    return power / speed;
 }
 
 static bool evaluate(void *self, const double *x, double *f, double *c, double *gradient, double *jacobian)
@@ -146,12 +164,11 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     moray_gait_search *search = self;
     const moray_gait gait = gait_at(search, x);
     moray_orbit_result at;
-    moray_orbit_gradient by;
+    moray_orbit_gradient by = {0};
     if (moray_failed(moray_orbit_solve(search->orbit, &gait, &at)) ||
         (gradient && moray_failed(moray_orbit_gradients(search->orbit, &by))))
         return false;
-    *f = -moray_course_speed(&at.steady, search->spec.course);
-    by_variables(search, x, by.course_speed, -1, gradient);
+    *f = write_goal(search, x, &at, &by, gradient);
     write_limits(search, x, &at, &by, c, jacobian);
     return true;
 }

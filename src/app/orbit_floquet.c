@@ -9,6 +9,7 @@
 #include "moray/dense.h"
 
 enum { NX = ORBIT_STATES };
+static const double NEUTRAL = 1e-9; // a multiplier as near to 1 says nothing
 
 // A y = B y_0 for the deviations y of the nodes after the interval's first, from its defects: A[m][m], B[m][NX],
 // m = (points - 1) NX.
@@ -99,7 +100,7 @@ static void sort_out(const moray_orbit *orbit, moray_floquet *floquet)
     for (int k = 0; k < 6; k++)
         floquet->mode[k] = k < 2 ? MORAY_MODE_TRANSLATION : k < 2 + first ? MORAY_MODE_ROTATION : MORAY_MODE_OTHER;
     floquet->largest = cabs(lambda[first]);
-    floquet->stable = floquet->largest < 1;
+    floquet->stable = floquet->largest < 1 - NEUTRAL;
 }
 
 // Nothing depends on the position: two multipliers are 1, and the others those of the rest of the motion. (With the

@@ -57,7 +57,11 @@ struct session {
     double *lower, *upper, *tolerance; // as NLopt has them
     bool any, defined, sloped;         // there is a last point; it is defined; its gradients are known
     bool found;                        // there is a best point
+    int repeats;                       // of one point in succession
+    bool stalled;                      // they were too many
 };
+
+enum { MOST_REPEATS = 20 }; // a local method that asks more often for one point gets no further for rounding
 
 static double now(void)
 {
@@ -103,7 +107,13 @@ static void tell(struct session *s)
 static void evaluate(struct session *s, const double *x, bool slopes)
 {
     const moray_search_problem *p = s->problem;
-    if (s->any && memcmp(x, s->last.x, (size_t)p->n * sizeof *x) == 0 && (s->sloped || !slopes))
+    const bool again = s->any && memcmp(x, s->last.x, (size_t)p->n * sizeof *x) == 0;
+    s->repeats = again ? s->repeats + 1 : 0;
+    if (s->repeats == MOST_REPEATS && !methods[s->settings->method].global) {
+        s->stalled = true;
+        nlopt_force_stop(s->opt);
+    }
+    if (again && (s->sloped || !slopes))
         return;
     memcpy(s->last.x, x, (size_t)p->n * sizeof *x);
     s->any = true;
@@ -230,8 +240,10 @@ static bool set_up(struct session *s)
 
 // ---- Running -------------------------------------------------------------------------------------------------------
 
-static moray_search_outcome outcome_of(nlopt_result result)
+static moray_search_outcome outcome_of(const struct session *s, nlopt_result result)
 {
+    if (result == NLOPT_FORCED_STOP && s->stalled)
+        return MORAY_SEARCH_CONVERGED;
     switch (result) {
     case NLOPT_SUCCESS:
     case NLOPT_STOPVAL_REACHED:
@@ -278,7 +290,7 @@ static moray_status run(struct session *s, double *x)
         x[j] = fmax(p->lower[j], fmin(p->upper[j], x[j]));
     nlopt_srand(s->settings->seed);
     const nlopt_result result = nlopt_optimize(s->opt, x, &f);
-    s->info->outcome = outcome_of(result);
+    s->info->outcome = outcome_of(s, result);
     if (result == NLOPT_OUT_OF_MEMORY)
         return moray_error(MORAY_MEMORY, "no memory for a search in %d variables", p->n);
     if (result == NLOPT_INVALID_ARGS)
