@@ -4,6 +4,7 @@
 #ifndef MORAY_HEADING_H
 #define MORAY_HEADING_H
 
+#include "moray/helm.h"
 #include "moray/steering.h"
 
 // A reference heading over time: straight lines between points, constant outside them; two points at one time make a
@@ -23,6 +24,9 @@ void moray_reference_free(moray_reference *reference);
 // Heading [rad] and its rate at t.
 double moray_reference_at(const moray_reference *reference, double t, double *rate);
 
+// Largest rate within [t0, t1], jumps aside [rad/s].
+double moray_reference_fastest(const moray_reference *reference, double t0, double t1);
+
 // The intervals of equal length on [t0, t1], at least `least` and at most 1.3 times as many, whose ends lie nearest to
 // the jumps: a collocation scheme that uses no point twice (radau, gauss) then integrates the error exactly.
 int moray_reference_intervals(const moray_reference *reference, double t0, double t1, int least);
@@ -40,23 +44,43 @@ typedef struct moray_heading_task moray_heading_task;
 typedef struct moray_heading_spec {
     moray_robot robot;
     moray_model model;
-    bool averaged;
+    bool averaged;     // on the period-averaged plant
     double current[2]; // [m/s]
     moray_steering_limits limits;
     moray_heading_weights weight;
     const moray_reference *reference; // must outlive the problem
-    double undulation[2];             // of the heading: factors of cos and sin of omega t [rad]
     double max_error;                 // largest |error| allowed [rad]; MORAY_INFINITY: any
     double t0, t1;
     double start[MORAY_STEERING_STATES]; // state at t0
+    double undulation[2];                // of the heading: factors of cos and sin of omega t [rad]
 } moray_heading_spec;
 
-// Error: those of moray_steering_new. Free with moray_heading_free.
 typedef struct moray_heading {
     moray_steering *steering;
     moray_heading_task *task;
 } moray_heading;
+
+// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_heading_free.
 moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec);
 void moray_heading_free(moray_heading *problem);
+
+// A plan from t = 0 on that begins in the straight cruise of its own gait.
+typedef struct moray_heading_plan {
+    moray_heading problem;
+    moray_solution *solution;
+    moray_cruise cruise; // of the gait found: its speed is the start's, its undulation is what the error leaves out
+    int rounds;          // solves until these agreed
+    double seconds;      // of all of them
+} moray_heading_plan;
+
+// Solves; start and undulation of the spec are set by this, t0 is 0. Starts from the plan `from` (of any model,
+// averaged or not; its gait is where the search begins), or with NULL from the reference as though it were followed by
+// `gait`. Where the gait is free the cruise is found again and the plan made anew until they agree. Errors: those of
+// moray_heading_new, moray_cruise_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or not. Free
+// with moray_heading_plan_free.
+moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
+                                     const moray_settings *settings, const moray_gait *gait,
+                                     const moray_heading_plan *from);
+void moray_heading_plan_free(moray_heading_plan *plan); // safe on a zeroed plan, and twice
 
 #endif

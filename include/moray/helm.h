@@ -25,6 +25,9 @@ typedef struct moray_cruise {
 moray_status moray_cruise_find(moray_cruise *cruise, const moray_robot *robot, moray_model model,
                                const moray_gait *gait);
 
+// By how much a gait turns whose offset stays what it is, in still water [rad/s]. Error: as above.
+moray_status moray_turn_rate(const moray_robot *robot, moray_model model, const moray_gait *gait, double *rate);
+
 // The state of a steering problem that swims so at t = 0, with this mean heading, in the current, from p = 0.
 void moray_cruise_start(const moray_cruise *cruise, double heading, const double current[2],
                         double state[MORAY_STEERING_STATES]);

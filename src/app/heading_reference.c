@@ -140,12 +140,25 @@ double moray_reference_at(const moray_reference *reference, double t, double *ra
         else
             high = middle;
     }
-    if (low == 0)
-        return heading[0];
-    if (low == n)
-        return heading[n - 1];
+    if (low == 0 || low == n)
+        return heading[low == 0 ? 0 : n - 1];
     *rate = (heading[low] - heading[low - 1]) / (time[low] - time[low - 1]);
     return heading[low - 1] + *rate * (t - time[low - 1]);
+}
+
+double moray_reference_fastest(const moray_reference *reference, double t0, double t1)
+{
+    if (reference->n == 0)
+        return fabs(reference->amplitude) * 2 * M_PI / reference->period;
+    double fastest = 0, rate;
+    for (int k = 1; k < reference->n; k++) {
+        const double from = fmax(reference->time[k - 1], t0), to = fmin(reference->time[k], t1);
+        if (to > from) {
+            moray_reference_at(reference, to, &rate);
+            fastest = fmax(fastest, fabs(rate));
+        }
+    }
+    return fastest;
 }
 
 // Sum over the jumps within (t0, t1) of their distance to the nearest of k equal intervals' ends, per interval.

@@ -67,6 +67,19 @@ moray_status moray_cruise_find(moray_cruise *cruise, const moray_robot *robot, m
     return status;
 }
 
+moray_status moray_turn_rate(const moray_robot *robot, moray_model model, const moray_gait *gait, double *rate)
+{
+    moray_orbit_spec spec = moray_orbit_spec_default(robot, model);
+    moray_orbit *orbit;
+    moray_orbit_result found;
+    spec.steered = false;
+    MORAY_TRY(moray_orbit_new(&orbit, &spec));
+    const moray_status status = moray_orbit_solve(orbit, gait, &found);
+    *rate = moray_failed(status) ? NAN : found.steady.heading_drift;
+    moray_orbit_free(orbit);
+    return status;
+}
+
 void moray_cruise_start(const moray_cruise *cruise, double heading, const double current[2],
                         double state[MORAY_STEERING_STATES])
 {
