@@ -83,7 +83,8 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
 // Optimality of an iterate, computed from the callbacks alone, in the user's units (nothing scaled).
 typedef struct moray_kkt {
     double stationarity;    // largest |d L / d x_j| / dual_scale
-    double feasibility;     // largest violation of a constraint or bound / (1 + |bound|)
+    double feasibility;     // largest violation of a bound / (1 + |bound|), or of a constraint / (1 + |bound| + its
+                            // largest |slope x_j|): metres of an orbit are not known to a micron
     double complementarity; // largest |multiplier x slack| / dual_scale
     double dual_scale;      // max(1, mean |multiplier|)
     double error;           // the largest of the three
