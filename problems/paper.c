@@ -96,6 +96,7 @@ static moray_status prepare(paper *p, const paper_settings *settings)
         p->gait[model] = paper_gait(p, (moray_model)model, settings->theta_max);
     }
     MORAY_TRY(moray_basin_new(&p->basin, p->robot, settings->common.current, 0));
+    p->basin.settings.sim.max_steps = 20000; // between samples; a misprint can make motion without end
     moray_swimmer_set_reading(p->basin.swimmer[MORAY_CONTROL_ORIENTED], settings->reading);
     p->json = moray_json_new();
     paper_json_head(p->json, settings);

@@ -12,27 +12,42 @@
 
 #define DEG (M_PI / 180)
 
-static void test_endpoint(bool revolute, bool limits)
+static void test_endpoint(bool revolute, bool limits, moray_gait_goal goal)
 {
-    struct gait_endpoint ends = {
-        .nx = 6, .position = 1, .course = {0.6, 0.8}, .revolute = revolute, .L = 0.14, .power = limits, .rate = limits};
+    struct gait_endpoint ends = {.nx = 6,
+                                 .position = 1,
+                                 .course = {0.6, 0.8},
+                                 .revolute = revolute,
+                                 .L = 0.14,
+                                 .goal = goal,
+                                 .power = limits,
+                                 .rate = limits,
+                                 .speed = limits};
     moray_map map;
     moray_derivative_report report;
     unsigned long long seed = 3;
     double in[19], weight[16], out[16];
     CHECK_OK(gait_endpoint_map(&map, &ends), "ends");
-    CHECK(map.n_in == 19 && map.n_out == 1 + 4 + 3 + 2 * limits, "sizes: %d in, %d out", map.n_in, map.n_out);
+    CHECK(map.n_in == 19 && map.n_out == 1 + 4 + 3 + 3 * limits, "sizes: %d in, %d out", map.n_in, map.n_out);
     for (int i = 0; i < 19; i++)
         in[i] = tap_random(&seed, 0.3, 1.5);
+    in[8] += 2; // work per distance wants some way made
     for (int i = 0; i < 16; i++)
         weight[i] = tap_random(&seed, -1, 1);
     CHECK_OK(moray_check_derivatives(&map, in, weight, &report), "check");
     CHECK(report.jacobian_error < 1e-10 && report.hessian_error < 1e-9, "%s joints: Jacobian %.1e, Hessian %.1e",
           revolute ? "revolute" : "prismatic", report.jacobian_error, report.hessian_error);
     map.value(map.self, in, out);
-    const double dx = in[8] - in[1], dy = in[9] - in[2];
-    CHECK_NEAR(out[0], -(0.6 * dx + 0.8 * dy) / in[13], 1e-14, "objective: minus the course speed");
+    const double dx = in[8] - in[1], dy = in[9] - in[2], along = 0.6 * dx + 0.8 * dy;
+    CHECK_NEAR(out[0], goal == MORAY_GAIT_FASTEST ? -along / in[13] : in[14] / along, 1e-14, "the goal");
     CHECK_NEAR(out[5], 0.6 * dy - 0.8 * dx, 1e-14, "displacement across the course");
+    CHECK_NEAR(out[6], in[16] * in[13], 1e-14, "omega T");
+    CHECK_NEAR(out[7], in[15] / (revolute ? 2 * sin(in[17] / 2) : 0.14 * cos(in[17] / 2)), 1e-14, "(27) or (33)");
+    if (limits) {
+        CHECK_NEAR(out[8], in[14] / in[13], 1e-14, "mean power");
+        CHECK_NEAR(out[9], in[15] * in[16], 1e-14, "rate amplitude");
+        CHECK_NEAR(out[10], along / in[13], 1e-14, "speed along the course");
+    }
     gait_endpoint_free(&ends);
 }
 
@@ -169,6 +184,66 @@ static void test_first_principles(void)
     moray_basin_free(&basin);
 }
 
+// The two goals are each other's mirror: the thriftiest gait at the speed of the fastest has its power and is it.
+static void test_goals_agree(moray_model model)
+{
+    moray_gait_problem_spec spec = default_spec(model, paper_power(model));
+    const struct outcome fastest = solve(&spec, "lobatto5", 12);
+    spec.goal = MORAY_GAIT_THRIFTIEST;
+    spec.limits.power = MORAY_INFINITY;
+    spec.limits.course_speed = fastest.promise.course_speed;
+    const struct outcome thriftiest = solve(&spec, "lobatto5", 12);
+    CHECK(thriftiest.certificate.pass, "certificate: KKT %.1e", thriftiest.certificate.kkt);
+    CHECK_NEAR(thriftiest.promise.course_speed, fastest.promise.course_speed, 1e-7, "at the speed asked for");
+    CHECK_NEAR(thriftiest.promise.power, paper_power(model), 1e-6, "thriftiest at the fastest's speed: its power");
+    CHECK_NEAR(thriftiest.promise.gait.delta, fastest.promise.gait.delta, 1e-4, "and its gait");
+    spec.limits.course_speed = 0.05;
+    const struct outcome slow = solve(&spec, "lobatto5", 12);
+    CHECK(slow.promise.course_speed >= 0.05 - 1e-7 &&
+              slow.promise.power / slow.promise.speed < 0.5 * thriftiest.promise.power / thriftiest.promise.speed,
+          "slower and far thriftier: %.4g J/m at %.4g m/s", slow.promise.power / slow.promise.speed,
+          slow.promise.speed);
+}
+
+// By simulation: no gait beside the thriftiest needs less power at the same speed.
+static void test_thriftiest_by_simulation(void)
+{
+    moray_gait_problem_spec spec = default_spec(MORAY_FIRST_PRINCIPLES, MORAY_INFINITY);
+    spec.goal = MORAY_GAIT_THRIFTIEST;
+    spec.limits.course_speed = 0.2293;
+    const struct outcome best = solve(&spec, "lobatto5", 12);
+    moray_basin basin;
+    moray_steady steady;
+    CHECK_OK(moray_basin_new(&basin, &spec.robot, spec.current, 0), "basin");
+    const moray_swim_setup setup = moray_basin_setup(&basin, spec.model);
+    CHECK_OK(moray_swim_steady(&setup, &best.promise.gait, 0, &steady, NULL, 0), "simulated");
+    CHECK_NEAR(steady.power, best.promise.power, 1e-5, "simulated power");
+    for (int k = 0; k < 3; k++) {
+        moray_gait gait = best.promise.gait;
+        gait.delta += (k == 0 ? 2 : k == 1 ? -2 : 0) * DEG;
+        gait.amplitude = moray_amplitude_from_theta_max(&spec.robot, spec.model, (k == 2 ? 19 : 20) * DEG, gait.delta);
+        CHECK_OK(moray_swim_match_speed(&setup, &gait, 0, best.promise.speed, &steady), "at the same speed");
+        CHECK(steady.power > best.promise.power * 1.0005, "a gait beside it needs %.3f %% more power",
+              100 * (steady.power / best.promise.power - 1));
+    }
+    moray_basin_free(&basin);
+}
+
+// In a current work is counted by the way made good over ground.
+static void test_thriftiest_in_current(void)
+{
+    moray_gait_problem_spec spec = default_spec(MORAY_CONTROL_ORIENTED, MORAY_INFINITY);
+    spec.goal = MORAY_GAIT_THRIFTIEST;
+    spec.current[0] = -0.08;
+    const struct outcome head = solve(&spec, "lobatto5", 12);
+    CHECK(head.promise.gait.omega > 40 * DEG && head.promise.course_speed > 0.03,
+          "against a current it does not pay to be slow: %.4g m/s over ground, omega %.4g deg/s",
+          head.promise.course_speed, head.promise.gait.omega / DEG);
+    spec.current[0] = 0.08;
+    const struct outcome tail = solve(&spec, "lobatto5", 12);
+    CHECK_NEAR(tail.promise.gait.omega, 30 * DEG, 1e-5, "with it, it does");
+}
+
 static void refuses(moray_gait_problem_spec spec, const char *text)
 {
     moray_gait_problem *problem;
@@ -186,6 +261,8 @@ static void test_refusals(void)
     refuses(spec, "power_W = -1");
     spec = good, spec.limits.theta_max.upper = NAN;
     refuses(spec, "theta_max_deg");
+    spec = good, spec.limits.course_speed = -0.1;
+    refuses(spec, "speed_m_s = -0.1");
     spec = good, spec.current[0] = INFINITY;
     refuses(spec, "current = inf");
     spec = good, spec.joints = MORAY_JOINTS_FREE;
@@ -196,11 +273,15 @@ static void test_refusals(void)
 
 int main(void)
 {
-    for (int k = 0; k < 4; k++)
-        test_endpoint(k & 1, k & 2);
+    for (int k = 0; k < 8; k++)
+        test_endpoint(k & 1, k & 2, k & 4 ? MORAY_GAIT_THRIFTIEST : MORAY_GAIT_FASTEST);
     test_default();
     test_current_and_limits();
     test_first_principles();
+    test_goals_agree(MORAY_CONTROL_ORIENTED);
+    test_goals_agree(MORAY_FIRST_PRINCIPLES);
+    test_thriftiest_by_simulation();
+    test_thriftiest_in_current();
     test_refusals();
     return tap_done();
 }

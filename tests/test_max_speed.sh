@@ -1,41 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The program max_speed as a user meets it. Arguments: the program, the source directory.
-case $1 in
-/*) program=$1 ;;
-*) program=$PWD/$1 ;;
-esac
-source=$2
-. "$source/tests/tap.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-
-run() {
-    "$program" "$@" >out 2>err </dev/null
-    code=$?
-}
-
-# number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
-number() {
-    [ $# -eq 1 ] && set -- . "$1"
-    awk -v block="\"$1\"" -v key="\"$2\"" 'index($0, block) || block == "\".\"" { seen = 1 }
-        seen && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
-}
-
-# near VALUE EXPECTED TOLERANCE
-near() {
-    awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { exit !(a != "" && a - b <= t && b - a <= t) }'
-}
-
-# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it, no --out.
-refuse() {
-    text=$1
-    shift
-    run "$@" --json --out fresh
-    check "exit 2: $(cat err)" [ $code -eq 2 ]
-    check "one line that says '$text'" eval '[ "$(wc -l <err)" -eq 1 ] && grep -qF -e "$text" err'
-    check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
-}
+. "$2/tests/program.sh"
 
 # ---- The control-oriented model, from the paper's gait and from 20 random starts (paper-notes, section 5)
 run --model control --json --set random_starts=20 --out results
@@ -83,6 +48,11 @@ run --current=-0.5,0
 check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.5000 m/s of it run against" err'
 run --current 0,0.4
 check "a cross current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.4000 m/s of it run across" err'
+
+# ---- Interrupted: ends at the next iteration, says so, leaves nothing (timeout sends what Ctrl-C sends)
+timeout --preserve-status -s INT 2 "$program" --set random_starts=10000 --out interrupted >out 2>err </dev/null
+code=$?
+check "Ctrl-C is told and leaves nothing: $(cat err)" eval '[ $code -eq 130 ] && one_line && grep -q interrupted err && [ ! -s out ] && [ ! -e interrupted ]'
 
 # ---- Bad input
 printf '[robot]\nlinks = 10\nspeed = 3\n' >unknown.ini

@@ -76,6 +76,10 @@ static void test_brachistochrone(void)
     CHECK_OK(moray_ocp_new(
                  &ocp, &(moray_ocp_spec){.name = "brachistochrone", .phases = 1, .phase = &wire, .endpoint = arrival}),
              "brachistochrone");
+    int nx, nu;
+    moray_ocp_widths(ocp, 0, &nx, &nu);
+    CHECK(moray_ocp_phases(ocp) == 1 && nx == 3 && nu == 1, "sizes: %d phase of %d states, %d control",
+          moray_ocp_phases(ocp), nx, nu);
     moray_solution *solution = solve(ocp, "lobatto5", 10, NULL);
     CHECK_RELATIVE(moray_solution_objective(solution), 1.80160312, 1e-8, "published time");
     moray_certificate certificate;
@@ -198,6 +202,39 @@ static void test_order(void)
     moray_ocp_free(ocp);
 }
 
+// ---- An integrand that vanishes at every node: x' = 0, q = integral of sin^2(20 pi t) over [0, 1] = 1/2 ----
+
+static void ripple(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num wave = sin(20 * M_PI * at->t);
+    out->f[0] = 0 * at->x[0];
+    out->g[0] = wave * wave;
+}
+
+static void test_integrals_are_certified(void)
+{
+    moray_ocp *ocp;
+    const moray_phase_spec phase = {.name = "ripple",
+                                    .nx = 1,
+                                    .nq = 1,
+                                    .continuous = ripple,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(1))};
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "ripple", .phases = 1, .phase = &phase, .endpoint = energy}),
+             "integrand that ripples");
+    moray_solution *solution = solve(ocp, "hermite-simpson", 10, NULL);
+    moray_certificate certificate;
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK_NEAR(moray_solution_integrals(solution, 0)[0], 0, 1e-12, "the nodes see nothing");
+    CHECK(!certificate.pass && certificate.mesh_error > 0.01, "mesh error of the integral: %.2g",
+          certificate.mesh_error);
+    CHECK_NEAR(certificate.resimulation, 0.5, 1e-6, "integral found by simulating again");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- Bad input and failure ----
 
 static void test_refusals(void)
@@ -267,6 +304,7 @@ int main(void)
     test_brachistochrone();
     test_costates();
     test_order();
+    test_integrals_are_certified();
     test_refusals();
     test_infeasible_is_explained();
     return tap_done();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The optimal-gait problem: the periodic orbit of a swimming robot and the gait (25) that makes it the fastest along a
-// course.
+// course, or the thriftiest.
 #ifndef MORAY_GAIT_PROBLEM_H
 #define MORAY_GAIT_PROBLEM_H
 
@@ -19,11 +19,18 @@ typedef struct moray_gait_limits {
     double power;           // mean joint power [W]
     double joint_rate;      // amplitude of phi' [m/s or rad/s]
     double joint_effort;    // |u_i| [N or N m], at the nodes of the mesh
+    double course_speed;    // least speed along the course [m/s]; 0: none
 } moray_gait_limits;
+
+typedef enum {
+    MORAY_GAIT_FASTEST,   // largest speed along the course
+    MORAY_GAIT_THRIFTIEST // least joint work per distance along the course
+} moray_gait_goal;
 
 typedef struct moray_gait_problem_spec {
     moray_robot robot;
     moray_model model;
+    moray_gait_goal goal;
     moray_joints joints; // MORAY_JOINTS_ON_GAIT; or MORAY_JOINTS_CLOSED_LOOP, control-oriented model only
     double current[2];   // [m/s]
     double course;       // [rad]
@@ -33,7 +40,7 @@ typedef struct moray_gait_problem_spec {
 typedef struct moray_gait_problem moray_gait_problem;
 
 // Builds the problem: one phase over one period, from p = 0; states periodic but for the position; no net motion across
-// the course; maximise the speed along it. All derivatives analytic. Error: MORAY_INPUT naming what is wrong,
+// the course; the goal. All derivatives analytic. Error: MORAY_INPUT naming what is wrong,
 // MORAY_MEMORY.
 moray_status moray_gait_problem_new(moray_gait_problem **problem, const moray_gait_problem_spec *spec);
 void moray_gait_problem_free(moray_gait_problem *problem);

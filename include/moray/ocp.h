@@ -147,6 +147,10 @@ typedef struct moray_ocp_derivative_report {
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at any of the points.
 moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report);
 
+// Number of phases; states and controls of one of them.
+int moray_ocp_phases(const moray_ocp *ocp);
+void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
+
 // ---- Trajectories, guesses
 // -----------------------------------------------------------------------------------------------
 
@@ -178,7 +182,7 @@ typedef struct moray_settings {
     int intervals;         // 20, of equal length, in every phase; 0: the meshes and the scheme of guess->from
     double tolerance;      // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
     double mesh_tolerance; // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
-    int max_refinements;   // 0: finer meshes tried while the mesh error is above mesh_tolerance
+    int max_refinements;   // 0: finer meshes tried while the certificate would not accept what is between the nodes
     int max_iterations;    // 1000
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
@@ -231,7 +235,7 @@ typedef struct moray_mesh_record {
     moray_nlp_outcome outcome;
     int iterations;
     double seconds;
-    double error; // see moray_certificate.mesh_error; NaN where not solved
+    double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved
     double objective;
 } moray_mesh_record;
 
@@ -249,11 +253,13 @@ const char *moray_solution_diagnosis(const moray_solution *solution);
 typedef struct moray_certificate {
     bool pass;
     double kkt;           // optimality and feasibility in user units; limit 100 x tolerance
-    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|); limit mesh_tolerance
+    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|), and of the same of
+                          // integrands g and integrals q; limit mesh_tolerance
     double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
                           // x mesh_tolerance
-    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes when each phase is integrated again
-                          // from its start with the found controls; limit 100 x mesh_tolerance
+    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
+                          // when each phase is integrated again from its start with the found controls; limit 100 x
+                          // mesh_tolerance
     double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
                           // functions do not depend on time, where theory has it constant; NaN without such a phase
 } moray_certificate;

@@ -6,7 +6,7 @@
 
 enum { CHANGES = 5, PER_PERIOD = 12 };
 static const double THETA_MAX = 10 * DEG, OFFSET = 1.0 / 6; // of the amplitude
-static const double WIDEST = 20;                            // factor by which the damping and the ratio may change
+static const double DAMPING = 20, RATIO = 1.5; // factors by which rot_damping and the ratio of the constants may change
 
 // The manoeuvre of Sec. V-C has periods of 3 s; in periods it suits robots of any size.
 static const double END = 190.0 / 3, from[CHANGES] = {0, 40.0 / 3, 70.0 / 3, 130.0 / 3, 160.0 / 3};
@@ -119,40 +119,51 @@ static paper_constants constants_at(const paper_fitting *fit, const double *x)
 
 // Mean square over the logarithms of rot_damping, which sets how fast a turn begins and ends, and of
 // rot_gain/rot_damping, which sets how fast it is.
-static bool deviation(const double *x, double *value, void *self)
+static bool deviation(void *self, const double *x, double *f, double *c, double *gradient, double *jacobian)
 {
+    (void)c, (void)gradient, (void)jacobian; // there are no constraints, and BOBYQA asks for no slopes
     paper_fitting *fit = self;
-    paper_constants c = constants_at(fit, x);
-    fit->status = try_constants(fit, &c);
-    paper_progress(fit->p, "trial %d: %.4g deg off", ++fit->tried, c.rms);
-    *value = c.rms * c.rms;
-    return !moray_failed(fit->status);
+    paper_constants at = constants_at(fit, x);
+    const moray_status status = try_constants(fit, &at);
+    paper_progress(fit->p, "trial %d: %.4g deg off", ++fit->tried, at.rms);
+    *f = at.rms * at.rms;
+    if (moray_failed(status))
+        fit->failure = status;
+    return !moray_failed(status);
+}
+
+// The bounds set the scale of the search too: the ratio is known well from the scaled start, the damping is not.
+static moray_status find_best(paper_fitting *fit, double x[2], const double upper[2])
+{
+    const double lower[2] = {-upper[0], -upper[1]};
+    const moray_search_problem problem = {.n = 2, .lower = lower, .upper = upper, .self = fit, .evaluate = deviation};
+    moray_search_settings settings = moray_search_settings_default();
+    moray_search_info found;
+    settings.method = MORAY_SEARCH_BOBYQA;
+    settings.x_tolerance = 1e-4;
+    settings.f_tolerance = 1e-7;
+    settings.max_evaluations = 300;
+    const moray_status status = moray_search(&problem, &settings, x, &found);
+    MORAY_TRY(fit->failure);
+    MORAY_TRY(status);
+    fit->best = constants_at(fit, x);
+    if (found.outcome == MORAY_SEARCH_CONVERGED)
+        return moray_ok();
+    return moray_error(MORAY_NOT_SOLVED, "the search for the constants ended with: %s",
+                       moray_search_outcome_text(found.outcome));
 }
 
 static moray_status search(paper_fitting *fit)
 {
-    const double most = log(WIDEST), lower[2] = {-most, -most}, upper[2] = {most, most}, step[2] = {0.5, 0.02};
-    const moray_search_spec spec = {.n = 2,
-                                    .function = deviation,
-                                    .self = fit,
-                                    .lower = lower,
-                                    .upper = upper,
-                                    .step = step,
-                                    .tolerance = 1e-3,
-                                    .max_evaluations = 300};
+    const double upper[2] = {log(DAMPING), log(RATIO)};
     double x[2] = {0, 0};
-    moray_search_end found;
-    const moray_status status = moray_search(&spec, x, &found);
-    if (moray_failed(fit->status))
-        return fit->status;
-    MORAY_TRY(status);
-    fit->best = constants_at(fit, x);
-    fit->damping_at_end = most - fabs(x[0]) < 0.01;
-    if (most - fabs(x[1]) < 0.01)
+    MORAY_TRY(find_best(fit, x, upper));
+    fit->damping_at_end = fabs(x[0]) > 0.99 * upper[0];
+    if (fabs(x[1]) > 0.99 * upper[1])
         return moray_error(MORAY_NOT_SOLVED,
                            "no constants within a factor of %g of rot_gain/rot_damping = %.4g 1/m^2 let the "
                            "control-oriented model turn as the first-principles model does",
-                           WIDEST, fit->first.gain / fit->first.damping);
+                           RATIO, fit->first.gain / fit->first.damping);
     fit->slower = (paper_constants){.damping = fit->best.damping / 2, .gain = fit->best.gain / 2};
     fit->faster = (paper_constants){.damping = fit->best.damping * 2, .gain = fit->best.gain * 2};
     MORAY_TRY(try_constants(fit, &fit->slower));

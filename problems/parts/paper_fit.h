@@ -17,7 +17,7 @@ typedef struct {
     double *times, *raw;                // of the samples; headings there, followed by room for a state
     int n;
     double *target, *trial; // mean headings: of the first-principles model, of the last trial; NaN in the first period
-    moray_status status;    // of the last trial
+    moray_status failure;   // of a trial
     int tried;
     bool damping_at_end; // best.damping is the largest or the smallest that was allowed
 } paper_fitting;

@@ -61,6 +61,8 @@ static moray_status check_spec(const moray_gait_problem_spec *spec)
     MORAY_TRY(check_limit("power_W", limits->power));
     MORAY_TRY(check_limit("joint_rate", limits->joint_rate));
     MORAY_TRY(check_limit("joint_effort", limits->joint_effort));
+    if (!(limits->course_speed >= 0 && isfinite(limits->course_speed)))
+        return moray_error(MORAY_INPUT, "speed_m_s = %g: must be finite and above 0, or none", limits->course_speed);
     if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]) || !isfinite(spec->course))
         return moray_error(MORAY_INPUT, "current = %g,%g, course = %g: must be finite", spec->current[0],
                            spec->current[1], spec->course);
@@ -70,6 +72,13 @@ static moray_status check_spec(const moray_gait_problem_spec *spec)
 static bool limited(double value)
 {
     return value < MORAY_INFINITY;
+}
+
+// The least speed to ask for; work per distance means nothing where the robot makes no way.
+static double least_speed(const moray_gait_problem_spec *spec)
+{
+    const double some_way = 1e-3;
+    return spec->goal == MORAY_GAIT_THRIFTIEST ? fmax(spec->limits.course_speed, some_way) : spec->limits.course_speed;
 }
 
 static moray_status make_plant(moray_gait_problem *problem)
@@ -96,7 +105,9 @@ static moray_status make_endpoint(moray_gait_problem *problem)
                                                .L = 2 * spec->robot.l,
                                                .course = {cos(spec->course), sin(spec->course)},
                                                .power = limited(spec->limits.power),
-                                               .rate = limited(spec->limits.joint_rate)};
+                                               .goal = spec->goal,
+                                               .rate = limited(spec->limits.joint_rate),
+                                               .speed = least_speed(spec) > 0};
     return gait_endpoint_map(&problem->ends, &problem->endpoint);
 }
 
@@ -120,8 +131,11 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
         *e++ = moray_at_most(limits->power);
     if (problem->endpoint.rate)
         *e++ = moray_at_most(limits->joint_rate);
+    if (problem->endpoint.speed)
+        *e++ = moray_at_least(least_speed(&problem->spec));
 }
 
+static const char *const goals[] = {"fastest gait", "thriftiest gait"};
 static const char *const s_names[][4] = {{"a", "omega", "delta", "phi_0"}, {"alpha", "omega", "delta", "phi_0"}};
 static const char *const gait_states[][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
                                              {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
@@ -155,7 +169,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .c = {c, nc},
         .x_names = problem->spec.joints == MORAY_JOINTS_ON_GAIT ? gait_states[problem->spec.model] : NULL,
     };
-    return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = "max_speed",
+    return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = goals[problem->spec.goal],
                                                           .phases = 1,
                                                           .phase = &phase,
                                                           .ns = 4,
@@ -221,22 +235,11 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
 // The plant's state from the swimmer's.
 static void plant_state(const moray_gait_problem *problem, const double *full, double *x)
 {
-    const int N = problem->spec.robot.links;
     if (problem->spec.joints != MORAY_JOINTS_ON_GAIT) {
         memcpy(x, full, (size_t)problem->size.nx * sizeof *x);
         return;
     }
-    for (int half = 0; half < 2; half++, full += N + 2, x += 3) {
-        if (problem->spec.model == MORAY_CONTROL_ORIENTED) {
-            memcpy(x, full + N - 1, 3 * sizeof *x);
-            continue;
-        }
-        x[0] = 0;
-        for (int i = 0; i < N; i++)
-            x[0] += full[i] / N;
-        x[1] = full[N];
-        x[2] = full[N + 1];
-    }
+    moray_state_body(problem->spec.model, problem->spec.robot.links, full, x);
 }
 
 moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,

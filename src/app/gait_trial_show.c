@@ -24,6 +24,12 @@ void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *ro
     moray_json_close(json);
 }
 
+// Joint work per distance along the course.
+static double course_cost(const moray_steady *steady, bool held, double course)
+{
+    return held ? steady->power / moray_course_speed(steady, course) : NAN;
+}
+
 void moray_steady_to_json(moray_json *json, const char *key, moray_model model, const moray_gait_trial *trial,
                           double course)
 {
@@ -35,6 +41,7 @@ void moray_steady_to_json(moray_json *json, const char *key, moray_model model, 
     moray_json_number(json, "course_speed_m_s", trial->held[model] ? moray_course_speed(steady, course) : NAN);
     moray_json_number(json, "power_W", steady->power);
     moray_json_number(json, "cost_of_transport_J_m", steady->cost_of_transport);
+    moray_json_number(json, "course_cost_J_m", course_cost(&trial->steady[model], trial->held[model], course));
     moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", steady->peak_effort);
     moray_json_number(json, "max_link_angle_deg", steady->peak_link_angle / degree);
     if (!trial->held[model])
@@ -70,6 +77,7 @@ int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *tri
     return count;
 }
 
+// The last row only where a current makes a difference.
 int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, int n, double course,
                       moray_table_row *rows)
 {
@@ -79,18 +87,25 @@ int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, 
                                      {"mean joint power", "W"},
                                      {"cost of transport", "J/m"},
                                      {control ? "peak joint force" : "peak joint torque", control ? "N" : "N m"},
-                                     {"largest link angle from heading", "deg"}};
-    enum { count = 6 };
+                                     {"largest link angle from heading", "deg"},
+                                     {"joint work along the course", "J/m"}};
+    enum { count = sizeof labels / sizeof *labels };
+    bool drifts = false;
     for (int i = 0; i < count; i++)
         rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
     for (int k = 0; k < n; k++) {
         const moray_steady *steady = &trials[k]->steady[model];
-        const double values[count] = {
-            steady->speed,       trials[k]->held[model] ? moray_course_speed(steady, course) : NAN,
-            steady->power,       steady->cost_of_transport,
-            steady->peak_effort, steady->peak_link_angle / degree};
+        const bool held = trials[k]->held[model];
+        const double values[count] = {steady->speed,
+                                      held ? moray_course_speed(steady, course) : NAN,
+                                      steady->power,
+                                      steady->cost_of_transport,
+                                      steady->peak_effort,
+                                      steady->peak_link_angle / degree,
+                                      course_cost(steady, held, course)};
         for (int i = 0; i < count; i++)
             rows[i].value[k] = values[i];
+        drifts = drifts || (held && fabs(values[1] - values[0]) > 1e-6);
     }
-    return count;
+    return drifts ? count : count - 1;
 }

@@ -10,25 +10,34 @@ enum { samples_between = 5 }; // per point of the scheme, placed between the nod
 moray_status examiner_new(struct examiner *e, const moray_solution *solution, int p)
 {
     const struct phase *phase = &solution->transcription->ocp->phase[p];
-    double *block = calloc((size_t)(phase->map->n_in + phase->map->n_out + 3 * phase->nx), sizeof *block);
+    const struct phase_layout *layout = &solution->transcription->layout.phase[p];
+    const int n = phase->nx + phase->nq;
+    double *block = calloc((size_t)(phase->map->n_in + phase->map->n_out + 3 * n), sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to examine phase %s", phase->name);
-    *e = (struct examiner){.solution = solution, .p = p, .in = block, .out = block + phase->map->n_in};
-    e->x_size = e->out + phase->map->n_out;
-    e->slope = e->x_size + phase->nx;
-    e->error = e->slope + phase->nx;
-    const struct phase_layout *layout = &solution->transcription->layout.phase[p];
-    for (int r = 0; r < phase->nx; r++) {
-        for (int n = 0; n < layout->nodes; n++)
-            e->x_size[r] = fmax(e->x_size[r], fabs(solution->iterate.x[layout->node[n].x + r]));
-        e->x_size[r] += 1;
+    *e = (struct examiner){.solution = solution, .p = p, .n = n, .in = block, .out = block + phase->map->n_in};
+    e->size = e->out + phase->map->n_out;
+    e->slope = e->size + n;
+    e->error = e->slope + n;
+    for (int i = 0; i < phase->nx; i++) {
+        for (int node = 0; node < layout->nodes; node++)
+            e->size[i] = fmax(e->size[i], fabs(solution->iterate.x[layout->node[node].x + i]));
+        e->size[i] += 1;
     }
+    for (int i = phase->nx; i < n; i++)
+        e->size[i] = 1 + fabs(solution->iterate.x[layout->q + i - phase->nx]);
     return moray_ok();
 }
 
 void examiner_free(struct examiner *e)
 {
     free(e->in);
+}
+
+int examiner_output(const struct examiner *e, int i)
+{
+    const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
+    return i < phase->nx ? i : i + phase->nc;
 }
 
 void examiner_evaluate(struct examiner *e, double t, const double *x)
@@ -42,17 +51,19 @@ void examiner_evaluate(struct examiner *e, double t, const double *x)
     phase->map->value(phase->map->self, e->in, e->out);
 }
 
-// x~' at tau of the interval: the stage polynomials through f at the nodes.
+// x~' and q~' at tau of the interval: the stage polynomials through f and g at the nodes.
 static void interpolant_slope(struct examiner *e, const struct interval *interval, double tau)
 {
     const struct transcription *t = e->solution->transcription;
     const struct phase *phase = &t->ocp->phase[e->p];
     double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
     moray_scheme_basis(interval->scheme, tau, ell, integral);
-    memset(e->slope, 0, (size_t)phase->nx * sizeof *e->slope);
-    for (int j = interval->scheme->first; j <= interval->scheme->last; j++)
-        for (int r = 0; r < phase->nx; r++)
-            e->slope[r] += ell[j] * t->phase[e->p].out[(interval->first + j) * phase->map->n_out + r];
+    memset(e->slope, 0, (size_t)e->n * sizeof *e->slope);
+    for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
+        const double *out = t->phase[e->p].out + (interval->first + j) * phase->map->n_out;
+        for (int i = 0; i < e->n; i++)
+            e->slope[i] += ell[j] * out[examiner_output(e, i)];
+    }
 }
 
 static double distance_outside(double value, moray_bounds bounds)
@@ -82,20 +93,20 @@ double examiner_interval(struct examiner *e, const struct interval *interval, do
 {
     const struct transcription *t = e->solution->transcription;
     const struct phase_cache *cache = &t->phase[e->p];
-    const int nx = t->ocp->phase[e->p].nx, count = samples_between * interval->scheme->points;
+    const int count = samples_between * interval->scheme->points;
     const double T = cache->tf - cache->t0, start = t->layout.phase[e->p].node[interval->first].tau;
-    memset(e->error, 0, (size_t)nx * sizeof *e->error);
+    memset(e->error, 0, (size_t)e->n * sizeof *e->error);
     for (int k = 0; k < count; k++) {
         const double tau = (k + 0.5) / count;
         examiner_evaluate(e, cache->t0 + T * (start + tau * interval->width), NULL);
         interpolant_slope(e, interval, tau);
-        for (int r = 0; r < nx; r++)
-            e->error[r] += T * interval->width / count * fabs(e->slope[r] - e->out[r]) / e->x_size[r];
+        for (int i = 0; i < e->n; i++)
+            e->error[i] += T * interval->width / count * fabs(e->slope[i] - e->out[examiner_output(e, i)]) / e->size[i];
         if (outside)
             *outside = fmax(*outside, worst_outside(e));
     }
     double worst = 0;
-    for (int r = 0; r < nx; r++)
-        worst = fmax(worst, isnan(e->error[r]) ? INFINITY : e->error[r]);
+    for (int i = 0; i < e->n; i++)
+        worst = fmax(worst, isnan(e->error[i]) ? INFINITY : e->error[i]);
     return worst;
 }

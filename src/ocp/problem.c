@@ -208,3 +208,14 @@ void moray_ocp_free(moray_ocp *ocp)
     free(ocp->owned);
     free(ocp);
 }
+
+int moray_ocp_phases(const moray_ocp *ocp)
+{
+    return ocp->phases;
+}
+
+void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu)
+{
+    *nx = ocp->phase[phase].nx;
+    *nu = ocp->phase[phase].nu;
+}

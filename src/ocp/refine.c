@@ -24,33 +24,34 @@ struct refinement {
     double spare;     // error of its last interval where that stands as it was, else infinite
 };
 
-// Contribution of the slope of state r at stage point j to x, relative to the size of x.
-static double slope_at(const struct refinement *r, const struct interval *interval, int j, int state)
+// Contribution of the slope of the i-th integrated quantity at stage point j to it, relative to its size.
+static double slope_at(const struct refinement *r, const struct interval *interval, int j, int i)
 {
     const struct transcription *t = r->e.solution->transcription;
     const struct phase_cache *cache = &t->phase[r->e.p];
     const double h = (cache->tf - cache->t0) * interval->width;
-    return h * cache->out[(interval->first + j) * t->ocp->phase[r->e.p].map->n_out + state] / r->e.x_size[state];
+    const double *out = cache->out + (interval->first + j) * t->ocp->phase[r->e.p].map->n_out;
+    return h * out[examiner_output(&r->e, i)] / r->e.size[i];
 }
 
-// size[stages]: norm over the states of the Legendre coefficients of the slope.
+// size[stages]: norm over all that is integrated of the Legendre coefficients of the slope.
 static void legendre_sizes(const struct refinement *r, const struct interval *interval, double *size)
 {
     const moray_scheme *scheme = interval->scheme;
-    const int s = scheme->stages, nx = r->e.solution->transcription->ocp->phase[r->e.p].nx;
+    const int s = scheme->stages;
     double gauss[MORAY_MAX_STAGES], weight[MORAY_MAX_STAGES], ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
     legendre_gauss(s, gauss, weight);
     for (int k = 0; k < s; k++)
         size[k] = 0;
-    for (int state = 0; state < nx; state++) {
+    for (int i = 0; i < r->e.n; i++) {
         double coefficient[MORAY_MAX_STAGES] = {0};
-        for (int i = 0; i < s; i++) {
+        for (int point = 0; point < s; point++) {
             double slope = 0;
-            moray_scheme_basis(scheme, gauss[i], ell, integral);
+            moray_scheme_basis(scheme, gauss[point], ell, integral);
             for (int j = scheme->first; j <= scheme->last; j++)
-                slope += ell[j] * slope_at(r, interval, j, state);
+                slope += ell[j] * slope_at(r, interval, j, i);
             for (int k = 0; k < s; k++)
-                coefficient[k] += (2 * k + 1) * weight[i] * legendre_value(k, gauss[i]) * slope;
+                coefficient[k] += (2 * k + 1) * weight[point] * legendre_value(k, gauss[point]) * slope;
         }
         for (int k = 0; k < s; k++)
             size[k] = hypot(size[k], coefficient[k]);
@@ -74,13 +75,12 @@ static double decay(const struct refinement *r, const struct interval *interval)
 // The pair of neighbouring stage points between which the slope changes most, and its share in the whole change.
 static int largest_change(const struct refinement *r, const struct interval *interval, double *share)
 {
-    const int nx = r->e.solution->transcription->ocp->phase[r->e.p].nx;
     double sum = 0, most = 0;
     int where = interval->scheme->first;
     for (int j = interval->scheme->first; j < interval->scheme->last; j++) {
         double change = 0;
-        for (int state = 0; state < nx; state++)
-            change = hypot(change, slope_at(r, interval, j + 1, state) - slope_at(r, interval, j, state));
+        for (int i = 0; i < r->e.n; i++)
+            change = hypot(change, slope_at(r, interval, j + 1, i) - slope_at(r, interval, j, i));
         sum += change;
         if (change > most) {
             most = change;
@@ -163,7 +163,9 @@ static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double
         r->mesh.intervals = 0;
     }
     for (int k = 0; k < layout->mesh.intervals; k++) {
-        const double error = examiner_interval(&r->e, &layout->interval[k], NULL);
+        double outside = 0;
+        double error = examiner_interval(&r->e, &layout->interval[k], &outside);
+        error = fmax(error, outside / violation_slack); // what the certificate will ask
         *worst = fmax(*worst, error);
         if (mesh)
             refine_interval(r, &layout->interval[k], layout->mesh.raised_from[k], error);
