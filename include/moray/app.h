@@ -106,8 +106,7 @@ typedef struct moray_ini_entry {
 // file is then as before.
 moray_status moray_ini_set(const char *path, const char *section, const moray_ini_entry *entries, int n);
 
-// ---- Start and end of a program
-// --------------------------------------------------------------------------------------
+// ---- Start and end of a program ------------------------------------------------------------------------------------
 
 typedef enum {
     MORAY_EXIT_SOLVED = 0, // and certified

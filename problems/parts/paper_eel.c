@@ -16,8 +16,7 @@ static moray_gait tapered(const paper *p, moray_model model, double taper)
     return moray_gait_map(p->robot, &gait, MORAY_CONTROL_ORIENTED, model);
 }
 
-// ---- Speed and power
-// ---------------------------------------------------------------------------------------------------
+// ---- Speed and power -----------------------------------------------------------------------------------------------
 
 typedef struct {
     double speed[2][TAPERS], power[2][TAPERS], cost[2][TAPERS];             // by model, omega of the settings
@@ -105,8 +104,7 @@ static moray_status draw(paper *p, const findings *f)
                          "taper (below 0: larger at the tail)", "speed [m/s]", tapers, equal, TAPERS);
 }
 
-// ---- Link angles
-// -------------------------------------------------------------------------------------------------------
+// ---- Link angles ---------------------------------------------------------------------------------------------------
 
 // Amplitude of link i = 0..N-1 by moray/snake.h.
 static double by_formula(const paper *p, moray_model model, double taper, int i)
@@ -168,8 +166,7 @@ static moray_status draw_links(paper *p, moray_model model)
                            .n_curves = 2 * SHOWN});
 }
 
-// ---- All of it
-// ---------------------------------------------------------------------------------------------------------
+// ---- All of it -----------------------------------------------------------------------------------------------------
 
 moray_status paper_eel(paper *p)
 {

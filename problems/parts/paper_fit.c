@@ -2,38 +2,17 @@
 //
 // The rotational constants of (20), which the authors found "by trial and error" for their robot, for any robot: by
 // least squares against the heading of the first-principles model in a manoeuvre like that of Sec. V-C.
-#include <unistd.h>
-
-#include "paper_swim.h"
+#include "paper_fit.h"
 
 enum { CHANGES = 5, PER_PERIOD = 12 };
 static const double THETA_MAX = 10 * DEG, OFFSET = 1.0 / 6; // of the amplitude
-static const double RATIO = 1.5;                            // by which their ratio may differ
-static const double WIDEST = 100;                           // factor by which the constants may differ from the first
+static const double DAMPING = 20, RATIO = 1.5; // factors by which rot_damping and the ratio of the constants may change
 
 // The manoeuvre of Sec. V-C has periods of 3 s; in periods it suits robots of any size.
 static const double END = 190.0 / 3, from[CHANGES] = {0, 40.0 / 3, 70.0 / 3, 130.0 / 3, 160.0 / 3};
 static const double way[CHANGES] = {0, 1, 0, -1, 0};
 
-// The two constants of (20), rot_damping and rot_gain, and how far the heading then is from the first-principles
-// model's, both on average over a period [deg].
-typedef struct {
-    double damping, gain, rms, largest;
-} constants;
-
-typedef struct {
-    paper *p;
-    constants given, first, best; // first: where the search starts
-    constants slower, faster;     // half and twice the best rot_damping at the best ratio
-    double *times, *raw;          // of the samples; headings there, followed by room for a state
-    int n;
-    double *target, *trial; // mean headings: of the first-principles model, of the last trial; NaN in the first period
-    moray_status status;    // of the last trial
-    int tried;
-} fitting;
-
-// ---- Manoeuvre
-// ---------------------------------------------------------------------------------------------------------
+// ---- Manoeuvre -----------------------------------------------------------------------------------------------------
 
 typedef struct {
     double *heading;
@@ -58,7 +37,7 @@ static void average(const double *raw, int n, double *mean)
     }
 }
 
-static void plan_turns(const fitting *fit, moray_model model, moray_gait_change schedule[CHANGES])
+static void plan_turns(const paper_fitting *fit, moray_model model, moray_gait_change schedule[CHANGES])
 {
     for (int i = 0; i < CHANGES; i++) {
         moray_gait gait = paper_gait(fit->p, MORAY_CONTROL_ORIENTED, THETA_MAX);
@@ -68,7 +47,7 @@ static void plan_turns(const fitting *fit, moray_model model, moray_gait_change 
     }
 }
 
-static moray_status turn(fitting *fit, moray_swimmer *swimmer, double *mean)
+static moray_status turn(paper_fitting *fit, moray_swimmer *swimmer, double *mean)
 {
     const double *V = fit->p->settings->common.current;
     moray_gait_change schedule[CHANGES];
@@ -89,10 +68,9 @@ static moray_status turn(fitting *fit, moray_swimmer *swimmer, double *mean)
     return moray_ok();
 }
 
-// ---- Fit
-// ---------------------------------------------------------------------------------------------------------------
+// ---- Fit -----------------------------------------------------------------------------------------------------------
 
-static void compare(const fitting *fit, constants *c)
+static void compare(const paper_fitting *fit, paper_constants *c)
 {
     c->rms = c->largest = 0;
     for (int k = PER_PERIOD; k < fit->n; k++) {
@@ -104,7 +82,7 @@ static void compare(const fitting *fit, constants *c)
 }
 
 // Turns with the constants and fills in how far off the heading is.
-static moray_status try_constants(fitting *fit, constants *c)
+static moray_status try_constants(paper_fitting *fit, paper_constants *c)
 {
     moray_robot robot = *fit->p->robot;
     moray_swimmer *swimmer;
@@ -120,13 +98,13 @@ static moray_status try_constants(fitting *fit, constants *c)
 
 // The given constants, or the paper's where there are none, with the gain scaled so that the turns come out right: they
 // are nearly proportional to it.
-static moray_status start(fitting *fit)
+static moray_status start(paper_fitting *fit)
 {
     const moray_robot paper_robot = moray_robot_paper();
     const int turned = (int)lround(from[3] * PER_PERIOD);
     fit->first = fit->given;
     if (!(fit->given.damping > 0 && fit->given.gain > 0))
-        fit->first = (constants){.damping = paper_robot.rot_damping, .gain = paper_robot.rot_gain};
+        fit->first = (paper_constants){.damping = paper_robot.rot_damping, .gain = paper_robot.rot_gain};
     MORAY_TRY(try_constants(fit, &fit->first));
     const double scale = fit->target[turned] / fit->trial[turned];
     if (scale > 0 && isfinite(scale))
@@ -134,165 +112,73 @@ static moray_status start(fitting *fit)
     return moray_ok();
 }
 
-static constants constants_at(const fitting *fit, const double *x)
+static paper_constants constants_at(const paper_fitting *fit, const double *x)
 {
-    return (constants){.damping = fit->first.damping * exp(x[0]), .gain = fit->first.gain * exp(x[0] + x[1])};
+    return (paper_constants){.damping = fit->first.damping * exp(x[0]), .gain = fit->first.gain * exp(x[0] + x[1])};
 }
 
 // Mean square over the logarithms of rot_damping, which sets how fast a turn begins and ends, and of
 // rot_gain/rot_damping, which sets how fast it is.
 static bool deviation(void *self, const double *x, double *f, double *c, double *gradient, double *jacobian)
 {
-    (void)c;
-    (void)gradient;
-    (void)jacobian;
-    fitting *fit = self;
-    constants at = constants_at(fit, x);
-    fit->status = try_constants(fit, &at);
+    (void)c, (void)gradient, (void)jacobian; // there are no constraints, and BOBYQA asks for no slopes
+    paper_fitting *fit = self;
+    paper_constants at = constants_at(fit, x);
+    const moray_status status = try_constants(fit, &at);
     paper_progress(fit->p, "trial %d: %.4g deg off", ++fit->tried, at.rms);
     *f = at.rms * at.rms;
-    return !moray_failed(fit->status);
+    if (moray_failed(status))
+        fit->failure = status;
+    return !moray_failed(status);
 }
 
-static moray_status search(fitting *fit)
+// The bounds set the scale of the search too: the ratio is known well from the scaled start, the damping is not.
+static moray_status find_best(paper_fitting *fit, double x[2], const double upper[2])
 {
-    // The ratio of the constants is known well from the scaled start, their size is not.
-    const double upper[2] = {log(WIDEST), log(RATIO)}, lower[2] = {-upper[0], -upper[1]};
+    const double lower[2] = {-upper[0], -upper[1]};
     const moray_search_problem problem = {.n = 2, .lower = lower, .upper = upper, .self = fit, .evaluate = deviation};
     moray_search_settings settings = moray_search_settings_default();
+    moray_search_info found;
     settings.method = MORAY_SEARCH_BOBYQA;
     settings.x_tolerance = 1e-4;
     settings.f_tolerance = 1e-7;
     settings.max_evaluations = 300;
-    double x[2] = {0, 0};
-    moray_search_info found;
     const moray_status status = moray_search(&problem, &settings, x, &found);
-    if (moray_failed(fit->status))
-        return fit->status;
+    MORAY_TRY(fit->failure);
     MORAY_TRY(status);
     fit->best = constants_at(fit, x);
-    if (fabs(x[0]) > 0.999 * upper[0] || fabs(x[1]) > 0.999 * upper[1])
-        return moray_error(
-            MORAY_NOT_SOLVED,
-            "the best constants, rot_damping = %.4g and rot_gain = %.4g, lie at the end of the range "
-            "searched, up to %g times smaller or larger than the first in size and %g times in their ratio",
-            fit->best.damping, fit->best.gain, WIDEST, RATIO);
-    fit->slower = (constants){.damping = fit->best.damping / 2, .gain = fit->best.gain / 2};
-    fit->faster = (constants){.damping = fit->best.damping * 2, .gain = fit->best.gain * 2};
+    if (found.outcome == MORAY_SEARCH_CONVERGED)
+        return moray_ok();
+    return moray_error(MORAY_NOT_SOLVED, "the search for the constants ended with: %s",
+                       moray_search_outcome_text(found.outcome));
+}
+
+static moray_status search(paper_fitting *fit)
+{
+    const double upper[2] = {log(DAMPING), log(RATIO)};
+    double x[2] = {0, 0};
+    MORAY_TRY(find_best(fit, x, upper));
+    fit->damping_at_end = fabs(x[0]) > 0.99 * upper[0];
+    if (fabs(x[1]) > 0.99 * upper[1])
+        return moray_error(MORAY_NOT_SOLVED,
+                           "no constants within a factor of %g of rot_gain/rot_damping = %.4g 1/m^2 let the "
+                           "control-oriented model turn as the first-principles model does",
+                           RATIO, fit->first.gain / fit->first.damping);
+    fit->slower = (paper_constants){.damping = fit->best.damping / 2, .gain = fit->best.gain / 2};
+    fit->faster = (paper_constants){.damping = fit->best.damping * 2, .gain = fit->best.gain * 2};
     MORAY_TRY(try_constants(fit, &fit->slower));
     MORAY_TRY(try_constants(fit, &fit->faster));
     return try_constants(fit, &fit->best);
 }
 
-// ---- Robot file
-// --------------------------------------------------------------------------------------------------------
+// ---- All of it -----------------------------------------------------------------------------------------------------
 
-// The constants alone into a file that is there; all of the robot into one that is not.
-static moray_status write_robot(const paper *p, const constants *c)
-{
-    const moray_robot *robot = p->robot;
-    const struct {
-        const char *key;
-        double value;
-    } all[] = {{"rot_damping", c->damping},
-               {"rot_gain", c->gain},
-               {"links", robot->links},
-               {"l_m", robot->l},
-               {"m_kg", robot->m},
-               {"J_kg_m2", robot->J},
-               {"c_t", robot->c_t},
-               {"c_n", robot->c_n},
-               {"mu_n", robot->mu_n},
-               {"lambda_1", robot->lambda_1},
-               {"lambda_2", robot->lambda_2},
-               {"lambda_3", robot->lambda_3},
-               {"k_p", robot->k_p},
-               {"k_d", robot->k_d}};
-    enum { n = sizeof all / sizeof *all };
-    moray_ini_entry entries[n];
-    char text[n][64], number[32];
-    for (int i = 0; i < n; i++) {
-        if (i < 2)
-            snprintf(text[i], sizeof text[i], "%.6g  ; fitted by the program paper", all[i].value);
-        else
-            snprintf(text[i], sizeof text[i], "%s", moray_number_text(all[i].value, number));
-        entries[i] = (moray_ini_entry){all[i].key, text[i]};
-    }
-    const char *file = p->settings->write_ini;
-    return moray_ini_set(file, "robot", entries, access(file, F_OK) == 0 ? 2 : n);
-}
-
-// ---- Telling
-// -----------------------------------------------------------------------------------------------------------
-
-static void json_constants(moray_json *json, const char *key, const constants *c)
-{
-    moray_json_open(json, key);
-    moray_json_number(json, "rot_damping", c->damping);
-    moray_json_number(json, "rot_gain", c->gain);
-    moray_json_number(json, "rms_deg", c->rms);
-    moray_json_number(json, "largest_deg", c->largest);
-    moray_json_close(json);
-}
-
-static moray_status tell(paper *p, const fitting *fit)
-{
-    const constants *a = &fit->given, *b = &fit->best;
-    const moray_table_row rows[] = {
-        {.label = "rot_damping", .value = {a->damping, b->damping, 100 * (a->damping / b->damping - 1)}, .unit = "1/s"},
-        {.label = "rot_gain", .value = {a->gain, b->gain, 100 * (a->gain / b->gain - 1)}, .unit = "1/(m^2 s)"},
-        {.label = "rot_gain/rot_damping",
-         .value = {a->gain / a->damping, b->gain / b->damping,
-                   100 * (a->gain / a->damping / (b->gain / b->damping) - 1)},
-         .unit = "1/m^2"},
-        {.label = "mean heading off by, root mean square", .value = {a->rms, b->rms, NAN}, .unit = "deg"},
-        {.label = "mean heading off by, at most", .value = {a->largest, b->largest, NAN}, .unit = "deg"},
-    };
-    json_constants(p->json, "given", a);
-    json_constants(p->json, "fitted", b);
-    json_constants(p->json, "half_damping", &fit->slower);
-    json_constants(p->json, "twice_damping", &fit->faster);
-    moray_json_number(p->json, "trials", fit->tried);
-    MORAY_TRY(paper_table(p, &(moray_table){.title = "Constants of the rotational dynamics (20)",
-                                            .columns = {"given", "fitted", "given from fitted [%]"},
-                                            .n_columns = 3,
-                                            .rows = rows,
-                                            .n_rows = 5}));
-    return paper_say(p,
-                     "Fitted to the heading of the first-principles model, on average over a period, in the manoeuvre "
-                     "of Sec. V-C at %g deg/s, its times scaled to the period; %d links, %d trials. The ratio is well "
-                     "determined, rot_damping by itself is not: half or twice of it at the same ratio is %.3g or %.3g "
-                     "deg off.",
-                     p->settings->omega / DEG, p->robot->links, fit->tried, fit->slower.rms, fit->faster.rms);
-}
-
-static moray_status draw(paper *p, const fitting *fit, const double *given)
-{
-    const moray_curve curves[] = {
-        {.label = "first-principles", .x = fit->times, .y = fit->target, .n = fit->n},
-        {.label = "control-oriented, fitted constants", .x = fit->times, .y = fit->trial, .n = fit->n},
-        {.label = "control-oriented, given constants", .x = fit->times, .y = given, .n = fit->n}};
-    const moray_column columns[] = {{"t", "s", fit->times, 1},
-                                    {"heading first-principles", "deg", fit->target, 1},
-                                    {"heading fitted", "deg", fit->trial, 1},
-                                    {"heading given", "deg", given, 1}};
-    MORAY_TRY(paper_csv(p, NULL, columns, 4, fit->n));
-    return paper_figure(p, &(moray_figure){.title = "Heading in a manoeuvre, mean over the last period",
-                                           .x_label = "time [s]",
-                                           .y_label = "heading [deg]",
-                                           .curves = curves,
-                                           .n_curves = 3});
-}
-
-// ---- All of it
-// ---------------------------------------------------------------------------------------------------------
-
-static moray_status prepare(paper *p, fitting *fit)
+static moray_status prepare(paper *p, paper_fitting *fit)
 {
     const double step = 2 * M_PI / p->settings->omega / PER_PERIOD;
-    *fit = (fitting){.p = p,
-                     .given = {.damping = p->robot->rot_damping, .gain = p->robot->rot_gain},
-                     .n = (int)lround(END * PER_PERIOD) + 1};
+    *fit = (paper_fitting){.p = p,
+                           .given = {.damping = p->robot->rot_damping, .gain = p->robot->rot_gain},
+                           .n = (int)lround(END * PER_PERIOD) + 1};
     MORAY_TRY(paper_numbers(p, fit->n, &fit->times));
     MORAY_TRY(paper_numbers(p, fit->n, &fit->target));
     MORAY_TRY(paper_numbers(p, fit->n, &fit->trial));
@@ -305,7 +191,7 @@ static moray_status prepare(paper *p, fitting *fit)
 
 moray_status paper_fit(paper *p)
 {
-    fitting fit;
+    paper_fitting fit;
     double *given;
     MORAY_TRY(prepare(p, &fit));
     MORAY_TRY(paper_numbers(p, fit.n, &given));
@@ -314,8 +200,8 @@ moray_status paper_fit(paper *p)
         given[k] = fit.trial[k];
     MORAY_TRY(start(&fit));
     MORAY_TRY(search(&fit));
-    MORAY_TRY(tell(p, &fit));
+    MORAY_TRY(paper_fit_tell(p, &fit));
     if (p->settings->write_ini[0])
-        MORAY_TRY(write_robot(p, &fit.best));
-    return draw(p, &fit, given);
+        MORAY_TRY(paper_fit_write(p, &fit.best));
+    return paper_fit_draw(p, &fit, given);
 }

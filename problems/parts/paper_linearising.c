@@ -10,8 +10,7 @@
 
 enum { STATES = 500, SIZES = 4 };
 
-// ---- Random states
-// -----------------------------------------------------------------------------------------------------
+// ---- Random states -------------------------------------------------------------------------------------------------
 
 static double uniform(unsigned short seed[3], double size)
 {
@@ -112,8 +111,7 @@ static moray_status compare_sizes(paper *p)
                        .n_rows = SIZES});
 }
 
-// ---- Closed loop
-// -------------------------------------------------------------------------------------------------------
+// ---- Closed loop ---------------------------------------------------------------------------------------------------
 
 // With phi'' = ubar, (34) makes of the error e = phi - phi_ref of every joint e'' + k_d e' + k_p e = 0.
 static double decay(const moray_robot *robot, double e, double de, double t)

@@ -11,8 +11,7 @@ static const double HOLD = 45, STEP = 0.1; // [s] of an amplitude, between sampl
 // Sec. V-B shifts the models apart, "for better visibility".
 static const double p_y[2] = {[MORAY_CONTROL_ORIENTED] = 5, [MORAY_FIRST_PRINCIPLES] = -5};
 
-// ---- Fig. 7
-// ----------------------------------------------------------------------------------------------------------
+// ---- Fig. 7 --------------------------------------------------------------------------------------------------------
 
 static moray_status swim_in_steps(paper *p, moray_model model, moray_swim_track **track)
 {
@@ -79,8 +78,7 @@ static moray_status draw(paper *p, const shown s[2])
                          "v_x [m/s]", s->t, v_x, s->n);
 }
 
-// ---- Each amplitude from rest
-// ------------------------------------------------------------------------------------------
+// ---- Each amplitude from rest --------------------------------------------------------------------------------------
 
 static moray_status measure(paper *p, double speed[2][AMPLITUDES])
 {

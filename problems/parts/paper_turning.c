@@ -19,8 +19,7 @@ static moray_status turn(paper *p, moray_model model, moray_swim_track **track)
     return paper_swim(p, &plan, END, STEP, track);
 }
 
-// ---- Fig. 8
-// ------------------------------------------------------------------------------------------------------------
+// ---- Fig. 8 --------------------------------------------------------------------------------------------------------
 
 static moray_status draw_position(paper *p, double *series[2][QUANTITIES], int n)
 {
@@ -70,8 +69,7 @@ static moray_status write(paper *p, const double *t, double *series[2][QUANTITIE
     return paper_csv(p, NULL, columns, 1 + 2 * QUANTITIES, n);
 }
 
-// ---- In numbers
-// --------------------------------------------------------------------------------------------------------
+// ---- In numbers ----------------------------------------------------------------------------------------------------
 
 static moray_status tell(paper *p, moray_swim_track *track[2])
 {

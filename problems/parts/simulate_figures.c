@@ -19,8 +19,7 @@ static moray_status draw(const simulate *run, const moray_figure *figure)
     return moray_ok();
 }
 
-// ---- Path
-// ------------------------------------------------------------------------------------------------------------
+// ---- Path ----------------------------------------------------------------------------------------------------------
 
 static double path_length(const moray_swim_track *track)
 {
@@ -78,8 +77,7 @@ static moray_status draw_path(const simulate *run, const simulate_results *resul
     return status;
 }
 
-// ---- Over time
-// -------------------------------------------------------------------------------------------------------
+// ---- Over time -----------------------------------------------------------------------------------------------------
 
 static moray_status draw_velocity(const simulate *run, const double *t, const double *v_x, const double *v_y, int n)
 {

@@ -7,8 +7,7 @@
 
 enum { PER_PERIOD = 60, MOST_SAMPLES = 5000000 }; // samples of a period that peaks are taken from, at least
 
-// ---- What to simulate
-// ------------------------------------------------------------------------------------------------
+// ---- What to simulate ----------------------------------------------------------------------------------------------
 
 static moray_sim_settings settings_of(const simulate *run)
 {
@@ -57,8 +56,7 @@ static simulate_window window_of(const simulate_results *results, int wanted)
     return (simulate_window){fmax(results->t1 - length, start), results->t1, periods};
 }
 
-// ---- When to look
-// ----------------------------------------------------------------------------------------------------
+// ---- When to look --------------------------------------------------------------------------------------------------
 
 // An output step is divided so that every period is seen often enough.
 static int divisions(const simulate *run, const simulate_results *results)
@@ -131,8 +129,7 @@ static int choose_times(const simulate *run, const simulate_results *results, in
     return k;
 }
 
-// ---- What came of it
-// -------------------------------------------------------------------------------------------------
+// ---- What came of it -----------------------------------------------------------------------------------------------
 
 static void conclude(const simulate *run, const lookout *seen, simulate_results *results)
 {
