@@ -69,9 +69,10 @@ static dense_state dense_unpack(const dense_plant *self, const num *in)
         num ref = 0, dref = 0, ddref = 0; // (25)
         if (self->spec.joints != MORAY_JOINTS_FREE) {
             const num argument = s[1] * t + i * s[2];
-            ref = s[0] * csin(argument) + s[3];
-            dref = s[0] * s[1] * ccos(argument);
-            ddref = -s[0] * s[1] * s[1] * csin(argument);
+            const num a = s[0] * (1 + s[4] * (n > 1 ? (2.0 * i - (n - 1)) / (n - 1) : 0));
+            ref = a * csin(argument) + s[3];
+            dref = a * s[1] * ccos(argument);
+            ddref = -a * s[1] * s[1] * csin(argument);
         }
         const bool on_gait = self->spec.joints == MORAY_JOINTS_ON_GAIT;
         x.phi[i] = on_gait ? ref : in[i];

@@ -9,11 +9,11 @@
 
 #include "moray/snake.h"
 
-static void random_input(unsigned long long *seed, double in[11])
+static void random_input(unsigned long long *seed, double in[12])
 {
-    const double low[11] = {-3, 0, 0, -0.5, -0.3, -0.3, 0.05, 1, 0.3, -0.1, 0};
-    const double high[11] = {3, 0, 0, 0.5, 0.3, 0.3, 0.4, 4, 1.5, 0.1, 3};
-    for (int i = 0; i < 11; i++)
+    const double low[12] = {-3, 0, 0, -0.5, -0.3, -0.3, 0.05, 1, 0.3, -0.1, -0.8, 0};
+    const double high[12] = {3, 0, 0, 0.5, 0.3, 0.3, 0.4, 4, 1.5, 0.1, 0.8, 3};
+    for (int i = 0; i < 12; i++)
         in[i] = tap_random(seed, low[i], high[i]);
 }
 
@@ -21,8 +21,8 @@ static void random_input(unsigned long long *seed, double in[11])
 static void full_state(int N, const double *in, double *x, double *ubar)
 {
     double *phi = calloc(2 * (size_t)N, sizeof *phi), *dphi = phi + N;
-    const moray_gait gait = {.amplitude = in[6], .omega = in[7], .delta = in[8], .offset = in[9]};
-    moray_gait_reference(&gait, N - 1, in[10], phi, dphi, ubar);
+    const moray_gait gait = {.amplitude = in[6], .omega = in[7], .delta = in[8], .offset = in[9], .taper = in[10]};
+    moray_gait_reference(&gait, N - 1, in[11], phi, dphi, ubar);
     for (int rate = 0; rate < 2; rate++) {
         double *angle = x + rate * (N + 2), *joint = rate ? dphi : phi, sum = 0;
         angle[0] = 0;
@@ -42,7 +42,7 @@ static void test_against_swimmer(const moray_plant_spec *spec, const moray_map *
     CHECK_OK(moray_swimmer_new(&swimmer, &spec->robot, MORAY_FIRST_PRINCIPLES), "swimmer");
     moray_swimmer_set_current(swimmer, spec->current[0], spec->current[1]);
     double *x = calloc(8 * (size_t)N + 16, sizeof *x), *dx = x + 2 * N + 4, *ubar = dx + 2 * N + 4, *u = ubar + N;
-    double *out = calloc((size_t)map->n_out, sizeof *out), *phi = u + N, *v_phi = phi + N, in[11], worst = 0;
+    double *out = calloc((size_t)map->n_out, sizeof *out), *phi = u + N, *v_phi = phi + N, in[12], worst = 0;
     random_input(seed, in);
     full_state(N, in, x, ubar);
     map->value(map->self, in, out);
@@ -70,7 +70,7 @@ static void test_against_swimmer(const moray_plant_spec *spec, const moray_map *
 
 static void test_derivatives(const moray_map *map, int N, unsigned long long *seed)
 {
-    double in[11], *weight = calloc((size_t)map->n_out, sizeof *weight);
+    double in[12], *weight = calloc((size_t)map->n_out, sizeof *weight);
     random_input(seed, in);
     for (int i = 0; i < map->n_out; i++)
         weight[i] = tap_random(seed, -1, 1);

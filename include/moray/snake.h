@@ -44,7 +44,7 @@ typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 // Gait (25): phi_ref,i(t) = A_i sin(omega t + (i-1) delta) + offset, i = 1..N-1. A_i and offset are a and phi_0 in m
 // for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Eel-like motion, beyond the
 // paper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail, to 1 at the
-// last (0 where N = 2). The plants for the transcription, below, know no taper.
+// last (0 where N = 2).
 typedef struct moray_gait {
     double amplitude, omega, delta, offset, taper;
 } moray_gait;
@@ -114,8 +114,8 @@ void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *
 // (N).
 
 typedef enum {
-    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0); no u
-    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0), ubar from (34); no u
+    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0, taper); no u
+    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0, taper), ubar from (34); no u
     MORAY_JOINTS_FREE         // x of (21), u = ubar (N-1); no s
 } moray_joints;
 
@@ -136,8 +136,8 @@ moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
 moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 
 // The first-principles model in the same form, for MORAY_JOINTS_ON_GAIT only: x = (mean link angle, p_x, p_y, and their
-// rates), s = (alpha, omega, delta, phi_0); c: joint torques [N m], then theta_i minus their mean. Exact Jacobians by
-// complex step, Hessians differenced from them. Errors and ownership as above.
+// rates), s = (alpha, omega, delta, phi_0, taper); c: joint torques [N m], then theta_i minus their mean. Exact
+// Jacobians by complex step, Hessians differenced from them. Errors and ownership as above.
 moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec);
 
 #endif

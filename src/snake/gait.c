@@ -3,11 +3,13 @@
 
 #include <math.h>
 
+#include "taper.h"
+
 void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi)
 {
     const double omega = gait->omega;
     for (int i = 0; i < n_joints; i++) {
-        const double s = n_joints > 1 ? 2.0 * i / (n_joints - 1) - 1 : 0, a = gait->amplitude * (1 + gait->taper * s);
+        const double a = gait->amplitude * (1 + gait->taper * taper_place(i, n_joints));
         const double argument = omega * t + i * gait->delta;
         const double sine = sin(argument), cosine = cos(argument);
         phi[i] = a * sine + gait->offset; // (25)

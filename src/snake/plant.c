@@ -75,10 +75,11 @@ static double *take(arena *from, int count)
 
 static void take_vectors(plant *self, arena *from)
 {
-    double **const on_joints[] = {&self->phi,      &self->v_phi,    &self->ubar,      &self->zeros,      &self->ones,
-                                  &self->bt_phi,   &self->aa_phi,   &self->g_load,    &self->u,          &self->b_v,
-                                  &self->b_ubar,   &self->g_v,      &self->on_phi,    &self->on_v,       &self->on_ubar,
-                                  &self->b_lambda, &self->g_lambda, &self->gait.sine, &self->gait.cosine};
+    double **const on_joints[] = {
+        &self->phi,         &self->v_phi,      &self->ubar,       &self->zeros,    &self->ones,     &self->bt_phi,
+        &self->aa_phi,      &self->g_load,     &self->u,          &self->b_v,      &self->b_ubar,   &self->g_v,
+        &self->on_phi,      &self->on_v,       &self->on_ubar,    &self->b_lambda, &self->g_lambda, &self->gait.sine,
+        &self->gait.cosine, &self->gait.place, &self->gait.growth};
     double **const on_inputs[] = {&self->y_x[0], &self->y_x[1], &self->y_x[2],  &self->y_x[3], &self->load_x,
                                   &self->dv_t_x, &self->dv_n_x, &self->kappa_x, &self->a_x,    &self->bend_x};
     for (size_t k = 0; k < sizeof on_joints / sizeof *on_joints; k++)

@@ -7,7 +7,9 @@
 #include <string.h>
 #include <tgmath.h>
 
-enum { states = 6, parameters = 4, inputs = states + parameters + 1 };
+#include "taper.h"
+
+enum { states = 6, parameters = 5, inputs = states + parameters + 1 };
 
 struct complex_plant {
     moray_plant_spec spec;
@@ -19,16 +21,17 @@ struct complex_plant {
 // (25) and its derivatives
 static void gait_motion(const struct complex_plant *plant, const double complex *s, double complex t)
 {
-    const double complex alpha = s[0], omega = s[1], delta = s[2], offset = s[3];
+    const double complex alpha = s[0], omega = s[1], delta = s[2], offset = s[3], taper = s[4];
     for (int i = 0; i < plant->spec.robot.links - 1; i++) {
         const double complex sine = sin(omega * t + i * delta), cosine = cos(omega * t + i * delta);
-        plant->phi[i] = alpha * sine + offset;
-        plant->dphi[i] = alpha * omega * cosine;
-        plant->ubar[i] = -alpha * omega * omega * sine;
+        const double complex amplitude = alpha * (1 + taper * taper_place(i, plant->spec.robot.links - 1));
+        plant->phi[i] = amplitude * sine + offset;
+        plant->dphi[i] = amplitude * omega * cosine;
+        plant->ubar[i] = -amplitude * omega * omega * sine;
     }
 }
 
-// in = [heading, p_x, p_y, their rates, alpha, omega, delta, phi_0, t]
+// in = [heading, p_x, p_y, their rates, alpha, omega, delta, phi_0, taper, t]
 static void evaluate(void *self, const double complex *in, double complex *out)
 {
     struct complex_plant *plant = self;
@@ -90,7 +93,7 @@ static moray_status plant_new(struct complex_plant **result, const moray_plant_s
 // Where patterns are looked for: a swimming robot in the middle of a stroke.
 static void probe(const moray_robot *robot, double *in)
 {
-    const double speed = robot->l, typical[inputs] = {0.1, 0, 0, 0.2, speed, 0.3 * speed, 0.2, 2, 0.7, 0.01, 0.4};
+    const double speed = robot->l, typical[inputs] = {0.1, 0, 0, 0.2, speed, 0.3 * speed, 0.2, 2, 0.7, 0.01, 0.1, 0.4};
     memcpy(in, typical, sizeof typical);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Joints on the gait: phi, v_phi, ubar are (25) and its derivatives, the shape inputs a, omega, delta, phi_0, t.
+// Joints on the gait: phi, v_phi, ubar are (25) and its derivatives, the shape inputs a, omega, delta, phi_0, taper, t.
 #include "plant.h"
 
 #include "shape.h"
@@ -55,10 +55,10 @@ static void force_jacobian(const plant *self, double *values, int stride)
     }
 }
 
-// delta does not move the first joint.
+// delta does not move the first joint, taper not a joint that is alone.
 static bool moves_link(const plant *self, int input, int link)
 {
-    return input != GAIT_DELTA || (link > 0 && self->n > 1);
+    return input == GAIT_DELTA ? link > 0 && self->n > 1 : input != GAIT_TAPER || self->n > 1;
 }
 
 static double *angle_jacobian(const plant *self, double *values)

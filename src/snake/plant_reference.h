@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// The gait (25) and its time derivatives as functions of p = (a, omega, delta, phi_0, t), with first and second
-// derivatives: phi_i = a sin(omega t + (i-1) delta) + phi_0, v_i = a omega cos(..), acc_i = -a omega^2 sin(..).
+// The gait (25) and its time derivatives as functions of p = (a, omega, delta, phi_0, taper, t), with first and second
+// derivatives: phi_i = a_i sin(omega t + (i-1) delta) + phi_0, v_i = a_i omega cos(..), acc_i = -a_i omega^2 sin(..),
+// where a_i = a (1 + taper s_i).
 #ifndef MORAY_SNAKE_PLANT_REFERENCE_H
 #define MORAY_SNAKE_PLANT_REFERENCE_H
 
-enum { GAIT_A, GAIT_OMEGA, GAIT_DELTA, GAIT_PHI_0, GAIT_T, GAIT_INPUTS };
+enum { GAIT_A, GAIT_OMEGA, GAIT_DELTA, GAIT_PHI_0, GAIT_TAPER, GAIT_T, GAIT_INPUTS };
 enum { GAIT_PAIRS = GAIT_INPUTS * (GAIT_INPUTS + 1) / 2 }; // lower triangle by rows
 
 typedef struct reference {
     int n; // joints
     double a, omega, phi_0, t;
-    double *sine, *cosine; // of omega t + (i-1) delta, n each; the owner's memory
+    double *sine, *cosine;  // of omega t + (i-1) delta
+    double *place, *growth; // s_i, 1 + taper s_i; all n each, the owner's memory
 } reference;
 
 void reference_set(reference *at, const double p[GAIT_INPUTS]);
