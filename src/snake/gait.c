@@ -32,6 +32,18 @@ double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model mode
     return asin(amplitude / (2 * robot->l * cos(delta / 2)));
 }
 
+double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link)
+{
+    const int N = robot->links;
+    const double middle = moray_theta_max_from_amplitude(robot, model, gait->amplitude, gait->delta);
+    if (N == 2)
+        return middle;
+    const double tangent = tan(gait->delta / 2), across = model == MORAY_FIRST_PRINCIPLES ? 1 / tangent : tangent;
+    const double s = (2.0 * link - N - 1) / (N - 2);
+    const double factor = hypot(1 + gait->taper * s, gait->taper * across / (N - 2));
+    return model == MORAY_FIRST_PRINCIPLES ? middle * factor : asin(sin(middle) * factor);
+}
+
 moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to)
 {
     if (from == to)
