@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# For sourcing: a program as a user meets it, in an empty directory. Arguments: the program, the source directory.
+# For tests of one program, sourced with its path in $1 and the source directory in $2: an own working directory, and
+# the words below.
 case $1 in
 /*) program=$1 ;;
 *) program=$PWD/$1 ;;
@@ -10,9 +11,25 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 
+# run ARGUMENTS: leaves $code, out and err.
 run() {
     "$program" "$@" >out 2>err </dev/null
     code=$?
+}
+
+# Standard error is one line that begins with the program's name.
+one_line() {
+    [ "$(wc -l <err)" -eq 1 ] && grep -q "^$(basename "$program"): " err
+}
+
+# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it, no --out.
+refuse() {
+    text=$1
+    shift
+    run "$@" --json --out fresh
+    check "exit 2: $(cat err)" [ $code -eq 2 ]
+    check "one line that says '$text'" eval 'one_line && grep -qF -e "$text" err'
+    check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
 }
 
 # number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
@@ -24,15 +41,5 @@ number() {
 
 # near VALUE EXPECTED TOLERANCE
 near() {
-    awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { exit !(a != "" && a - b <= t && b - a <= t) }'
-}
-
-# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it, no --out.
-refuse() {
-    text=$1
-    shift
-    run "$@" --json --out fresh
-    check "exit 2: $(cat err)" [ $code -eq 2 ]
-    check "one line that says '$text'" eval '[ "$(wc -l <err)" -eq 1 ] && grep -qF -e "$text" err'
-    check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
+    awk -v is="$1" -v want="$2" -v by="$3" 'BEGIN { exit !(is != "" && want != "" && is - want <= by && want - is <= by) }'
 }

@@ -28,6 +28,24 @@ static moray_solution *solve(moray_ocp *ocp, const char *scheme, int intervals, 
     return solution;
 }
 
+// The Hamiltonian is the same at every collocated node; those are most of all.
+static void check_hamiltonian(const moray_solution *solution, const char *what, double value, double tolerance)
+{
+    double hamiltonian[64], worst = 0;
+    const int nodes = moray_solution_hamiltonian(solution, 0, hamiltonian);
+    int missing = 0;
+    for (int n = 0; n < nodes; n++) {
+        missing += isnan(hamiltonian[n]);
+        worst = fmax(worst, fabs(hamiltonian[n] - value)); // which passes over NaN
+    }
+    CHECK(2 * missing < nodes, "%s: at %d of %d nodes there is none", what, missing, nodes);
+    CHECK(worst < tolerance, "%s: Hamiltonian %g at %d nodes: %.1e", what, value, nodes, worst);
+    moray_certificate certificate;
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK(certificate.hamiltonian <= 2 * worst / (1 + fabs(value)) + 1e-15, "%s: its spread: %.1e", what,
+          certificate.hamiltonian);
+}
+
 // ---- Brachistochrone (Bryson & Ho 2.7): (0, 10) to (10, 5), g = 9.80665, 1.80160312 s ----
 
 static void slide(const moray_node *at, moray_rates *out, const void *data)
@@ -58,12 +76,17 @@ static void test_brachistochrone(void)
     CHECK_OK(moray_ocp_new(
                  &ocp, &(moray_ocp_spec){.name = "brachistochrone", .phases = 1, .phase = &wire, .endpoint = arrival}),
              "brachistochrone");
+    int nx, nu;
+    moray_ocp_widths(ocp, 0, &nx, &nu);
+    CHECK(moray_ocp_phases(ocp) == 1 && nx == 3 && nu == 1, "sizes: %d phase of %d states, %d control",
+          moray_ocp_phases(ocp), nx, nu);
     moray_solution *solution = solve(ocp, "lobatto5", 10, NULL);
     CHECK_RELATIVE(moray_solution_objective(solution), 1.80160312, 1e-8, "published time");
     moray_certificate certificate;
     CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
     CHECK(certificate.pass, "passes: KKT %.1e, mesh %.1e, between nodes %.1e, re-simulation %.1e", certificate.kkt,
           certificate.mesh_error, certificate.between_nodes, certificate.resimulation);
+    check_hamiltonian(solution, "brachistochrone", -1, 1e-5); // of the least time
     moray_solution_free(solution);
     solution = solve(ocp, "trapezoid", 10, NULL);
     CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate of a coarse mesh");
@@ -114,6 +137,7 @@ static void test_costates(void)
         for (int n = 0; n < nodes; n++)
             worst = fmax(worst, fmax(fabs(costate[n][0] + 12), fabs(costate[n][1] - 12 * time[n] + 6)));
         CHECK(worst < 1e-7, "%s: costates at all %d nodes against the closed form: %.1e", schemes[k], nodes, worst);
+        check_hamiltonian(solution, schemes[k], -18, 1e-7); // u^2/2 + lambda_x v + lambda_v u
         moray_solution_at(solution, 0, 0.37, x, &u);
         CHECK_NEAR(u, 6 - 12 * 0.37, 1e-7, "control between nodes");
         if (strcmp(schemes[k], "gauss2") != 0) // its interpolant is a parabola, the solution a cubic
@@ -170,6 +194,44 @@ static void test_order(void)
         CHECK(fabs(order - cases[k].order) < 0.2, "%s: measured order %.2f, theory %g (errors %.1e, %.1e)",
               cases[k].scheme, order, cases[k].order, coarse, fine);
     }
+    moray_certificate certificate;
+    moray_solution *solution = solve(ocp, "gauss2", 10, NULL);
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK(isnan(certificate.hamiltonian), "dynamics that depend on time have no constant Hamiltonian");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- An integrand that vanishes at every node: x' = 0, q = integral of sin^2(20 pi t) over [0, 1] = 1/2 ----
+
+static void ripple(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num wave = sin(20 * M_PI * at->t);
+    out->f[0] = 0 * at->x[0];
+    out->g[0] = wave * wave;
+}
+
+static void test_integrals_are_certified(void)
+{
+    moray_ocp *ocp;
+    const moray_phase_spec phase = {.name = "ripple",
+                                    .nx = 1,
+                                    .nq = 1,
+                                    .continuous = ripple,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(1))};
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "ripple", .phases = 1, .phase = &phase, .endpoint = energy}),
+             "integrand that ripples");
+    moray_solution *solution = solve(ocp, "hermite-simpson", 10, NULL);
+    moray_certificate certificate;
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK_NEAR(moray_solution_integrals(solution, 0)[0], 0, 1e-12, "the nodes see nothing");
+    CHECK(!certificate.pass && certificate.mesh_error > 0.01, "mesh error of the integral: %.2g",
+          certificate.mesh_error);
+    CHECK_NEAR(certificate.resimulation, 0.5, 1e-6, "integral found by simulating again");
+    moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
 
@@ -242,6 +304,7 @@ int main(void)
     test_brachistochrone();
     test_costates();
     test_order();
+    test_integrals_are_certified();
     test_refusals();
     test_infeasible_is_explained();
     return tap_done();

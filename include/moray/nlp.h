@@ -43,9 +43,9 @@ typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
 typedef struct moray_nlp_settings {
     double tolerance;   // 1e-8: scaled KKT error at which the solver stops
     int max_iterations; // 1000
-    double barrier;  // 0.1: barrier parameter to start with; less where the start is nearly feasible and nearly right
-    bool warm;       // false: true starts from the multipliers of the iterate too
-    int print_level; // 0: Ipopt's own log on standard output, 0..12
+    double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
+    bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
+    int print_level;    // 0: Ipopt's own log on standard output, 0..12
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;

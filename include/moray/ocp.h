@@ -8,10 +8,9 @@
 #ifndef MORAY_OCP_H
 #define MORAY_OCP_H
 
-#include <complex.h>
-
 #include "moray/map.h"
 #include "moray/nlp.h"
+#include "moray/num.h"
 #include "moray/ode.h"
 #include "moray/scheme.h"
 
@@ -56,9 +55,8 @@ typedef struct moray_bounds_list {
 // ---- Problem form
 // ------------------------------------------------------------------------------------------------------
 
-typedef double complex moray_num; // user functions are plain C99 on this type; their derivatives come by complex step
-
-// Where the functions of a phase are evaluated, and what they give.
+// User functions are plain C99 on moray_num, see num.h; their derivatives come by complex step. Where the functions of
+// a phase are evaluated, and what they give:
 typedef struct moray_node {
     const moray_num *x, *u, *s; // [nx], [nu], [ns]
     moray_num t;
@@ -83,25 +81,52 @@ typedef struct moray_verdict {
 } moray_verdict;
 typedef void moray_endpoint_fn(const moray_ends *at, moray_verdict *out, const void *data);
 
+// The same for code that knows only double: derivatives by sparse differences, see moray_map_from_real.
+typedef struct moray_real_node {
+    const double *x, *u, *s;
+    double t;
+} moray_real_node;
+typedef struct moray_real_rates {
+    double *f, *c, *g;
+} moray_real_rates;
+typedef void moray_continuous_real_fn(const moray_real_node *at, moray_real_rates *out, const void *data);
+
+typedef struct moray_real_phase_ends {
+    const double *x0, *xf, *q;
+    double t0, tf;
+} moray_real_phase_ends;
+typedef struct moray_real_ends {
+    const moray_real_phase_ends *phase;
+    const double *s;
+} moray_real_ends;
+typedef struct moray_real_verdict {
+    double objective, *e;
+} moray_real_verdict;
+typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_verdict *out, const void *data);
+
+// Of continuous, continuous_real and map, exactly one.
 typedef struct moray_phase_spec {
     const char *name;
     int nx, nu, nc, nq;
-    moray_continuous_fn *continuous; // complex step; or
+    moray_continuous_fn *continuous; // complex step
     const moray_map *map;            // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
     moray_bounds t0, tf;
     moray_bounds_list x, x0, xf, u, c, q;                         // x0 and xf narrow x at the ends
     const char *const *x_names, *const *u_names, *const *c_names; // NULL: x[0], ...
+    moray_continuous_real_fn *continuous_real;                    // differences
 } moray_phase_spec;
 
+// Of endpoint, endpoint_real and endpoint_map, exactly one.
 typedef struct moray_ocp_spec {
     const char *name;
     int phases, ns, ne;
     const moray_phase_spec *phase; // [phases]
-    moray_endpoint_fn *endpoint;   // complex step; or
+    moray_endpoint_fn *endpoint;   // complex step
     const moray_map *endpoint_map; // analytic: in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
     moray_bounds_list s, e;
     const char *const *s_names, *const *e_names;
-    const void *data; // handed to the functions
+    const void *data;                      // handed to the functions
+    moray_endpoint_real_fn *endpoint_real; // differences
 } moray_ocp_spec;
 
 typedef struct moray_ocp moray_ocp;
@@ -110,6 +135,21 @@ typedef struct moray_ocp moray_ocp;
 // contradictory or not a number; MORAY_MEMORY.
 moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
 void moray_ocp_free(moray_ocp *ocp);
+
+// The worst disagreement, relative to 1 + |difference|, between the derivatives in use and differences of the functions
+// at several points within the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u) is 0.2, by
+// differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
+typedef struct moray_ocp_derivative_report {
+    double jacobian_error, hessian_error;
+    char jacobian[300], hessian[300];
+} moray_ocp_derivative_report;
+
+// Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at any of the points.
+moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report);
+
+// Number of phases; states and controls of one of them.
+int moray_ocp_phases(const moray_ocp *ocp);
+void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
 
 // ---- Trajectories, guesses
 // -----------------------------------------------------------------------------------------------
@@ -121,22 +161,28 @@ typedef struct moray_samples {
     const double *time, *x, *u;
 } moray_samples;
 
+typedef struct moray_solution moray_solution;
+
 // A guess: samples of each phase (piecewise linear, stretched to the phase's own first and last time), parameters
 // s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, u in the middle
 // of its bounds.
 typedef struct moray_guess {
     const moray_samples *phase;
     const double *s;
+    const moray_solution *from; // NULL; a solution of a problem of the same sizes on any mesh and scheme: all from it
 } moray_guess;
+
+moray_guess moray_guess_from_solution(const moray_solution *solution); // borrows
 
 // ---- Solving
 // ---------------------------------------------------------------------------------------------------------------
 
 typedef struct moray_settings {
     const char *scheme;    // "hermite-simpson"
-    int intervals;         // 20, of equal length, in every phase
+    int intervals;         // 20, of equal length, in every phase; 0: the meshes and the scheme of guess->from
     double tolerance;      // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
-    double mesh_tolerance; // 1e-6: largest relative error between nodes that the certificate accepts
+    double mesh_tolerance; // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
+    int max_refinements;   // 0: finer meshes tried while the mesh error is above mesh_tolerance
     int max_iterations;    // 1000
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
@@ -147,12 +193,12 @@ typedef struct moray_settings {
 
 moray_settings moray_settings_default(void);
 
-typedef struct moray_solution moray_solution;
-
 // Transcribes and solves from `guess` (NULL: from the bounds). The solution keeps what it needs of the problem but must
-// not outlive it; free with moray_solution_free. Returns MORAY_OK with *solution set whenever the solver ran, converged
-// or not: read moray_solution_info(...)->outcome and, when it is not MORAY_NLP_SOLVED, moray_solution_diagnosis.
-// Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY, MORAY_NUMERIC (functions not finite at the guess).
+// not outlive it; free with moray_solution_free. A refined mesh starts from the interpolated solution of the last; when
+// one is not solved, the solution is that of the last solved (with the outcome of the failed where interrupted).
+// Returns MORAY_OK with *solution set whenever the solver ran, converged or not: read moray_solution_info(...)->outcome
+// and, when it is not MORAY_NLP_SOLVED, moray_solution_diagnosis. Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY,
+// MORAY_NUMERIC (functions not finite at the guess).
 moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
                          moray_solution **solution);
 void moray_solution_free(moray_solution *solution);
@@ -163,18 +209,38 @@ const double *moray_solution_parameters(const moray_solution *solution);        
 const double *moray_solution_integrals(const moray_solution *solution, int phase); // q[nq]
 void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf);
 
-// State x[nx] and control u[nu] at time t (clamped to the phase) from the collocation polynomials. Either may be NULL.
+// State x[nx] and control u[nu] at time t (clamped to the phase) from the collocation polynomials, the control kept
+// within its bounds, which a polynomial leaves beside a jump. Either may be NULL.
 void moray_solution_at(const moray_solution *solution, int phase, double t, double *x, double *u);
 
 // The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the
 // Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL.
 int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
 
+// The Hamiltonian g + lambda f, with the integrands weighted by what they cost, at the nodes: hamiltonian[count], NaN
+// where the dynamics are not collocated (start of a phase with Radau, ends of the intervals with Gauss). Returns the
+// count. It is constant where the functions of the phase do not depend on time, 0 at a free final time that nothing
+// else depends on.
+int moray_solution_hamiltonian(const moray_solution *solution, int phase, double *hamiltonian);
+
 // Sizes of the programme that was solved.
 typedef struct moray_nlp_size {
     int variables, constraints, nnz_jac, nnz_hess;
 } moray_nlp_size;
 moray_nlp_size moray_solution_size(const moray_solution *solution);
+
+// One mesh that was tried.
+typedef struct moray_mesh_record {
+    int intervals, nodes, variables; // of all phases
+    moray_nlp_outcome outcome;
+    int iterations;
+    double seconds;
+    double error; // see moray_certificate.mesh_error; NaN where not solved
+    double objective;
+} moray_mesh_record;
+
+// The meshes that were tried, first to last; [*meshes], owned by the solution.
+const moray_mesh_record *moray_solution_history(const moray_solution *solution, int *meshes);
 
 // One text of several lines that says what hurts: the largest scaled violation by name, phase and time, and the active
 // bounds. Owned by the solution.
@@ -187,11 +253,15 @@ const char *moray_solution_diagnosis(const moray_solution *solution);
 typedef struct moray_certificate {
     bool pass;
     double kkt;           // optimality and feasibility in user units; limit 100 x tolerance
-    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|); limit mesh_tolerance
+    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|), and of the same of
+                          // integrands g and integrals q; limit mesh_tolerance
     double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
                           // x mesh_tolerance
-    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes when each phase is integrated again
-                          // from its start with the found controls; limit 100 x mesh_tolerance
+    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
+                          // when each phase is integrated again from its start with the found controls; limit 100 x
+                          // mesh_tolerance
+    double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
+                          // functions do not depend on time, where theory has it constant; NaN without such a phase
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.

@@ -37,30 +37,11 @@ static void json_gain(moray_json *json, const moray_gait_gain *gain)
 
 static void json_solver(moray_json *json, const stage *at)
 {
-    const moray_nlp_info *info = moray_solution_info(at->solution);
-    const moray_nlp_size size = moray_solution_size(at->solution);
-    const moray_certificate *c = &at->certificate;
-    moray_json_open(json, "solver");
-    moray_json_text(json, "status", moray_nlp_outcome_text(info->outcome));
-    moray_json_number(json, "iterations", info->iterations);
-    moray_json_number(json, "objective", moray_solution_objective(at->solution));
-    moray_json_number(json, "nvar", size.variables);
-    moray_json_number(json, "ncon", size.constraints);
-    moray_json_number(json, "nnz_jac", size.nnz_jac);
-    moray_json_number(json, "nnz_hess", size.nnz_hess);
-    moray_json_number(json, "time_s", info->seconds);
-    moray_json_number(json, "eval_time_s", info->evaluation_seconds);
-    moray_json_text(json, "linear_solver", "mumps");
+    moray_solver_to_json(json, at->solution);
     moray_json_number(json, "starts", at->starts);
     moray_json_number(json, "starts_at_optimum", at->agreeing);
     moray_json_close(json);
-    moray_json_open(json, "certificate");
-    moray_json_bool(json, "pass", c->pass);
-    moray_json_number(json, "kkt", c->kkt);
-    moray_json_number(json, "mesh_error", c->mesh_error);
-    moray_json_number(json, "between_nodes", c->between_nodes);
-    moray_json_number(json, "resimulation", c->resimulation);
-    moray_json_close(json);
+    moray_certificate_to_json(json, &at->certificate);
 }
 
 static void json_stage(moray_json *json, const gait_job *job, const stage *at)

@@ -58,20 +58,6 @@ static void verdict(const gait_job *job, const stage *at, char *text)
              percent(at->promise.speed, here->speed), percent(at->promise.power, here->power));
 }
 
-static void solver_line(const gait_job *job, const stage *at, char *text)
-{
-    const moray_nlp_info *info = moray_solution_info(at->solution);
-    const moray_nlp_size n = moray_solution_size(at->solution);
-    const moray_certificate *c = &at->certificate;
-    snprintf(text, text_size,
-             "%s: %s, %d intervals, %d variables, %s in %d iterations, %.2f s (%d of %d starts end here, none better); "
-             "certificate: %s (KKT %.1e, mesh error "
-             "%.1e, between nodes %.1e, re-simulation %.1e)",
-             model_names[at->model], job->common.scheme, job->common.intervals, n.variables,
-             moray_nlp_outcome_text(info->outcome), info->iterations, info->seconds, at->agreeing, at->starts,
-             c->pass ? "pass" : "FAIL", c->kkt, c->mesh_error, c->between_nodes, c->resimulation);
-}
-
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
 enum { tables = 3 };
@@ -136,8 +122,12 @@ static void print_tables(const gait_job *job)
         printf("%s\n\n", text);
     }
     for (int model = 0; model <= (int)job->common.model; model++) {
-        solver_line(job, &job->stage[model], text);
-        printf("%s\n", text);
+        const stage *at = &job->stage[model];
+        moray_solver_line(at->solution, job->common.scheme, job->common.intervals, text, text_size);
+        printf("%s model, %s; %d of %d starts end here, none better\n", model_names[model], text, at->agreeing,
+               at->starts);
+        moray_certificate_line(&at->certificate, text, text_size);
+        printf("    %s\n", text);
     }
 }
 

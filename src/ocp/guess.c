@@ -73,6 +73,40 @@ static void guess_from_bounds(const struct transcription *t, int p, double *x)
     }
 }
 
+static moray_status check_sizes(const moray_ocp *ocp, const moray_ocp *other)
+{
+    if (ocp->phases != other->phases || ocp->ns != other->ns)
+        return moray_error(MORAY_INPUT, "guess: the solution has %d phases and %d parameters, the problem %d and %d",
+                           other->phases, other->ns, ocp->phases, ocp->ns);
+    for (int p = 0; p < ocp->phases; p++)
+        if (ocp->phase[p].nx != other->phase[p].nx || ocp->phase[p].nu != other->phase[p].nu)
+            return moray_error(
+                MORAY_INPUT, "guess of phase %s: the solution has %d states and %d controls, the problem %d and %d",
+                ocp->phase[p].name, other->phase[p].nx, other->phase[p].nu, ocp->phase[p].nx, ocp->phase[p].nu);
+    return moray_ok();
+}
+
+static void guess_from_solution(const struct transcription *t, int p, const moray_solution *from, double *x)
+{
+    const struct phase_layout *layout = &t->layout.phase[p];
+    double t0, tf;
+    moray_solution_times(from, p, &t0, &tf);
+    if (layout->t0 >= 0)
+        x[layout->t0] = t0;
+    if (layout->tf >= 0)
+        x[layout->tf] = tf;
+    for (int n = 0; n < layout->nodes; n++) {
+        const struct node *node = &layout->node[n];
+        moray_solution_at(from, p, t0 + (tf - t0) * node->tau, x + node->x,
+                          node->collocated ? x + node->x + t->ocp->phase[p].nx : NULL);
+    }
+}
+
+moray_guess moray_guess_from_solution(const moray_solution *solution)
+{
+    return (moray_guess){.from = solution};
+}
+
 // q of the guessed trajectory: what makes its definition hold.
 static void guess_integrals(const struct transcription *t, const double *g, double *x)
 {
@@ -87,24 +121,39 @@ static void clamp(const struct transcription *t, double *x)
         x[j] = fmin(fmax(x[j], t->nlp.x_lower[j]), t->nlp.x_upper[j]);
 }
 
-moray_status fill_guess(struct transcription *t, const moray_guess *guess, double *x)
+static moray_status fill_phase(struct transcription *t, int p, const moray_guess *guess, double *x)
 {
-    const moray_ocp *ocp = t->ocp;
-    for (int i = 0; i < ocp->ns; i++) {
-        x[t->layout.s + i] = guess && guess->s ? guess->s[i] : bounds_middle(ocp->s[i]);
+    const struct phase *phase = &t->ocp->phase[p];
+    memset(x + t->layout.phase[p].q, 0, (size_t)phase->nq * sizeof *x);
+    if (guess && guess->from) {
+        guess_from_solution(t, p, guess->from, x);
+    } else if (guess && guess->phase && guess->phase[p].n != 0) {
+        MORAY_TRY(check_samples(phase, &guess->phase[p]));
+        guess_from_samples(t, p, &guess->phase[p], x);
+    } else {
+        guess_from_bounds(t, p, x);
+    }
+    return moray_ok();
+}
+
+static moray_status fill_parameters(const struct transcription *t, const moray_guess *guess, double *x)
+{
+    const double *s = guess && guess->from ? moray_solution_parameters(guess->from) : guess ? guess->s : NULL;
+    for (int i = 0; i < t->ocp->ns; i++) {
+        x[t->layout.s + i] = s ? s[i] : bounds_middle(t->ocp->s[i]);
         if (!isfinite(x[t->layout.s + i]))
             return moray_error(MORAY_INPUT, "guess: parameter %d is not finite", i);
     }
-    for (int p = 0; p < ocp->phases; p++) {
-        const bool given = guess && guess->phase && guess->phase[p].n != 0;
-        if (given)
-            MORAY_TRY(check_samples(&ocp->phase[p], &guess->phase[p]));
-        if (given)
-            guess_from_samples(t, p, &guess->phase[p], x);
-        else
-            guess_from_bounds(t, p, x);
-        memset(x + t->layout.phase[p].q, 0, (size_t)ocp->phase[p].nq * sizeof *x);
-    }
+    return moray_ok();
+}
+
+moray_status fill_guess(struct transcription *t, const moray_guess *guess, double *x)
+{
+    if (guess && guess->from)
+        MORAY_TRY(check_sizes(t->ocp, guess->from->transcription->ocp));
+    MORAY_TRY(fill_parameters(t, guess, x));
+    for (int p = 0; p < t->ocp->phases; p++)
+        MORAY_TRY(fill_phase(t, p, guess, x));
     clamp(t, x);
     double *g = calloc((size_t)t->layout.rows + 1, sizeof *g);
     if (!g)

@@ -2,43 +2,6 @@
 #include "ocp/layout.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-void mesh_free(struct mesh *mesh)
-{
-    free(mesh->edge);
-    free(mesh->stages);
-    *mesh = (struct mesh){0};
-}
-
-static moray_status mesh_new(struct mesh *mesh, int intervals)
-{
-    *mesh = (struct mesh){.intervals = intervals,
-                          .edge = calloc((size_t)intervals + 1, sizeof *mesh->edge),
-                          .stages = calloc((size_t)intervals, sizeof *mesh->stages)};
-    if (mesh->edge && mesh->stages)
-        return moray_ok();
-    mesh_free(mesh);
-    return moray_error(MORAY_MEMORY, "no memory for a mesh of %d intervals", intervals);
-}
-
-moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages)
-{
-    MORAY_TRY(mesh_new(mesh, intervals));
-    for (int k = 0; k <= intervals; k++)
-        mesh->edge[k] = (double)k / intervals;
-    for (int k = 0; k < intervals; k++)
-        mesh->stages[k] = stages;
-    return moray_ok();
-}
-
-static moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh)
-{
-    MORAY_TRY(mesh_new(copy, mesh->intervals));
-    memcpy(copy->edge, mesh->edge, ((size_t)mesh->intervals + 1) * sizeof *copy->edge);
-    memcpy(copy->stages, mesh->stages, (size_t)mesh->intervals * sizeof *copy->stages);
-    return moray_ok();
-}
 
 static moray_status need_scheme(struct layout *layout, int stages)
 {

@@ -4,17 +4,8 @@
 #ifndef OCP_LAYOUT_H
 #define OCP_LAYOUT_H
 
+#include "ocp/mesh.h"
 #include "ocp/problem.h"
-
-// Intervals of one phase: edges[intervals + 1] from 0 to 1, stages[intervals].
-struct mesh {
-    int intervals;
-    double *edge;
-    int *stages;
-};
-
-moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages);
-void mesh_free(struct mesh *mesh);
 
 // A point of the mesh. Neighbouring intervals share the point between them.
 struct node {
@@ -54,11 +45,6 @@ struct layout {
 // Takes over nothing: copies the meshes. Error: MORAY_MEMORY, MORAY_INPUT (stages).
 moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family, const struct mesh *meshes);
 void layout_free(struct layout *layout);
-
-// "phase wire, t = 1.25: state v", "parameter omega", ...: what a column or row of the programme is. text[size].
-void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int column, char *text,
-                        int size);
-void layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text, int size);
 
 // Time of tau in phase p at the decision vector x.
 double layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau);

@@ -16,6 +16,13 @@ static void legendre(int n, double x, double *p, double *dp)
     *dp = n ? n * (before - x * here) / (1 - x * x) : 0;
 }
 
+double legendre_value(int n, double tau)
+{
+    double p, slope;
+    legendre(n, 2 * tau - 1, &p, &slope);
+    return p;
+}
+
 static double gauss_function(int s, double x, double *slope)
 {
     double p;

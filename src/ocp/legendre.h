@@ -7,4 +7,7 @@ void legendre_gauss(int s, double *node, double *weight); // weight may be NULL
 void legendre_radau(int s, double *node);
 void legendre_lobatto(int s, double *node);
 
+// The Legendre polynomial of degree n, shifted to [0, 1], at tau in (0, 1).
+double legendre_value(int n, double tau);
+
 #endif

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "ocp/solution.h"
+#include "ocp/refine.h"
+
+static const double worst_warm_error = 1e-3;
 
 moray_settings moray_settings_default(void)
 {
@@ -15,77 +18,126 @@ moray_settings moray_settings_default(void)
                             .own_scaling = true};
 }
 
-static moray_status check_settings(const moray_settings *settings)
+static moray_status check_settings(const moray_settings *settings, const moray_guess *guess)
 {
-    if (settings->intervals < 1)
-        return moray_error(MORAY_INPUT, "intervals = %d: must be at least 1", settings->intervals);
+    if (settings->intervals < (guess && guess->from ? 0 : 1))
+        return moray_error(MORAY_INPUT, "intervals = %d: must be at least 1 (0 with a guess from a solution)",
+                           settings->intervals);
     if (!(settings->tolerance > 0 && settings->tolerance < 1))
         return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
     if (!(settings->mesh_tolerance > 0))
         return moray_error(MORAY_INPUT, "mesh_tolerance = %g: must be positive", settings->mesh_tolerance);
     if (settings->max_iterations < 0)
         return moray_error(MORAY_INPUT, "max_iterations = %d: must not be negative", settings->max_iterations);
+    if (settings->max_refinements < 0)
+        return moray_error(MORAY_INPUT, "max_refinements = %d: must not be negative", settings->max_refinements);
     return moray_ok();
 }
 
-static moray_status transcribe(const moray_ocp *ocp, const moray_settings *settings, struct transcription **t)
-{
+// What stays from mesh to mesh.
+struct campaign {
+    const moray_ocp *ocp;
+    const moray_settings *settings;
     moray_family family;
-    int stages;
-    MORAY_TRY(moray_scheme_parse(settings->scheme, &family, &stages));
-    struct mesh *meshes = calloc((size_t)ocp->phases, sizeof *meshes);
-    moray_status status = meshes ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d meshes", ocp->phases);
-    for (int p = 0; p < ocp->phases && !moray_failed(status); p++)
-        status = mesh_uniform(&meshes[p], settings->intervals, stages);
-    if (!moray_failed(status))
-        status = transcription_new(t, ocp, family, meshes);
-    for (int p = 0; meshes && p < ocp->phases; p++)
-        mesh_free(&meshes[p]);
-    free(meshes);
-    return status;
+    int stages; // of new intervals
+    struct mesh *meshes;
+};
+
+static void free_meshes(struct campaign *c)
+{
+    for (int p = 0; c->meshes && p < c->ocp->phases; p++)
+        mesh_free(&c->meshes[p]);
+}
+
+static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
+{
+    const struct layout *other = guess && guess->from ? &guess->from->transcription->layout : NULL;
+    MORAY_TRY(moray_scheme_parse(c->settings->scheme, &c->family, &c->stages));
+    c->meshes = calloc((size_t)c->ocp->phases, sizeof *c->meshes);
+    if (!c->meshes)
+        return moray_error(MORAY_MEMORY, "no memory for %d meshes", c->ocp->phases);
+    if (c->settings->intervals == 0)
+        c->family = other->family;
+    for (int p = 0; p < c->ocp->phases; p++)
+        if (c->settings->intervals > 0)
+            MORAY_TRY(mesh_uniform(&c->meshes[p], c->settings->intervals, c->stages));
+        else if (p < other->phases)
+            MORAY_TRY(mesh_copy(&c->meshes[p], &other->phase[p].mesh));
+        else
+            return moray_error(MORAY_INPUT, "guess: the solution has %d phases, the problem %d", other->phases,
+                               c->ocp->phases);
+    return moray_ok();
 }
 
 static moray_status allocate_iterate(moray_solution *solution)
 {
     const int n = solution->transcription->nlp.n, m = solution->transcription->nlp.m;
-    double *block = calloc((size_t)(3 * n + 2 * m), sizeof *block);
+    double *block = calloc((size_t)(4 * n + 2 * m), sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for %d variables", n);
     solution->iterate = (moray_iterate){
-        .x = block, .z_lower = block + n, .z_upper = block + 2 * n, .g = block + 3 * n, .lambda = block + 3 * n + m};
+        .x = block, .z_lower = block + n, .z_upper = block + 2 * n, .g = block + 4 * n, .lambda = block + 4 * n + m};
+    solution->guess = block + 3 * n;
     return moray_ok();
+}
+
+static moray_nlp_settings solver_settings(const moray_settings *settings, bool warm)
+{
+    return (moray_nlp_settings){.tolerance = settings->tolerance,
+                                .max_iterations = settings->max_iterations,
+                                .barrier = warm ? settings->tolerance : settings->barrier,
+                                .warm = warm,
+                                .print_level = settings->print_level,
+                                .progress = settings->progress,
+                                .observer = settings->observer};
+}
+
+static bool is_solved(const moray_solution *solution)
+{
+    return solution->info.outcome == MORAY_NLP_SOLVED || solution->info.outcome == MORAY_NLP_ACCEPTABLE;
+}
+
+// Multipliers of a solved mesh whose error is small halve the iterations or better; of a coarse one they mislead.
+static bool can_start_warm(const moray_solution *solution, const moray_guess *guess)
+{
+    const moray_solution *from = guess ? guess->from : NULL;
+    return from && from->transcription->ocp == solution->transcription->ocp && is_solved(from) &&
+           from->history[from->meshes - 1].error < worst_warm_error;
+}
+
+static moray_status run_solver(moray_solution *solution, const moray_guess *guess, bool warm)
+{
+    struct transcription *t = solution->transcription;
+    const moray_nlp_settings settings = solver_settings(&solution->settings, warm);
+    MORAY_TRY(fill_guess(t, guess, solution->iterate.x));
+    if (solution->settings.own_scaling)
+        MORAY_TRY(choose_scales(t, solution->iterate.x));
+    memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
+    if (warm)
+        MORAY_TRY(carry_multipliers(guess->from, solution));
+    return moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
 }
 
 static moray_status run(moray_solution *solution, const moray_guess *guess)
 {
     struct transcription *t = solution->transcription;
-    const moray_settings *settings = &solution->settings;
-    MORAY_TRY(fill_guess(t, guess, solution->iterate.x));
-    if (settings->own_scaling)
-        MORAY_TRY(choose_scales(t, solution->iterate.x));
-    const moray_nlp_settings nlp_settings = {.tolerance = settings->tolerance,
-                                             .max_iterations = settings->max_iterations,
-                                             .barrier = settings->barrier,
-                                             .print_level = settings->print_level,
-                                             .progress = settings->progress,
-                                             .observer = settings->observer};
-    MORAY_TRY(moray_ipopt_solve(&t->nlp, &nlp_settings, &solution->iterate, &solution->info));
+    const bool warm = can_start_warm(solution, guess);
+    MORAY_TRY(run_solver(solution, guess, warm));
+    if (warm && !is_solved(solution) && solution->info.outcome != MORAY_NLP_INTERRUPTED)
+        MORAY_TRY(run_solver(solution, guess, false));
     if (!transcription_jacobians(t, solution->iterate.x)) // accessors read the caches
         return moray_error(MORAY_NUMERIC, "at the solver's last point, %.200s", t->failure.text);
-    diagnose(solution);
     return moray_ok();
 }
 
-moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
-                         moray_solution **result)
+static moray_status solve_mesh(const struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     *result = NULL;
-    MORAY_TRY(check_settings(settings));
     moray_solution *solution = calloc(1, sizeof *solution);
     if (!solution)
         return moray_error(MORAY_MEMORY, "no memory for a solution");
-    solution->settings = *settings;
-    moray_status status = transcribe(ocp, settings, &solution->transcription);
+    solution->settings = *c->settings;
+    moray_status status = transcription_new(&solution->transcription, c->ocp, c->family, c->meshes);
     if (!moray_failed(status))
         status = allocate_iterate(solution);
     if (!moray_failed(status))
@@ -97,11 +149,91 @@ moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, c
     return status;
 }
 
+static moray_mesh_record record_of(const moray_solution *solution, double error)
+{
+    const struct layout *layout = &solution->transcription->layout;
+    moray_mesh_record record = {.variables = layout->columns,
+                                .outcome = solution->info.outcome,
+                                .iterations = solution->info.iterations,
+                                .seconds = solution->info.seconds,
+                                .error = error,
+                                .objective = solution->iterate.objective};
+    for (int p = 0; p < layout->phases; p++) {
+        record.intervals += layout->phase[p].mesh.intervals;
+        record.nodes += layout->phase[p].nodes;
+    }
+    return record;
+}
+
+// Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
+static moray_status record_and_refine(struct campaign *c, moray_solution *solution, bool *again)
+{
+    double error = NAN;
+    const bool more = solution->meshes < c->settings->max_refinements;
+    free_meshes(c);
+    if (is_solved(solution))
+        MORAY_TRY(refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
+    solution->history[solution->meshes++] = record_of(solution, error);
+    *again = more && error > c->settings->mesh_tolerance;
+    return moray_ok();
+}
+
+// Solves on the finer meshes in c. Keeps the old solution where the new one is not solved.
+static moray_status solve_finer(struct campaign *c, moray_solution **solution, bool *again)
+{
+    moray_solution *old = *solution, *finer;
+    const moray_guess guess = moray_guess_from_solution(old);
+    MORAY_TRY(solve_mesh(c, &guess, &finer));
+    finer->history = old->history, finer->meshes = old->meshes;
+    moray_status status = record_and_refine(c, finer, again);
+    moray_solution *kept = is_solved(finer) ? finer : old, *dropped = is_solved(finer) ? old : finer;
+    if (finer->info.outcome == MORAY_NLP_INTERRUPTED)
+        old->info.outcome = MORAY_NLP_INTERRUPTED;
+    kept->meshes = finer->meshes;
+    dropped->history = NULL;
+    moray_solution_free(dropped);
+    *solution = kept;
+    return status;
+}
+
+static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
+{
+    bool again;
+    MORAY_TRY(solve_mesh(c, guess, solution));
+    (*solution)->history = calloc((size_t)c->settings->max_refinements + 1, sizeof *(*solution)->history);
+    if (!(*solution)->history)
+        return moray_error(MORAY_MEMORY, "no memory for a history of %d meshes", c->settings->max_refinements + 1);
+    MORAY_TRY(record_and_refine(c, *solution, &again));
+    while (again)
+        MORAY_TRY(solve_finer(c, solution, &again));
+    diagnose(*solution);
+    return moray_ok();
+}
+
+moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
+                         moray_solution **solution)
+{
+    struct campaign c = {.ocp = ocp, .settings = settings};
+    *solution = NULL;
+    MORAY_TRY(check_settings(settings, guess));
+    moray_status status = first_meshes(&c, guess);
+    if (!moray_failed(status))
+        status = run_campaign(&c, guess, solution);
+    free_meshes(&c);
+    free(c.meshes);
+    if (moray_failed(status)) {
+        moray_solution_free(*solution);
+        *solution = NULL;
+    }
+    return status;
+}
+
 void moray_solution_free(moray_solution *solution)
 {
     if (!solution)
         return;
     transcription_free(solution->transcription);
     free(solution->iterate.x);
+    free(solution->history);
     free(solution);
 }

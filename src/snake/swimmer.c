@@ -3,9 +3,11 @@
 #include <stdlib.h>
 
 #include "model.h"
+#include "reading.h"
 
 struct moray_swimmer {
-    moray_robot robot;
+    moray_robot robot, read; // read: as the reading has it
+    moray_reading reading;
     moray_model kind;
     const snake_model *model;
     double current[2];
@@ -20,7 +22,7 @@ moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot
     moray_swimmer *made = calloc(1, sizeof *made);
     if (made == NULL)
         return moray_error(MORAY_MEMORY, "a swimmer of %d links: no memory", robot->links);
-    made->robot = *robot;
+    made->robot = made->read = *robot;
     made->kind = model;
     made->model = model == MORAY_CONTROL_ORIENTED ? &control_model : &complex_model;
     made->scratch = malloc(made->model->scratch_bytes(robot->links));
@@ -63,6 +65,14 @@ void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y)
     swimmer->current[1] = V_y;
 }
 
+void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading)
+{
+    if (swimmer->kind != MORAY_CONTROL_ORIENTED)
+        return;
+    swimmer->reading = reading;
+    swimmer->read = reading_robot(&swimmer->robot, reading);
+}
+
 void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x)
 {
     swimmer->model->rest(swimmer->robot.links, theta, p_x, p_y, x);
@@ -83,8 +93,11 @@ static bool all_finite(const double *values, int n)
 
 bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u)
 {
-    return swimmer->model->rates(&swimmer->robot, swimmer->current, x, ubar, dx, u, swimmer->scratch) &&
-           all_finite(dx, moray_swimmer_states(swimmer)) && (u == NULL || all_finite(u, swimmer->robot.links - 1));
+    const bool regular = swimmer->model->rates(&swimmer->read, swimmer->current, x, ubar, dx, u, swimmer->scratch);
+    if (swimmer->reading & MORAY_READ_23H_PRINTED)
+        dx[moray_swimmer_states(swimmer) - 1] += reading_23h_excess(&swimmer->read, swimmer->current, x);
+    return regular && all_finite(dx, moray_swimmer_states(swimmer)) &&
+           (u == NULL || all_finite(u, swimmer->robot.links - 1));
 }
 
 void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
@@ -101,10 +114,10 @@ void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait,
 
 moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x)
 {
-    return swimmer->model->pose(&swimmer->robot, x);
+    return swimmer->model->pose(&swimmer->read, x);
 }
 
 void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i)
 {
-    swimmer->model->links(&swimmer->robot, x, x_i, y_i, angle_i);
+    swimmer->model->links(&swimmer->read, x, x_i, y_i, angle_i);
 }

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+//
+// Brachistochrone (Bryson and Ho 1975, sec. 2.7): the wire on which a bead slides fastest from rest.
+//
+//   minimise tf
+//   x' = v sin u,  y' = v cos u,  v' = g cos u        (y downward, from (0, 0), at rest)
+//
+//   to (10, 5) with g = 9.80665, the (0, 10) to (10, 5) of dymos:  tf = 1.80160312
+//   to (2, 2)  with g = 9.8, the one of PSOPT:                     tf = 0.82475914
+//
+// Closed form: the cycloid x = a (s - sin s), y = a (1 - cos s) through the end, reached after tf = s sqrt(a / g).
+#include <math.h>
+#include <tgmath.h>
+
+#include "classics.h"
+
+struct wire {
+    double x, y, g;
+};
+
+static void slide(const moray_node *at, moray_rates *out, const void *data)
+{
+    const struct wire *wire = data;
+    const moray_num v = at->x[2], u = at->u[0];
+    out->f[0] = v * sin(u);
+    out->f[1] = v * cos(u);
+    out->f[2] = wire->g * cos(u);
+}
+
+static void arrival(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].tf;
+}
+
+static moray_status build(moray_ocp **ocp, const void *data)
+{
+    const struct wire *wire = data;
+    const moray_phase_spec phase = {.name = "wire",
+                                    .nx = 3,
+                                    .nu = 1,
+                                    .continuous = slide,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_between(0, 10),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(wire->x), moray_fixed(wire->y), moray_free()),
+                                    .u = MORAY_BOUNDS(moray_between(0, M_PI))};
+    return moray_ocp_new(
+        ocp,
+        &(moray_ocp_spec){.name = "brachistochrone", .phases = 1, .phase = &phase, .endpoint = arrival, .data = data});
+}
+
+const struct classic classic_brachistochrone = {.name = "brachistochrone",
+                                                .title = "Brachistochrone to (10, 5)",
+                                                .source = "Bryson and Ho 1975, 2.7; dymos",
+                                                .published = "1.80160312",
+                                                .closed_form = 1.8016031225,
+                                                .sign = 1,
+                                                .build = build,
+                                                .data = &(const struct wire){10, 5, 9.80665},
+                                                .scheme = "lobatto5",
+                                                .intervals = 10};
+
+const struct classic classic_brachistochrone_near = {.name = "brachistochrone-near",
+                                                     .title = "Brachistochrone to (2, 2)",
+                                                     .source = "Bryson and Ho 1975, 2.7; PSOPT",
+                                                     .published = "0.82475914",
+                                                     .closed_form = 0.8247591432,
+                                                     .sign = 1,
+                                                     .build = build,
+                                                     .data = &(const struct wire){2, 2, 9.8},
+                                                     .scheme = "lobatto5",
+                                                     .intervals = 10};

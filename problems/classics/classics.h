@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// Textbook problems whose optimum is published: one a file, each with its equations, data, source and value.
+#ifndef CLASSICS_H
+#define CLASSICS_H
+
+#include "moray/ocp.h"
+
+// The textbook's start: x and u of a phase at tau in [0, 1] of its guessed duration. Returns the time.
+typedef double classic_start_fn(int phase, double tau, double *x, double *u, const void *data);
+
+struct classic {
+    const char *name, *title, *source;
+    const char *published; // optimum as it was printed
+    const char *computed;  // what the stated data give where that is not what was printed (the file says why); or NULL
+    double closed_form;    // to 1e-10; 0 where there is none
+    double sign;           // of the objective in the published value: -1 where the textbook maximises
+    const void *data;      // of the variant; handed to build and start
+    moray_status (*build)(moray_ocp **ocp, const void *data);
+    classic_start_fn *start; // NULL: straight between the bounds
+    const char *scheme;      // recommended
+    int intervals;
+    double tolerance, mesh_tolerance; // 0: the settings' default
+};
+
+extern const struct classic *const classics[]; // ends with NULL
+const struct classic *classic_find(const char *name);
+
+struct classic_result {
+    moray_nlp_info info;
+    double value, difference; // in the textbook's sign; difference from what was printed
+    bool agrees;              // with `computed` where there is one, else with `published`, rounded or cut; and with the
+                              // closed form to 1e-7
+    moray_certificate certificate;
+};
+
+// Recommended settings: the ones to start from.
+moray_settings classic_settings(const struct classic *classic);
+
+// Solves one from its own start. diagnosis, unless NULL, receives up to `size` characters of why it did not converge.
+// Errors: those of moray_solve and moray_certify.
+moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
+                           const moray_integrator *integrator, struct classic_result *result, char *diagnosis,
+                           int size);
+
+#endif

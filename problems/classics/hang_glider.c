@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// Hang glider (Bulirsch, Nerz, Pesch and von Stryk 1993; Dolan, More and Munson, COPS 3.0): the longest flight through
+// a thermal updraft.
+//
+//   maximise x(tf)
+//   x' = vx,  y' = vy,  m vx' = -L sin eta - D cos eta,  m vy' = L cos eta - D sin eta - m g,  0 <= cL <= 1.4
+//   updraft  U = 2.5 (1 - r) exp(-r),  r = (x / 100 - 2.5)^2,  w = vy - U,  v^2 = vx^2 + w^2,  sin eta = w / v
+//   D = (0.034 + 0.069662 cL^2) rho S v^2 / 2,  L = cL rho S v^2 / 2,  rho = 1.13, S = 14, m = 100, g = 9.81
+//   (0, 1000, 13.23, -1.288) to (free, 900, 13.23, -1.288)
+//
+// COPS prints 1247.987 on 2000 intervals of the trapezoid. PSOPT prints 1250.190 for other data.
+#include <tgmath.h>
+
+#include "classics.h"
+
+static const double m = 100, g = 9.81;
+
+static void glide(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num vx = at->x[2], vy = at->x[3], cL = at->u[0], offset = at->x[0] / 100 - 2.5, r = offset * offset;
+    const moray_num w = vy - 2.5 * (1 - r) * exp(-r), v = sqrt(vx * vx + w * w);
+    const moray_num pressure = 1.13 * 14 * v * v / 2, L = cL * pressure, D = (0.034 + 0.069662 * cL * cL) * pressure;
+    out->f[0] = vx;
+    out->f[1] = vy;
+    out->f[2] = (-L * w - D * vx) / v / m;
+    out->f[3] = (L * vx - D * w) / v / m - g;
+}
+
+static void range(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = -at->phase[0].xf[0];
+}
+
+static moray_status build(moray_ocp **ocp, const void *data)
+{
+    (void)data;
+    const moray_phase_spec phase = {
+        .name = "flight",
+        .nx = 4,
+        .nu = 1,
+        .continuous = glide,
+        .t0 = moray_fixed(0),
+        .tf = moray_at_least(0),
+        .x = MORAY_BOUNDS(moray_at_least(0), moray_free(), moray_at_least(0), moray_free()),
+        .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(1000), moray_fixed(13.23), moray_fixed(-1.288)),
+        .xf = MORAY_BOUNDS(moray_free(), moray_fixed(900), moray_fixed(13.23), moray_fixed(-1.288)),
+        .u = MORAY_BOUNDS(moray_between(0, 1.4))};
+    return moray_ocp_new(ocp,
+                         &(moray_ocp_spec){.name = "hang glider", .phases = 1, .phase = &phase, .endpoint = range});
+}
+
+// COPS: straight flight for one second.
+static double start(int phase, double tau, double *x, double *u, const void *data)
+{
+    (void)phase;
+    (void)data;
+    x[0] = 13.23 * tau;
+    x[1] = 1000 - 100 * tau;
+    x[2] = 13.23;
+    x[3] = -1.288;
+    u[0] = 0.7;
+    return tau;
+}
+
+const struct classic classic_hang_glider = {.name = "hang-glider",
+                                            .title = "Hang glider, 2000 intervals",
+                                            .source = "COPS 3.0",
+                                            .published = "1247.987",
+                                            .sign = -1,
+                                            .build = build,
+                                            .start = start,
+                                            .scheme = "trapezoid",
+                                            .intervals = 2000};

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// Hypersensitive problem (Rao and Mease 2000): the start and the end matter, the long middle does not.
+//
+//   minimise integral of (x^2 + u^2) / 2
+//   x' = -x^3 + u,  t in [0, 50],  x from 1.5 to 1        J = 1.330826   (PSOPT)
+#include "classics.h"
+
+static void drift(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num x = at->x[0], u = at->u[0];
+    out->f[0] = -x * x * x + u;
+    out->g[0] = (x * x + u * u) / 2;
+}
+
+static void effort(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static moray_status build(moray_ocp **ocp, const void *data)
+{
+    (void)data;
+    const moray_phase_spec phase = {.name = "drift",
+                                    .nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = drift,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(50),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(1.5)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(1))};
+    return moray_ocp_new(ocp,
+                         &(moray_ocp_spec){.name = "hypersensitive", .phases = 1, .phase = &phase, .endpoint = effort});
+}
+
+const struct classic classic_hypersensitive = {.name = "hypersensitive",
+                                               .title = "Hypersensitive, tf = 50",
+                                               .source = "Rao and Mease 2000; PSOPT",
+                                               .published = "1.330826",
+                                               .sign = 1,
+                                               .build = build,
+                                               .scheme = "lobatto5",
+                                               .intervals = 60};

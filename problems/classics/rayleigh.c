@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+//
+// Rayleigh problem with a mixed constraint (Betts 2010; PSOPT).
+//
+//   minimise integral of u^2 + x1^2
+//   x1' = x2,  x2' = -x1 + x2 (1.4 - 0.14 x2^2) + 4 u,  u + x1 / 6 <= 0
+//   t in [0, 4.5],  x(0) = (-5, -5)        J = 44.77625
+#include "classics.h"
+
+static void circuit(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num x1 = at->x[0], x2 = at->x[1], u = at->u[0];
+    out->f[0] = x2;
+    out->f[1] = -x1 + x2 * (1.4 - 0.14 * x2 * x2) + 4 * u;
+    out->c[0] = u + x1 / 6;
+    out->g[0] = u * u + x1 * x1;
+}
+
+static void effort(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static moray_status build(moray_ocp **ocp, const void *data)
+{
+    (void)data;
+    const moray_phase_spec phase = {.name = "circuit",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nc = 1,
+                                    .nq = 1,
+                                    .continuous = circuit,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(4.5),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(-5), moray_fixed(-5)),
+                                    .c = MORAY_BOUNDS(moray_at_most(0))};
+    return moray_ocp_new(ocp, &(moray_ocp_spec){.name = "rayleigh", .phases = 1, .phase = &phase, .endpoint = effort});
+}
+
+// PSOPT: the states stay where they begin.
+static double start(int phase, double tau, double *x, double *u, const void *data)
+{
+    (void)phase;
+    (void)data;
+    x[0] = x[1] = -5;
+    u[0] = 0;
+    return 4.5 * tau;
+}
+
+const struct classic classic_rayleigh = {.name = "rayleigh",
+                                         .title = "Rayleigh, mixed constraint",
+                                         .source = "Betts 2010; PSOPT",
+                                         .published = "44.77625",
+                                         .sign = 1,
+                                         .build = build,
+                                         .start = start,
+                                         .scheme = "hermite-simpson",
+                                         .intervals = 80};

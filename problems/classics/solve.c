@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "classics.h"
+
+enum { samples = 129, max_phases = 4, max_states = 8, max_controls = 4 };
+
+struct start {
+    moray_samples phase[max_phases];
+    double time[max_phases][samples];
+    double x[max_phases][samples * max_states], u[max_phases][samples * max_controls];
+};
+
+static void sample_start(const struct classic *classic, const moray_ocp *ocp, struct start *start)
+{
+    for (int p = 0; p < moray_ocp_phases(ocp); p++) {
+        int nx, nu;
+        moray_ocp_widths(ocp, p, &nx, &nu);
+        for (int k = 0; k < samples; k++)
+            start->time[p][k] =
+                classic->start(p, (double)k / (samples - 1), start->x[p] + k * nx, start->u[p] + k * nu, classic->data);
+        start->phase[p] = (moray_samples){samples, start->time[p], start->x[p], start->u[p]};
+    }
+}
+
+static moray_status solve_from_start(const struct classic *classic, const moray_ocp *ocp,
+                                     const moray_settings *settings, moray_solution **solution)
+{
+    if (!classic->start)
+        return moray_solve(ocp, settings, NULL, solution);
+    struct start *start = calloc(1, sizeof *start);
+    if (!start)
+        return moray_error(MORAY_MEMORY, "no memory for the start of %s", classic->name);
+    sample_start(classic, ocp, start);
+    const moray_guess guess = {.phase = start->phase};
+    moray_status status = moray_solve(ocp, settings, &guess, solution);
+    free(start);
+    return status;
+}
+
+// Whether value becomes the printed decimal number when rounded or cut to its digits.
+static bool agrees_with(double value, const char *printed)
+{
+    const char *point = strchr(printed, '.');
+    const double unit = pow(10, point ? -(double)strlen(point + 1) : 0), slack = 1e-6 * unit;
+    const double beyond = copysign(1, value) * (value - strtod(printed, NULL));
+    return beyond >= -unit / 2 - slack && beyond < unit + slack;
+}
+
+static void judge(const struct classic *classic, struct classic_result *result)
+{
+    result->difference = result->value - strtod(classic->published, NULL);
+    result->agrees = result->info.outcome == MORAY_NLP_SOLVED &&
+                     agrees_with(result->value, classic->computed ? classic->computed : classic->published);
+    if (classic->closed_form != 0)
+        result->agrees =
+            result->agrees && fabs(result->value - classic->closed_form) <= 1e-7 * fabs(classic->closed_form);
+}
+
+moray_settings classic_settings(const struct classic *classic)
+{
+    moray_settings settings = moray_settings_default();
+    settings.scheme = classic->scheme;
+    settings.intervals = classic->intervals;
+    settings.tolerance = 1e-10;
+    if (classic->tolerance > 0)
+        settings.tolerance = classic->tolerance;
+    if (classic->mesh_tolerance > 0)
+        settings.mesh_tolerance = classic->mesh_tolerance;
+    return settings; // mesh refinement is switched on here
+}
+
+moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
+                           const moray_integrator *integrator, struct classic_result *result, char *diagnosis, int size)
+{
+    *result = (struct classic_result){0};
+    moray_ocp *ocp;
+    MORAY_TRY(classic->build(&ocp, classic->data));
+    moray_solution *solution;
+    moray_status status = solve_from_start(classic, ocp, settings, &solution);
+    if (!moray_failed(status)) {
+        result->info = *moray_solution_info(solution);
+        result->value = classic->sign * moray_solution_objective(solution);
+        judge(classic, result);
+        if (diagnosis)
+            snprintf(diagnosis, (size_t)size, "%s", moray_solution_diagnosis(solution));
+        status = moray_certify(solution, integrator, &result->certificate);
+    }
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    return status;
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// Linear tangent steering (Bryson and Ho 1975, sec. 2.4; Betts 2001, sec. 4.7; rocket steering of COPS).
+//
+//   minimise tf
+//   x'' = a cos u,  y'' = a sin u,  a = 100,  |u| <= pi / 2
+//   from rest at the origin to x' = 45, y = 5, y' = 0        tf = 0.55457088
+//
+// Closed form: tan u falls linearly from k to -k; tf = 45 k / (a asinh k) and y(tf) = 5 give k = 1.4085083557.
+#include <math.h>
+#include <tgmath.h>
+
+#include "classics.h"
+
+static const double a = 100;
+
+static void steer(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = a * cos(at->u[0]);
+    out->f[2] = at->x[3];
+    out->f[3] = a * sin(at->u[0]);
+}
+
+static void arrival(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].tf;
+}
+
+static moray_status build(moray_ocp **ocp, const void *data)
+{
+    (void)data;
+    const moray_phase_spec phase = {.name = "burn",
+                                    .nx = 4,
+                                    .nu = 1,
+                                    .continuous = steer,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_at_least(0),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_free(), moray_fixed(45), moray_fixed(5), moray_fixed(0)),
+                                    .u = MORAY_BOUNDS(moray_between(-M_PI_2, M_PI_2))};
+    return moray_ocp_new(
+        ocp, &(moray_ocp_spec){.name = "tangent steering", .phases = 1, .phase = &phase, .endpoint = arrival});
+}
+
+// COPS: u = 0, tf = 1, states straight.
+static double start(int phase, double tau, double *x, double *u, const void *data)
+{
+    (void)phase;
+    (void)data;
+    x[0] = 0;
+    x[1] = 45 * tau;
+    x[2] = 5 * tau;
+    x[3] = 0;
+    u[0] = 0;
+    return tau;
+}
+
+const struct classic classic_tangent_steering = {.name = "tangent-steering",
+                                                 .title = "Linear tangent steering",
+                                                 .source = "Bryson and Ho 1975, 2.4; Betts 2001, 4.7",
+                                                 .published = "0.55457088",
+                                                 .closed_form = 0.5545708783,
+                                                 .sign = 1,
+                                                 .build = build,
+                                                 .start = start,
+                                                 .scheme = "lobatto4",
+                                                 .intervals = 15};

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "ocp/examine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { samples_between = 5 }; // per point of the scheme, placed between the nodes
+
+moray_status examiner_new(struct examiner *e, const moray_solution *solution, int p)
+{
+    const struct phase *phase = &solution->transcription->ocp->phase[p];
+    const struct phase_layout *layout = &solution->transcription->layout.phase[p];
+    const int n = phase->nx + phase->nq;
+    double *block = calloc((size_t)(phase->map->n_in + phase->map->n_out + 3 * n), sizeof *block);
+    if (!block)
+        return moray_error(MORAY_MEMORY, "no memory to examine phase %s", phase->name);
+    *e = (struct examiner){.solution = solution, .p = p, .n = n, .in = block, .out = block + phase->map->n_in};
+    e->size = e->out + phase->map->n_out;
+    e->slope = e->size + n;
+    e->error = e->slope + n;
+    for (int i = 0; i < phase->nx; i++) {
+        for (int node = 0; node < layout->nodes; node++)
+            e->size[i] = fmax(e->size[i], fabs(solution->iterate.x[layout->node[node].x + i]));
+        e->size[i] += 1;
+    }
+    for (int i = phase->nx; i < n; i++)
+        e->size[i] = 1 + fabs(solution->iterate.x[layout->q + i - phase->nx]);
+    return moray_ok();
+}
+
+void examiner_free(struct examiner *e)
+{
+    free(e->in);
+}
+
+int examiner_output(const struct examiner *e, int i)
+{
+    const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
+    return i < phase->nx ? i : i + phase->nc;
+}
+
+void examiner_evaluate(struct examiner *e, double t, const double *x)
+{
+    const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
+    moray_solution_at(e->solution, e->p, t, e->in, e->in + phase->nx);
+    if (x)
+        memcpy(e->in, x, (size_t)phase->nx * sizeof *x);
+    memcpy(e->in + phase->nx + phase->nu, moray_solution_parameters(e->solution), (size_t)phase->ns * sizeof *e->in);
+    e->in[phase->map->n_in - 1] = t;
+    phase->map->value(phase->map->self, e->in, e->out);
+}
+
+// x~' and q~' at tau of the interval: the stage polynomials through f and g at the nodes.
+static void interpolant_slope(struct examiner *e, const struct interval *interval, double tau)
+{
+    const struct transcription *t = e->solution->transcription;
+    const struct phase *phase = &t->ocp->phase[e->p];
+    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
+    moray_scheme_basis(interval->scheme, tau, ell, integral);
+    memset(e->slope, 0, (size_t)e->n * sizeof *e->slope);
+    for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
+        const double *out = t->phase[e->p].out + (interval->first + j) * phase->map->n_out;
+        for (int i = 0; i < e->n; i++)
+            e->slope[i] += ell[j] * out[examiner_output(e, i)];
+    }
+}
+
+static double distance_outside(double value, moray_bounds bounds)
+{
+    if (isnan(value))
+        return INFINITY;
+    if (value < bounds.lower)
+        return (bounds.lower - value) / (1 + fabs(bounds.lower));
+    return value > bounds.upper ? (value - bounds.upper) / (1 + fabs(bounds.upper)) : 0;
+}
+
+static double worst_outside(const struct examiner *e)
+{
+    const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
+    double worst = 0;
+    for (int r = 0; r < phase->nx; r++)
+        worst = fmax(worst, distance_outside(e->in[r], phase->x[r]));
+    for (int r = 0; r < phase->nu; r++)
+        worst = fmax(worst, distance_outside(e->in[phase->nx + r], phase->u[r]));
+    for (int r = 0; r < phase->nc; r++)
+        worst = fmax(worst, distance_outside(e->out[phase->nx + r], phase->c[r]));
+    return worst;
+}
+
+// The midpoint rule, whose points lie between the nodes.
+double examiner_interval(struct examiner *e, const struct interval *interval, double *outside)
+{
+    const struct transcription *t = e->solution->transcription;
+    const struct phase_cache *cache = &t->phase[e->p];
+    const int count = samples_between * interval->scheme->points;
+    const double T = cache->tf - cache->t0, start = t->layout.phase[e->p].node[interval->first].tau;
+    memset(e->error, 0, (size_t)e->n * sizeof *e->error);
+    for (int k = 0; k < count; k++) {
+        const double tau = (k + 0.5) / count;
+        examiner_evaluate(e, cache->t0 + T * (start + tau * interval->width), NULL);
+        interpolant_slope(e, interval, tau);
+        for (int i = 0; i < e->n; i++)
+            e->error[i] += T * interval->width / count * fabs(e->slope[i] - e->out[examiner_output(e, i)]) / e->size[i];
+        if (outside)
+            *outside = fmax(*outside, worst_outside(e));
+    }
+    double worst = 0;
+    for (int i = 0; i < e->n; i++)
+        worst = fmax(worst, isnan(e->error[i]) ? INFINITY : e->error[i]);
+    return worst;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// How well the interpolated solution obeys the problem between the nodes: the certificate and the refinement ask alike.
+#ifndef OCP_EXAMINE_H
+#define OCP_EXAMINE_H
+
+#include "ocp/solution.h"
+
+// A phase under examination, with room for one evaluation.
+struct examiner {
+    const moray_solution *solution;
+    int p;
+    int n;            // quantities that are integrated: the states, then the integrals q
+    double *in, *out; // of the phase's map at the last point
+    double *size;     // [n]: 1 + max |x| over the phase, 1 + |q|
+    double *slope, *error;
+};
+
+// Error: MORAY_MEMORY.
+moray_status examiner_new(struct examiner *e, const moray_solution *solution, int p);
+void examiner_free(struct examiner *e);
+
+// Where the rate of the i-th integrated quantity stands in the map's output.
+int examiner_output(const struct examiner *e, int i);
+
+// Functions of the phase at time t with the interpolated control; state from the interpolant unless given.
+void examiner_evaluate(struct examiner *e, double t, const double *x);
+
+// Integral over an interval of |x~' - f(x~, u~)| / (1 + max |x|), or of the same of an integrand and its q, of the worst
+// of them. Raises *outside (NULL: not asked) to the largest violation of bounds and path constraints seen, relative to
+// 1 + |bound|.
+double examiner_interval(struct examiner *e, const struct interval *interval, double *outside);
+
+#endif

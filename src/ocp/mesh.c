@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "ocp/mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void mesh_free(struct mesh *mesh)
+{
+    free(mesh->edge);
+    free(mesh->raised_from);
+    free(mesh->stages);
+    *mesh = (struct mesh){0};
+}
+
+moray_status mesh_new(struct mesh *mesh, int intervals)
+{
+    *mesh = (struct mesh){.intervals = intervals,
+                          .edge = calloc((size_t)intervals + 1, sizeof *mesh->edge),
+                          .raised_from = calloc((size_t)intervals, sizeof *mesh->raised_from),
+                          .stages = calloc((size_t)intervals, sizeof *mesh->stages)};
+    if (mesh->edge && mesh->raised_from && mesh->stages)
+        return moray_ok();
+    mesh_free(mesh);
+    return moray_error(MORAY_MEMORY, "no memory for a mesh of %d intervals", intervals);
+}
+
+moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages)
+{
+    MORAY_TRY(mesh_new(mesh, intervals));
+    for (int k = 0; k <= intervals; k++)
+        mesh->edge[k] = (double)k / intervals;
+    for (int k = 0; k < intervals; k++)
+        mesh->stages[k] = stages;
+    return moray_ok();
+}
+
+moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh)
+{
+    MORAY_TRY(mesh_new(copy, mesh->intervals));
+    memcpy(copy->edge, mesh->edge, ((size_t)mesh->intervals + 1) * sizeof *copy->edge);
+    memcpy(copy->raised_from, mesh->raised_from, (size_t)mesh->intervals * sizeof *copy->raised_from);
+    memcpy(copy->stages, mesh->stages, (size_t)mesh->intervals * sizeof *copy->stages);
+    return moray_ok();
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#ifndef OCP_MESH_H
+#define OCP_MESH_H
+
+#include "moray/status.h"
+
+// Intervals of one phase: edges[intervals + 1] from 0 to 1, stages[intervals]; raised_from[intervals] is the error with
+// fewer stages where the last refinement added some, else 0.
+struct mesh {
+    int intervals;
+    double *edge, *raised_from;
+    int *stages;
+};
+
+// Error: MORAY_MEMORY. Free with mesh_free, which is safe on a zeroed mesh.
+moray_status mesh_new(struct mesh *mesh, int intervals);
+moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages);
+moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh);
+void mesh_free(struct mesh *mesh);
+
+#endif

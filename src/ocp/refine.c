@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+//
+// Where an interval is not accurate enough: more stages if its slope is smooth, that is, its Legendre coefficients
+// decay fast enough for the stages allowed to do; else smaller intervals, placed where the slope changes most.
+#include "ocp/refine.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "ocp/examine.h"
+#include "ocp/legendre.h"
+
+enum { most_pieces = 4, first_raise = 4 }; // first_raise: stages before which decay cannot be told
+static const double concentrated = 0.7;    // share of an interval's variation between two nodes that calls for a cut
+static const double least_width = 1e-9;
+static const double aim = 0.1;  // of the tolerance
+static const double vain = 0.3; // part of the error left by more stages that says they do not help
+
+struct refinement {
+    struct examiner e;
+    double tolerance;
+    int base_stages;
+    struct mesh mesh; // grows
+    double spare;     // error of its last interval where that stands as it was, else infinite
+};
+
+// Contribution of the slope of the i-th integrated quantity at stage point j to it, relative to its size.
+static double slope_at(const struct refinement *r, const struct interval *interval, int j, int i)
+{
+    const struct transcription *t = r->e.solution->transcription;
+    const struct phase_cache *cache = &t->phase[r->e.p];
+    const double h = (cache->tf - cache->t0) * interval->width;
+    const double *out = cache->out + (interval->first + j) * t->ocp->phase[r->e.p].map->n_out;
+    return h * out[examiner_output(&r->e, i)] / r->e.size[i];
+}
+
+// size[stages]: norm over all that is integrated of the Legendre coefficients of the slope.
+static void legendre_sizes(const struct refinement *r, const struct interval *interval, double *size)
+{
+    const moray_scheme *scheme = interval->scheme;
+    const int s = scheme->stages;
+    double gauss[MORAY_MAX_STAGES], weight[MORAY_MAX_STAGES], ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
+    legendre_gauss(s, gauss, weight);
+    for (int k = 0; k < s; k++)
+        size[k] = 0;
+    for (int i = 0; i < r->e.n; i++) {
+        double coefficient[MORAY_MAX_STAGES] = {0};
+        for (int point = 0; point < s; point++) {
+            double slope = 0;
+            moray_scheme_basis(scheme, gauss[point], ell, integral);
+            for (int j = scheme->first; j <= scheme->last; j++)
+                slope += ell[j] * slope_at(r, interval, j, i);
+            for (int k = 0; k < s; k++)
+                coefficient[k] += (2 * k + 1) * weight[point] * legendre_value(k, gauss[point]) * slope;
+        }
+        for (int k = 0; k < s; k++)
+            size[k] = hypot(size[k], coefficient[k]);
+    }
+}
+
+// Rate d of the decay e^(-d k) of the coefficients, or NaN where there are too few to tell. Pairs of neighbours,
+// because an even or odd slope lacks every other one.
+static double decay(const struct refinement *r, const struct interval *interval)
+{
+    const int s = interval->scheme->stages;
+    double size[MORAY_MAX_STAGES];
+    if (s < 3)
+        return NAN;
+    legendre_sizes(r, interval, size);
+    if (s == 3)
+        return log(size[1] / size[2]);
+    return log(fmax(size[1], size[2]) / fmax(size[s - 2], size[s - 1])) / (s - 3);
+}
+
+// The pair of neighbouring stage points between which the slope changes most, and its share in the whole change.
+static int largest_change(const struct refinement *r, const struct interval *interval, double *share)
+{
+    double sum = 0, most = 0;
+    int where = interval->scheme->first;
+    for (int j = interval->scheme->first; j < interval->scheme->last; j++) {
+        double change = 0;
+        for (int i = 0; i < r->e.n; i++)
+            change = hypot(change, slope_at(r, interval, j + 1, i) - slope_at(r, interval, j, i));
+        sum += change;
+        if (change > most) {
+            most = change;
+            where = j;
+        }
+    }
+    *share = sum > 0 ? most / sum : 0;
+    return where;
+}
+
+static void add_interval(struct mesh *mesh, double end, int stages)
+{
+    mesh->stages[mesh->intervals++] = stages;
+    mesh->edge[mesh->intervals] = end;
+}
+
+static void split_evenly(struct mesh *mesh, double end, int pieces, int stages)
+{
+    const double start = mesh->edge[mesh->intervals];
+    for (int i = 1; i < pieces; i++)
+        add_interval(mesh, start + (end - start) * i / pieces, stages);
+    add_interval(mesh, end, stages);
+}
+
+static void split(struct refinement *r, const struct interval *interval, double excess)
+{
+    const struct node *node = r->e.solution->transcription->layout.phase[r->e.p].node + interval->first;
+    const int last = interval->scheme->points - 1, s = interval->scheme->stages;
+    double share;
+    const int j = largest_change(r, interval, &share);
+    if (share < concentrated) {
+        split_evenly(&r->mesh, node[last].tau, (int)fmin(fmax(ceil(pow(excess, 1.0 / (s + 1))), 2), most_pieces), s);
+        return;
+    }
+    if (j > 0)
+        add_interval(&r->mesh, node[j].tau, r->base_stages);
+    split_evenly(&r->mesh, node[j + 1].tau, 2, r->base_stages);
+    if (j + 1 < last)
+        add_interval(&r->mesh, node[last].tau, r->base_stages);
+}
+
+// Takes an interval over as it is, or makes one of it and its neighbour of as many stages where their error allows.
+static void keep(struct refinement *r, double end, int stages, double error)
+{
+    const int last = r->mesh.intervals - 1;
+    const double merged = (error + r->spare) * ldexp(1, stages + 1);
+    const bool merge = last >= 0 && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance;
+    if (merge)
+        r->mesh.edge[r->mesh.intervals] = end;
+    else
+        add_interval(&r->mesh, end, stages);
+    r->spare = merge ? INFINITY : error;
+}
+
+static void refine_interval(struct refinement *r, const struct interval *interval, double raised_from, double error)
+{
+    const struct node *node = r->e.solution->transcription->layout.phase[r->e.p].node + interval->first;
+    const int s = interval->scheme->stages;
+    const double end = node[interval->scheme->points - 1].tau, excess = error / (aim * r->tolerance);
+    if (error <= r->tolerance || interval->width < least_width) {
+        keep(r, end, s, error);
+        return;
+    }
+    r->spare = INFINITY;
+    const double rate = decay(r, interval), stages = isnan(rate) ? first_raise : s + ceil(log(excess) / rate);
+    const bool in_vain = error > vain * raised_from;
+    if (stages > s && stages <= REFINE_MOST_STAGES && (raised_from == 0 || !in_vain)) {
+        r->mesh.raised_from[r->mesh.intervals] = error;
+        add_interval(&r->mesh, end, (int)stages);
+    } else {
+        split(r, interval, excess);
+    }
+}
+
+static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double *worst)
+{
+    const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
+    if (mesh) {
+        MORAY_TRY(mesh_new(&r->mesh, most_pieces * layout->mesh.intervals));
+        r->mesh.intervals = 0;
+    }
+    for (int k = 0; k < layout->mesh.intervals; k++) {
+        const double error = examiner_interval(&r->e, &layout->interval[k], NULL);
+        *worst = fmax(*worst, error);
+        if (mesh)
+            refine_interval(r, &layout->interval[k], layout->mesh.raised_from[k], error);
+    }
+    if (mesh)
+        *mesh = r->mesh;
+    return moray_ok();
+}
+
+moray_status refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
+                    double *worst)
+{
+    *worst = 0;
+    for (int p = 0; p < solution->transcription->ocp->phases; p++) {
+        struct refinement r = {.tolerance = tolerance, .base_stages = base_stages, .spare = INFINITY};
+        MORAY_TRY(examiner_new(&r.e, solution, p));
+        const moray_status status = refine_phase(&r, meshes ? &meshes[p] : NULL, worst);
+        examiner_free(&r.e);
+        MORAY_TRY(status);
+    }
+    return moray_ok();
+}
