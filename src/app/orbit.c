@@ -11,6 +11,7 @@
 
 enum { MOST_ITERATIONS = 40, MOST_HALVINGS = 8 };
 static const double CLOSED = 1e-11; // largest defect that counts as none
+static const double SETTLED = 1e-8; // largest step after which the next is lost in rounding
 
 moray_orbit_spec moray_orbit_spec_default(const moray_robot *robot, moray_model model)
 {
@@ -106,13 +107,13 @@ static bool try_step(moray_orbit *orbit, double scale, double *residual)
     return finite;
 }
 
-// A whole step, or the longest of its halves that brings the residual down.
+// A whole step, or the longest of its halves that brings the residual down unless it is down already.
 static bool advance(moray_orbit *orbit, double *residual)
 {
     const double before = *residual;
     double scale = 1;
     for (int k = 0; k < MOST_HALVINGS; k++, scale /= 2)
-        if (try_step(orbit, scale, residual) && *residual < before) {
+        if (try_step(orbit, scale, residual) && (*residual < before || *residual <= CLOSED)) {
             memcpy(orbit->z, orbit->trial, (size_t)orbit->system.unknowns * sizeof *orbit->z);
             return true;
         }
@@ -126,15 +127,16 @@ static moray_status newton(moray_orbit *orbit, int *iterations, double *residual
     if (!orbit_residual(system, orbit->z, orbit->F))
         return moray_error(MORAY_NOT_SOLVED, "the model is not finite where the search for an orbit starts");
     *residual = largest(orbit->F, system->unknowns);
-    for (int k = 0; k < MOST_ITERATIONS; k++, (*iterations)++) {
-        if (*residual <= CLOSED)
-            return moray_ok();
+    for (int k = 0; k < MOST_ITERATIONS; k++) {
         orbit_slopes(system, orbit->z);
         MORAY_TRY(sparse_lu_factor(orbit->lu, system->values));
         memcpy(orbit->step, orbit->F, size);
         MORAY_TRY(sparse_lu_solve(orbit->lu, 1, orbit->step));
         if (!advance(orbit, residual))
             break;
+        (*iterations)++;
+        if (*residual <= CLOSED && largest(orbit->step, system->unknowns) <= SETTLED)
+            return moray_ok();
     }
     return moray_error(MORAY_NOT_SOLVED, "defects of %.2g are left after %d steps of Newton's method", *residual,
                        *iterations);
