@@ -94,8 +94,9 @@ struct outcome {
     moray_certificate certificate;
 };
 
-// Solves from the steady orbit of the paper's gait.
-static struct outcome solve(const moray_gait_problem_spec *spec, const char *scheme, int intervals)
+// Solves from the steady orbit of a gait of the control-oriented model.
+static struct outcome solve_from(const moray_gait_problem_spec *spec, const moray_gait *start, const char *scheme,
+                                 int intervals)
 {
     moray_basin basin;
     moray_gait_problem *problem;
@@ -103,8 +104,7 @@ static struct outcome solve(const moray_gait_problem_spec *spec, const char *sch
     moray_steady steady;
     moray_swim_track orbit;
     struct outcome outcome = {0};
-    const moray_gait prismatic = moray_gait_paper(&spec->robot);
-    const moray_gait gait = moray_gait_map(&spec->robot, &prismatic, MORAY_CONTROL_ORIENTED, spec->model);
+    const moray_gait gait = moray_gait_map(&spec->robot, start, MORAY_CONTROL_ORIENTED, spec->model);
     moray_settings settings = moray_settings_default();
     settings.scheme = scheme, settings.intervals = intervals, settings.barrier = 1e-4;
     moray_status status = moray_basin_new(&basin, &spec->robot, spec->current, spec->course);
@@ -129,6 +129,12 @@ static struct outcome solve(const moray_gait_problem_spec *spec, const char *sch
     moray_swim_track_free(&orbit);
     moray_basin_free(&basin);
     return outcome;
+}
+
+static struct outcome solve(const moray_gait_problem_spec *spec, const char *scheme, int intervals)
+{
+    const moray_gait paper = moray_gait_paper(&spec->robot);
+    return solve_from(spec, &paper, scheme, intervals);
 }
 
 static double paper_power(moray_model model)
@@ -273,15 +279,16 @@ static void test_thriftiest_in_current(void)
 static void test_taper(moray_model model)
 {
     moray_gait_problem_spec spec = default_spec(model, paper_power(model));
-    const struct outcome alike = solve(&spec, "lobatto5", 12);
+    const moray_gait near = {.amplitude = 0.045, .omega = 140 * DEG, .delta = 48 * DEG}; // there are other optima
+    const struct outcome alike = solve_from(&spec, &near, "lobatto5", 12);
     spec.limits.taper = moray_between(-1, 1);
-    const struct outcome bounded = solve(&spec, "lobatto5", 12);
+    const struct outcome bounded = solve_from(&spec, &near, "lobatto5", 12);
     CHECK_NEAR(bounded.promise.gait.taper, 0, 1e-5, "no taper where every link swings as far as it may");
     CHECK_NEAR(bounded.promise.speed, alike.promise.speed, 1e-7, "so no speed gained");
     spec.limits.theta_max.upper = 60 * DEG;
-    const struct outcome eel = solve(&spec, "lobatto5", 12);
+    const struct outcome eel = solve_from(&spec, &near, "lobatto5", 12);
     spec.limits.taper = moray_fixed(0);
-    const struct outcome wide = solve(&spec, "lobatto5", 12);
+    const struct outcome wide = solve_from(&spec, &near, "lobatto5", 12);
     CHECK(eel.certificate.pass && eel.promise.gait.taper < -0.05 && eel.promise.speed > 1.002 * wide.promise.speed,
           "where they need not, the tail swings most: taper %.4g, %.4g m/s against %.4g m/s", eel.promise.gait.taper,
           eel.promise.speed, wide.promise.speed);
