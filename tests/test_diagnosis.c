@@ -110,6 +110,9 @@ static moray_solution *solve(const moray_ocp_spec *spec, moray_settings settings
     return solution;
 }
 
+// Infeasible or stalled: which of them depends on the linear solver.
+#define GAVE_UP MORAY_NLP_INFEASIBLE
+
 static void check_suggestion(const moray_ocp_spec *spec, moray_settings settings, moray_nlp_outcome outcome,
                              const char *expected)
 {
@@ -117,7 +120,10 @@ static void check_suggestion(const moray_ocp_spec *spec, moray_settings settings
     if (!solution)
         exit(1);
     const moray_nlp_outcome found = moray_solution_info(solution)->outcome;
-    CHECK(found == outcome, "%s", moray_nlp_outcome_text(found));
+    if (outcome == GAVE_UP)
+        CHECK(found == MORAY_NLP_INFEASIBLE || found == MORAY_NLP_STALLED, "%s", moray_nlp_outcome_text(found));
+    else
+        CHECK(found == outcome, "%s", moray_nlp_outcome_text(found));
     check_says(moray_solution_diagnosis(solution), expected);
     CHECK(lines_with(moray_solution_diagnosis(solution), "Try: ") == 1 &&
               lines_with(moray_solution_diagnosis(solution), "Furthest from the guess: ") == 1,
@@ -139,11 +145,10 @@ static void test_bounds_in_the_way(void)
     moray_phase_spec phase = cart();
     moray_ocp_spec spec = task(&plant, &phase);
     phase.u = (moray_bounds_list){weak, 1};
-    check_suggestion(&spec, *usual(), MORAY_NLP_INFEASIBLE,
-                     "Try: a looser upper bound for control force of phase cart");
+    check_suggestion(&spec, *usual(), GAVE_UP, "Try: a looser upper bound for control force of phase cart");
     phase.u = (moray_bounds_list){0};
     phase.x = (moray_bounds_list){slow, 2};
-    check_suggestion(&spec, *usual(), MORAY_NLP_INFEASIBLE, "Try: a looser upper bound for state speed of phase cart");
+    check_suggestion(&spec, *usual(), GAVE_UP, "Try: a looser upper bound for state speed of phase cart");
 }
 
 static void test_dependent(void)
@@ -155,20 +160,20 @@ static void test_dependent(void)
     phase.xf.at = free_end;
     spec.e.at = both;
     check_suggestion(
-        &spec, *usual(), MORAY_NLP_STALLED,
+        &spec, *usual(), GAVE_UP,
         "Try: drop or loosen one of these constraints, which depend on each other: event goal; event way.");
     phase.xf.at = arrived;
     spec.e.at = fixed;
-    check_suggestion(&spec, *usual(), MORAY_NLP_INFEASIBLE,
+    check_suggestion(&spec, *usual(), GAVE_UP,
                      "Try: drop a constraint on which nothing free has an influence: event way.");
     spec.e.at = no_event;
     plant = clock_state;
     phase.xf.at = late;
-    check_suggestion(&spec, *usual(), MORAY_NLP_STALLED,
+    check_suggestion(&spec, *usual(), GAVE_UP,
                      "Try: free an end value or a time; the fixed ones leave no choice to: dynamics of state place");
     phase.nu = 0;
     phase.continuous = coast;
-    check_suggestion(&spec, *usual(), MORAY_NLP_INFEASIBLE,
+    check_suggestion(&spec, *usual(), GAVE_UP,
                      "Try: free an end value or a time, or add a control: there are 81 equations for 79 variables.");
 }
 
@@ -180,7 +185,7 @@ static void test_another_guess(void)
     moray_ocp_spec spec = task(&plant, &phase);
     phase.xf.at = free_end;
     spec.e.at = unreal_end;
-    check_suggestion(&spec, *usual(), MORAY_NLP_INFEASIBLE, "Try: another guess; no bound stands in the way");
+    check_suggestion(&spec, *usual(), GAVE_UP, "Try: another guess; no bound stands in the way");
 }
 
 static void test_runs_away(void)
@@ -203,7 +208,7 @@ static void test_leaves_domain(void)
     moray_settings settings = *usual();
     settings.max_iterations = 200;
     check_suggestion(
-        &spec, settings, MORAY_NLP_STALLED,
+        &spec, settings, GAVE_UP,
         "Try: bounds that keep the functions in their domain. Last, integrand g[0] of phase cart is not finite at ");
 }
 

@@ -145,7 +145,7 @@ static moray_status speed(paper *p, int way, double theta_max, double *v_x)
     const moray_gait_change change = {0, paper_gait(p, model, theta_max)};
     paper_swim_plan plan = {.model = model, .schedule = &change, .n_changes = 1};
     MORAY_TRY(paper_swimmer(p, p->robot, model, way == 2 ? MORAY_READ_L_PRINTED : MORAY_READ_CORRECTED, &plan.swimmer));
-    return paper_mean_velocity(p, &plan, PERIODS * period_of(p), LAST, v_x, NULL);
+    return paper_mean_velocity(p, &plan, PERIODS * period_of(p), LAST, v_x);
 }
 
 // (12) over the true link angle, for the small angles of the gait (24) inside the body: with phi of (28), both sines.

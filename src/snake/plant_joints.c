@@ -110,8 +110,9 @@ static double *hessian_of_steering(const plant *self, const double g[FEATURES], 
 static void closed_loop_shape(plant *self)
 {
     const int n = self->n;
-    double *phi_ref = self->work, *v_ref = phi_ref + n;
-    reference_set(&self->gait, self->in + self->rest);
+    double *phi_ref = self->work, *v_ref = phi_ref + n, p[GAIT_KINDS] = {0};
+    memcpy(p, self->in + self->rest, GAIT_INPUTS * sizeof *p);
+    reference_set(&self->gait, p);
     reference_values(&self->gait, phi_ref, v_ref, self->ubar);
     for (int i = 0; i < n; i++) // (34)
         self->ubar[i] += self->k_d * (v_ref[i] - self->v_phi[i]) + self->k_p * (phi_ref[i] - self->phi[i]);
