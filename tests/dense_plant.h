@@ -71,9 +71,11 @@ static dense_state dense_unpack(const dense_plant *self, const num *in)
         num ref = 0, dref = 0, ddref = 0; // (25)
         if (self->spec.joints != MORAY_JOINTS_FREE) {
             const num argument = s[1] * t + i * s[2];
-            ref = s[0] * csin(argument) + (steered ? in[6] : s[3]);
-            dref = s[0] * s[1] * ccos(argument) + (steered ? in[7] : 0);
-            ddref = -s[0] * s[1] * s[1] * csin(argument) + (steered ? in[8] : 0);
+            const num taper = steered ? 0 : s[4];
+            const num a = s[0] * (1 + taper * (n > 1 ? (2.0 * i - (n - 1)) / (n - 1) : 0));
+            ref = a * csin(argument) + (steered ? in[6] : s[3]);
+            dref = a * s[1] * ccos(argument) + (steered ? in[7] : 0);
+            ddref = -a * s[1] * s[1] * csin(argument) + (steered ? in[8] : 0);
         }
         x.phi[i] = on_gait ? ref : in[i];
         x.v_phi[i] = on_gait ? dref : in[n + 3 + i];

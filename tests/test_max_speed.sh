@@ -37,6 +37,13 @@ run --json --set theta_max_deg=1:60
 check "at least 10.5 % with theta_max free: $(number gain speed_percent_at_equal_power)" \
     eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" "BEGIN { exit !(g >= 10.5) }"'
 
+run --json --set theta_max_deg=1:60 --set taper=-1:1
+check "at least 11.5 % with a taper as well, larger at the tail: $(number gain speed_percent_at_equal_power)" \
+    eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" -v t="$(number gait taper)" \
+        "BEGIN { exit !(g >= 11.5 && t < -0.1 && t > -0.2) }"'
+run --quiet --model control --set taper=-0.8
+check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
+
 run --quiet
 check "the table says plainly that the gait loses" grep -q 'LOSES on the first-principles model' out
 check "and puts both models' gains side by side" grep -q 'The control-oriented model itself promised' out
@@ -64,6 +71,7 @@ refuse 'm_kg = -1' --set m_kg=-1
 refuse 'c_n = nan' --set c_n=nan
 refuse 'delta_deg = 50:30' --set delta_deg=50:30
 refuse 'theta_max_deg = 95' --set theta_max_deg=95
+refuse 'taper = -2' --set taper=-2:0
 refuse 'power_W = 0' --set power_W=0
 refuse 'power_w' --set power_w=1
 refuse 'scheme = euler' --scheme euler

@@ -20,12 +20,13 @@ typedef struct sample {
     double theta_max, omega, delta, offset; // [deg], [deg/s], [deg], of the amplitude
     double current[2], course;
     bool steered;
+    double taper;
 } sample;
 
 static const sample samples[] = {
-    {10, 20, 120, 40, 0, {0, 0}, 0, true},        {10, 25, 150, 52, 0, {0.05, -0.08}, 0.4, true},
-    {10, 20, 120, 45, 0.2, {0, 0}, 0, false},                                              // turns
-    {3, 25, 150, 70, 0, {0.006, 0.004}, 0, true}, {3, 20, 200, 80, 0.1, {0, 0}, 1, false}, // turns
+    {10, 20, 120, 40, 0, {0, 0}, 0, true, 0},        {10, 25, 150, 52, 0, {0.05, -0.08}, 0.4, true, -0.5},
+    {10, 20, 120, 45, 0.2, {0, 0}, 0, false, 0},                                                   // turns
+    {3, 25, 150, 70, 0, {0.006, 0.004}, 0, true, 0}, {3, 20, 200, 80, 0.1, {0, 0}, 1, false, 0.2}, // turns
 };
 enum { SAMPLES = sizeof samples / sizeof *samples };
 
@@ -49,7 +50,8 @@ static rig rig_of(const sample *s, moray_model model)
     spec.intervals = 24;
     moray_gait gait = {.amplitude = moray_amplitude_from_theta_max(&r.robot, model, s->theta_max * DEG, s->delta * DEG),
                        .omega = s->omega * DEG,
-                       .delta = s->delta * DEG};
+                       .delta = s->delta * DEG,
+                       .taper = s->taper};
     gait.offset = s->offset * gait.amplitude;
     CHECK_OK(moray_orbit_new(&r.orbit, &spec), "orbit");
     CHECK_OK(moray_orbit_solve(r.orbit, &gait, &r.found), "found");
@@ -209,7 +211,8 @@ static void test_floquet(const sample *s, moray_model model)
 // A head current keeps the first-principles robot on its heading, a following one turns it away.
 static void test_stability(void)
 {
-    const sample head = {10, 20, 120, 40, 0, {-0.1, 0}, 0, true}, following = {10, 20, 120, 40, 0, {0.1, 0}, 0, true};
+    const sample head = {10, 20, 120, 40, 0, {-0.1, 0}, 0, true, 0},
+                 following = {10, 20, 120, 40, 0, {0.1, 0}, 0, true, 0};
     moray_floquet floquet;
     rig r = rig_of(&head, MORAY_FIRST_PRINCIPLES);
     CHECK_OK(moray_orbit_floquet(r.orbit, &floquet), "multipliers");
@@ -241,8 +244,8 @@ static void orbit_differences(rig *r, const sample *s, int parameter, double *sl
     double q[4][QUANTITIES] = {{0}}, h = 0;
     for (int k = 0; k < 4; k++) {
         moray_gait gait = r->found.gait;
-        double *const all[] = {&gait.amplitude, &gait.omega, &gait.delta, &gait.offset};
-        h = 1e-4 * (parameter == 3 ? gait.amplitude : *all[parameter]);
+        double *const all[] = {&gait.amplitude, &gait.omega, &gait.delta, &gait.offset, &gait.taper};
+        h = 1e-4 * (parameter == 3 ? gait.amplitude : parameter == 4 ? 1 : *all[parameter]);
         *all[parameter] += steps[k] * h;
         moray_orbit_result found;
         CHECK_OK(moray_orbit_solve(r->orbit, &gait, &found), "solved again");
@@ -254,13 +257,13 @@ static void orbit_differences(rig *r, const sample *s, int parameter, double *sl
 
 static void test_gradients(const sample *s, moray_model model)
 {
-    static const char *const parameters[] = {"amplitude", "omega", "delta", "offset"};
+    static const char *const parameters[] = {"amplitude", "omega", "delta", "offset", "taper"};
     rig r = rig_of(s, model);
     moray_orbit_gradient gradient;
     CHECK_OK(moray_orbit_gradients(r.orbit, &gradient), "gradients");
     const double *const given[QUANTITIES] = {gradient.course_speed, gradient.power, gradient.peak_effort,
                                              gradient.steering};
-    for (int p = 0; p < 4; p++) {
+    for (int p = 0; p < 5; p++) {
         double slope[QUANTITIES];
         if (p == 3 && s->steered) {
             CHECK(given[0][p] == 0 && given[1][p] == 0 && given[2][p] == 0 && given[3][p] == 0,

@@ -123,11 +123,11 @@ static void test_sizes(void)
 {
     moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_ON_GAIT};
     moray_plant_size size = moray_plant_sizes(&spec);
-    CHECK(size.nx == 6 && size.nu == 0 && size.ns == 4 && size.nc == 0 && size.nq == 1, "sizes on the gait");
+    CHECK(size.nx == 6 && size.nu == 0 && size.ns == 5 && size.nc == 0 && size.nq == 1, "sizes on the gait");
     spec.joints = MORAY_JOINTS_CLOSED_LOOP;
     spec.path_forces = true;
     size = moray_plant_sizes(&spec);
-    CHECK(size.nx == 24 && size.nu == 0 && size.ns == 4 && size.nc == 9 && size.nq == 1, "sizes in closed loop");
+    CHECK(size.nx == 24 && size.nu == 0 && size.ns == 5 && size.nc == 9 && size.nq == 1, "sizes in closed loop");
     spec.joints = MORAY_JOINTS_FREE;
     spec.path_angles = true;
     size = moray_plant_sizes(&spec);

@@ -15,17 +15,17 @@ static const char *const form_names[] = {[MORAY_JOINTS_ON_GAIT] = "on the gait",
 
 static void random_input(unsigned long long *seed, bool steered, double *in)
 {
-    const double low[] = {-3, 0, 0, -0.5, -0.3, -0.3, 0.05, 1, 0.3, -0.1, 0};
-    const double high[] = {3, 0, 0, 0.5, 0.3, 0.3, 0.4, 4, 1.5, 0.1, 3};
+    const double low[] = {-3, 0, 0, -0.5, -0.3, -0.3, 0.05, 1, 0.3, -0.1, -0.8, 0};
+    const double high[] = {3, 0, 0, 0.5, 0.3, 0.3, 0.4, 4, 1.5, 0.1, 0.8, 3};
     const double steered_low[] = {-3, 0, 0, -0.5, -0.3, -0.3, -0.1, -0.2, -0.5, 0.05, 1, 0.3, 0};
     const double steered_high[] = {3, 0, 0, 0.5, 0.3, 0.3, 0.1, 0.2, 0.5, 0.4, 4, 1.5, 3};
-    for (int i = 0; i < (steered ? 13 : 11); i++)
+    for (int i = 0; i < (steered ? 13 : 12); i++)
         in[i] = steered ? tap_random(seed, steered_low[i], steered_high[i]) : tap_random(seed, low[i], high[i]);
 }
 
 static moray_gait gait_of(bool steered, const double *in, double *t)
 {
-    *t = in[steered ? 12 : 10];
+    *t = in[steered ? 12 : 11];
     if (steered)
         return (moray_gait){.amplitude = in[9],
                             .omega = in[10],
@@ -33,7 +33,7 @@ static moray_gait gait_of(bool steered, const double *in, double *t)
                             .offset = in[6],
                             .offset_rate = in[7],
                             .offset_acceleration = in[8]};
-    return (moray_gait){.amplitude = in[6], .omega = in[7], .delta = in[8], .offset = in[9]};
+    return (moray_gait){.amplitude = in[6], .omega = in[7], .delta = in[8], .offset = in[9], .taper = in[10]};
 }
 
 // The state of the swimmer that stands for the state of the plant: link angles of the given mean.

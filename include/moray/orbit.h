@@ -40,19 +40,19 @@ typedef struct moray_orbit_result {
 } moray_orbit_result;
 
 // Finds the orbit of the gait, starting from the last orbit found and, without one or in vain, from a straight glide
-// along the course. gait->offset is where a steered search begins. Error: MORAY_INPUT (gait; the plants know no taper);
+// along the course. gait->offset is where a steered search begins. Error: MORAY_INPUT (gait);
 // MORAY_MEMORY; MORAY_NOT_SOLVED when no orbit is found, as where the current across is stronger than the gait.
 moray_status moray_orbit_solve(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result);
 
 // The rest is of the last orbit found. Error of all: MORAY_INPUT when there is none, MORAY_MEMORY, MORAY_NUMERIC.
 
-// Derivatives by (amplitude, omega, delta, offset), by the implicit function theorem: one solve with the transposed
-// factors for each quantity. Those by the offset are 0 where it is what is found.
+// Derivatives by (amplitude, omega, delta, offset, taper), by the implicit function theorem: one solve with the
+// transposed factors for each quantity. Those by the offset are 0 where it is what is found.
 typedef struct moray_orbit_gradient {
-    double course_speed[4]; // of moray_course_speed
-    double power[4];
-    double peak_effort[4]; // of the largest sample
-    double steering[4];    // of the offset found, or else of the turn a period
+    double course_speed[5]; // of moray_course_speed
+    double power[5];
+    double peak_effort[5]; // of the largest sample
+    double steering[5];    // of the offset found, or else of the turn a period
 } moray_orbit_gradient;
 moray_status moray_orbit_gradients(moray_orbit *orbit, moray_orbit_gradient *gradient);
 

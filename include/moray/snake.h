@@ -43,9 +43,9 @@ typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
 // Gait (25): phi_ref,i(t) = A_i sin(omega t + (i-1) delta) + offset, i = 1..N-1. A_i and offset are a and phi_0 in m
 // for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Where the offset moves,
-// offset_rate and offset_acceleration are phi_0' and phi_0'' at t, fed forward. Eel-like motion, beyond the
-// paper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail, to 1 at the
-// last (0 where N = 2). The plants for the transcription, below, know no taper.
+// offset_rate and offset_acceleration are phi_0' and phi_0'' at t, fed forward. Eel-like motion, beyond the paper, with
+// a negative taper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail,
+// to 1 at the last (0 where N = 2).
 typedef struct moray_gait {
     double amplitude, omega, delta, offset, taper, offset_rate, offset_acceleration;
 } moray_gait;
@@ -54,11 +54,17 @@ typedef struct moray_gait {
 void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi);
 
 // Amplitude from the link-angle amplitude theta_max of (24), and back: (27) alpha = 2 sin(delta/2) theta_max;
-// (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body: by (1), link i then swings
-// with alpha/(2 sin(delta/2)) sqrt((1 + taper s)^2 + (taper cot(delta/2)/(N-2))^2), by (12) with
-// a/(2l) cos(delta/2) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2), s being s_i halfway between its two joints.
+// (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body. The wave of link angles
+// whose differences (1) are a tapered gait has in link i
+//     theta_max,i = alpha/(2 sin(delta/2)) sqrt((1 + taper s)^2 + (taper cot(delta/2)/(N-2))^2),
+// and that which gives one by (29), phi_i = l sin theta_i + l sin theta_{i+1},
+//     sin theta_max,i = a/(2l cos(delta/2)) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2),
+// where s is s_i halfway between its two joints: -+ (N-1)/(N-2) for the first and the last link.
 double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta);
 double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude, double delta);
+
+// That of link i = 1..N of a gait with a taper; the largest is that of link N, the head, or link 1, the tail.
+double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
 
 // The same gait for the other model: equal theta_max, omega, delta, taper; offset and its derivatives in the same ratio
 // to the amplitude, with the opposite sign (erratum E3).
@@ -133,11 +139,11 @@ void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *
 // (N).
 
 typedef enum {
-    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0); no u
-    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0), ubar from (34); no u
+    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0, taper); no u
+    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0, taper), ubar from (34); no u
     MORAY_JOINTS_FREE,        // x of (21), u = ubar (N-1); no s
-    MORAY_JOINTS_STEERED      // on the gait with a moving offset, fed forward: x = (theta, p_x, p_y, v_theta, v_t, v_n,
-                              // phi_0, phi_0'), u = phi_0'', s = (a, omega, delta)
+    MORAY_JOINTS_STEERED // on a gait without taper, with a moving offset, fed forward: x = (theta, p_x, p_y, v_theta,
+                         // v_t, v_n, phi_0, phi_0'), u = phi_0'', s = (a, omega, delta)
 } moray_joints;
 
 typedef struct moray_plant_spec {

@@ -58,7 +58,7 @@ static moray_status make_ocp(s1_case *c)
     const moray_plant_spec plant = {
         .robot = moray_robot_paper(), .joints = MORAY_JOINTS_CLOSED_LOOP, .current = {current[0], current[1]}};
     const moray_bounds s[] = {moray_between(0, c->L * sin(20 * DEG)), moray_between(30 * DEG, 180 * DEG),
-                              moray_between(30 * DEG, 50 * DEG), moray_between(-0.02, 0.02)};
+                              moray_between(30 * DEG, 50 * DEG), moray_between(-0.02, 0.02), moray_fixed(0)};
     moray_bounds x0[S1_STATES], e[S1_STATES + 1];
     for (int r = 0; r < S1_STATES; r++)
         x0[r] = r == position || r == position + 1 ? moray_fixed(0) : moray_free();
@@ -76,8 +76,8 @@ static moray_status make_ocp(s1_case *c)
     return moray_ocp_new(&c->ocp, &(moray_ocp_spec){.name = "S1",
                                                     .phases = 1,
                                                     .phase = &phase,
-                                                    .ns = 4,
-                                                    .s = {s, 4},
+                                                    .ns = 5,
+                                                    .s = {s, 5},
                                                     .ne = S1_STATES + 1,
                                                     .e = {e, S1_STATES + 1},
                                                     .endpoint = ends,
@@ -88,7 +88,7 @@ static moray_status solve(void *self, moray_solution **solution)
 {
     s1_case *c = self;
     const moray_settings settings = benchmark_settings("hermite-simpson", 20);
-    const double s[] = {c->gait.amplitude, c->gait.omega, c->gait.delta, c->gait.offset};
+    const double s[] = {c->gait.amplitude, c->gait.omega, c->gait.delta, c->gait.offset, 0};
     const moray_samples orbit = {.n = c->orbit.n, .time = c->orbit.t, .x = c->orbit.x};
     const moray_guess guess = {.phase = &orbit, .s = s};
     MORAY_TRY(make_ocp(c));

@@ -12,6 +12,9 @@ static const moray_option shared[] = {
     GAIT_RANGE("delta_deg", delta, 1, 179, "deg", "phase shift between joints"),
     GAIT_RANGE("phi0_m", offset, -1, 1, "m", "joint offset of the control-oriented model"),
     GAIT_RANGE("phi0_deg", offset_angle, -90, 90, "deg", "joint offset of the first-principles model"),
+    GAIT_RANGE("taper", taper, -1, 1, NULL,
+               "growth of the joint amplitude: 1 - taper times that of the middle in the first joint, at the tail, to "
+               "1 + taper times in the last; an eel's is negative. No link may exceed theta_max_deg"),
     GAIT_LIMIT("joint_rate", joint_rate, NULL, "rate amplitude of the joints (m/s; deg/s with the complex model)"),
     GAIT_LIMIT("joint_effort", joint_effort, NULL,
                "peak joint force at the nodes of the mesh, which then has 60 intervals (N; torque in N m with the "

@@ -28,7 +28,7 @@ typedef struct gait_job {
     moray_common common; // model complex: both stages, control-oriented first; control: that alone
     const char *name;    // of the program
     moray_gait_goal goal;
-    double theta_max[2], omega[2], delta[2], offset[2], offset_angle[2];
+    double theta_max[2], omega[2], delta[2], offset[2], offset_angle[2], taper[2];
     double power, speed; // NaN: what the paper's gait uses and makes
     double joint_rate, joint_effort;
     moray_joints joints;

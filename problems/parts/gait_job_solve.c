@@ -25,6 +25,7 @@ moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_g
                    .omega = moray_between(job->omega[0], job->omega[1]),
                    .delta = moray_between(job->delta[0], job->delta[1]),
                    .offset = moray_between(offset[0], offset[1]),
+                   .taper = moray_between(job->taper[0], job->taper[1]),
                    .power = limit(at->power),
                    .joint_rate = own ? limit(job->joint_rate * (revolute ? DEG : 1)) : MORAY_INFINITY,
                    .joint_effort = own ? limit(job->joint_effort) : MORAY_INFINITY,
@@ -79,6 +80,17 @@ static moray_gait random_gait(const gait_job *job, moray_model model)
     const double theta_max = uniform(job->theta_max[0], job->theta_max[1]);
     moray_gait gait = {.omega = uniform(job->omega[0], job->omega[1]), .delta = uniform(job->delta[0], job->delta[1])};
     gait.amplitude = moray_amplitude_from_theta_max(&job->common.robot, model, theta_max, gait.delta);
+    if (job->taper[0] < job->taper[1])
+        gait.taper = uniform(job->taper[0], job->taper[1]);
+    return gait;
+}
+
+// The gait with a taper that is allowed, its largest joint amplitude as before.
+static moray_gait tapered(const gait_job *job, moray_gait gait)
+{
+    const double before = 1 + fabs(gait.taper);
+    gait.taper = fmin(fmax(gait.taper, job->taper[0]), job->taper[1]);
+    gait.amplitude *= before / (1 + fabs(gait.taper));
     return gait;
 }
 
@@ -114,7 +126,7 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
     srand48(1);
     at->starts = known->n + random;
     for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
-        const moray_gait gait = k < known->n ? known->gait[k] : random_gait(job, at->model);
+        const moray_gait gait = tapered(job, k < known->n ? known->gait[k] : random_gait(job, at->model));
         moray_solution *solution = NULL;
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
         if (!moray_failed(status))

@@ -4,8 +4,8 @@
 #include <math.h>
 
 // Of what the objective and the events other than periodicity are functions: displacement along and across the course,
-// period, joint work, parameters.
-enum { ALONG, ACROSS, PERIOD, WORK, AMPLITUDE, OMEGA, DELTA, FEATURES };
+// period, joint work, parameters in their order (phi_0 has a place and no user).
+enum { ALONG, ACROSS, PERIOD, WORK, AMPLITUDE, OMEGA, DELTA, TAPER = DELTA + 2, FEATURES };
 
 // A function of some features with its derivatives; second ones by pairs of features where they are not zero.
 struct term {
@@ -13,11 +13,11 @@ struct term {
     int n, n_curved;
     int feature[3];
     double slope[3];
-    int pair[3][2]; // indices into feature
-    double curve[3];
+    int pair[6][2]; // indices into feature
+    double curve[6];
 };
 
-enum { MOST_TERMS = 8 };
+enum { MOST_TERMS = 12 };
 
 // ---- Features in the input [x0, t0, xf, tf, q, s] ------------------------------------------------------------------
 
@@ -81,22 +81,23 @@ static struct term ratio(const double *value, double sign, int over, int under)
                          .curve = {-sign / (b * b), 2 * sign * a / (b * b * b)}};
 }
 
-// 1 / (L cos(delta/2)) of (33), or 1 / (2 sin(delta/2)) of (27), with two derivatives by delta.
-struct reciprocal {
+// A function of delta with two derivatives.
+struct curve {
     double value, slope, curvature;
 };
 
-static struct reciprocal amplitude_reciprocal(const struct gait_endpoint *e, double delta)
+// 1 / (L cos(delta/2)) of (33), or 1 / (2 sin(delta/2)) of (27)
+static struct curve amplitude_reciprocal(const struct gait_endpoint *e, double delta)
 {
     const double scale = e->revolute ? 2 : e->L, c = cos(delta / 2), s = sin(delta / 2);
     const double d = e->revolute ? s : c, slope = (e->revolute ? c : -s) / 2; // d'' = -d/4
-    return (struct reciprocal){1 / (scale * d), -slope / (scale * d * d),
-                               (0.25 / d + 2 * slope * slope / (d * d * d)) / scale};
+    return (struct curve){1 / (scale * d), -slope / (scale * d * d),
+                          (0.25 / d + 2 * slope * slope / (d * d * d)) / scale};
 }
 
 static struct term link_angle(const struct gait_endpoint *e, const double *value)
 {
-    const struct reciprocal r = amplitude_reciprocal(e, value[DELTA]);
+    const struct curve r = amplitude_reciprocal(e, value[DELTA]);
     const double a = value[AMPLITUDE];
     return (struct term){.value = a * r.value,
                          .n = 2,
@@ -105,6 +106,52 @@ static struct term link_angle(const struct gait_endpoint *e, const double *value
                          .n_curved = 2,
                          .pair = {{0, 1}, {1, 1}},
                          .curve = {r.slope, a * r.curvature}};
+}
+
+// cot(delta/2) / (2 sin(delta/2) (N-2)) or tan(delta/2) / (L cos(delta/2) (N-2)), what a taper adds across
+static struct curve across_taper(const struct gait_endpoint *e, double delta)
+{
+    const double k = 1 / ((e->revolute ? 2 : e->L) * (e->links - 2)), c = cos(delta / 2), s = sin(delta / 2);
+    const double d = e->revolute ? s : c, n = e->revolute ? c : s, sign = e->revolute ? -1 : 1;
+    return (struct curve){k * n / (d * d), sign * k * (1 + n * n) / (2 * d * d * d),
+                          k * n * (5 + n * n) / (4 * d * d * d * d)};
+}
+
+// Square of the link-angle amplitude at the head (side 1) or the tail (-1): a^2 (r^2 g^2 + p^2 taper^2), where r is
+// amplitude_reciprocal, p across_taper and g = 1 + side taper (N-1)/(N-2).
+static struct term end_link_angle(const struct gait_endpoint *e, const double *value, double side)
+{
+    const struct curve r = amplitude_reciprocal(e, value[DELTA]), p = across_taper(e, value[DELTA]);
+    const double a = value[AMPLITUDE], taper = value[TAPER], slope = side * (e->links - 1) / (e->links - 2);
+    const double g = 1 + slope * taper, g2 = g * g, t2 = taper * taper;
+    const double sum = r.value * r.value * g2 + p.value * p.value * t2;
+    const double by_delta = 2 * (r.value * r.slope * g2 + p.value * p.slope * t2);
+    const double by_taper = 2 * (r.value * r.value * g * slope + p.value * p.value * taper);
+    return (struct term){.value = a * a * sum,
+                         .n = 3,
+                         .feature = {AMPLITUDE, DELTA, TAPER},
+                         .slope = {2 * a * sum, a * a * by_delta, a * a * by_taper},
+                         .n_curved = 6,
+                         .pair = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}},
+                         .curve = {2 * sum, 2 * a * by_delta, 2 * a * by_taper,
+                                   2 * a * a *
+                                       ((r.slope * r.slope + r.value * r.curvature) * g2 +
+                                        (p.slope * p.slope + p.value * p.curvature) * t2),
+                                   4 * a * a * (r.value * r.slope * g * slope + p.value * p.slope * taper),
+                                   2 * a * a * (r.value * r.value * slope * slope + p.value * p.value)}};
+}
+
+// Rate amplitude of the last (side 1) or the first joint (-1).
+static struct term end_rate(const double *value, double side)
+{
+    const double a = value[AMPLITUDE], omega = value[OMEGA], g = 1 + side * value[TAPER];
+    return (struct term){.value = a * omega * g,
+                         .n = 3,
+                         .feature = {AMPLITUDE, OMEGA, TAPER},
+                         .slope = {omega * g, a * g, side * a * omega},
+                         .n_curved = 3,
+                         .pair = {{0, 1}, {0, 2}, {1, 2}},
+                         .curve = {g, side * omega, side * a}};
 }
 
 moray_bounds gait_amplitude_bounds(const struct gait_endpoint *e, moray_bounds theta_max)
@@ -124,10 +171,16 @@ static int terms_of(const struct gait_endpoint *e, const double *in, struct term
     term[n++] = linear(value, ACROSS);
     term[n++] = product(value, OMEGA, PERIOD);
     term[n++] = link_angle(e, value);
+    if (e->head)
+        term[n++] = end_link_angle(e, value, 1);
+    if (e->tail)
+        term[n++] = end_link_angle(e, value, -1);
     if (e->power)
         term[n++] = ratio(value, 1, WORK, PERIOD);
-    if (e->rate)
-        term[n++] = product(value, AMPLITUDE, OMEGA);
+    if (e->rate && (e->head || !e->tail))
+        term[n++] = e->head ? end_rate(value, 1) : product(value, AMPLITUDE, OMEGA);
+    if (e->rate && e->tail)
+        term[n++] = end_rate(value, -1);
     if (e->speed)
         term[n++] = ratio(value, 1, ALONG, PERIOD);
     return n;
@@ -216,7 +269,7 @@ moray_status gait_endpoint_map(moray_map *map, struct gait_endpoint *e)
 {
     double zeros[1024] = {0}; // while recording, any point does
     struct term term[MOST_TERMS];
-    const int inputs = 2 * e->nx + 3 + 4;
+    const int inputs = 2 * e->nx + 3 + MORAY_GAIT_PARAMETERS;
     if (inputs > 1024)
         return moray_error(MORAY_INPUT, "links: %d states are more than this form is made for", e->nx);
     e->events = e->nx - 2 + terms_of(e, zeros, term) - 1;

@@ -162,11 +162,9 @@ static moray_status check_gait(const moray_gait *gait)
 {
     if (!(gait->omega > 0 && isfinite(gait->omega)))
         return moray_error(MORAY_INPUT, "omega = %g: an orbit needs a finite omega above 0", gait->omega);
-    if (!isfinite(gait->amplitude) || !isfinite(gait->delta) || !isfinite(gait->offset))
-        return moray_error(MORAY_INPUT, "gait amplitude = %g, delta = %g, offset = %g: must be finite", gait->amplitude,
-                           gait->delta, gait->offset);
-    if (gait->taper != 0)
-        return moray_error(MORAY_INPUT, "gait taper = %g: the plants know none", gait->taper);
+    if (!isfinite(gait->amplitude) || !isfinite(gait->delta) || !isfinite(gait->offset) || !isfinite(gait->taper))
+        return moray_error(MORAY_INPUT, "gait amplitude = %g, delta = %g, offset = %g, taper = %g: must be finite",
+                           gait->amplitude, gait->delta, gait->offset, gait->taper);
     return moray_ok();
 }
 
@@ -197,7 +195,7 @@ static moray_status search(moray_orbit *orbit, int *iterations, double *residual
 
 moray_status moray_orbit_solve(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result)
 {
-    const double parameters[] = {gait->amplitude, gait->omega, gait->delta, gait->offset};
+    const double parameters[] = {gait->amplitude, gait->omega, gait->delta, gait->offset, gait->taper};
     *result = (moray_orbit_result){.gait = *gait};
     MORAY_TRY(check_gait(gait));
     orbit->gait = *gait;

@@ -9,8 +9,8 @@
 moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
 {
     const int N = spec->robot.links;
-    const moray_plant_size forms[] = {[MORAY_JOINTS_ON_GAIT] = {.nx = 6, .ns = 4},
-                                      [MORAY_JOINTS_CLOSED_LOOP] = {.nx = 2 * N + 4, .ns = 4},
+    const moray_plant_size forms[] = {[MORAY_JOINTS_ON_GAIT] = {.nx = 6, .ns = 5},
+                                      [MORAY_JOINTS_CLOSED_LOOP] = {.nx = 2 * N + 4, .ns = 5},
                                       [MORAY_JOINTS_FREE] = {.nx = 2 * N + 4, .nu = N - 1},
                                       [MORAY_JOINTS_STEERED] = {.nx = 8, .nu = 1, .ns = 3}};
     moray_plant_size size = forms[spec->joints];
@@ -33,16 +33,18 @@ static void place_outputs(plant *self, const moray_plant_spec *spec)
 
 static void place_inputs(plant *self, moray_joints joints)
 {
+    static const int on_gait[] = {GAIT_A, GAIT_OMEGA, GAIT_DELTA, GAIT_PHI_0, GAIT_TAPER, GAIT_T};
+    static const int steered_kinds[] = {GAIT_A, GAIT_OMEGA, GAIT_DELTA, GAIT_PHI_0, GAIT_T, GAIT_DPHI_0, GAIT_DDPHI_0};
     const int n = self->n;
     self->gait.n = n;
-    self->gait.n_inputs = joints == MORAY_JOINTS_STEERED ? STEERED_INPUTS : GAIT_INPUTS;
     self->joint_states = joints == MORAY_JOINTS_CLOSED_LOOP || joints == MORAY_JOINTS_FREE;
     if (!self->joint_states) {
         const bool steered = joints == MORAY_JOINTS_STEERED;
         self->form = steered ? &plant_steered : &plant_on_gait;
-        self->n_s = GAIT_INPUTS;
-        self->n_curved = GAIT_INPUTS + steered;
-        self->n_shape = self->gait.n_inputs;
+        self->kind = steered ? steered_kinds : on_gait;
+        self->n_s = steered ? 5 : 6; // all but phi_0', phi_0''
+        self->n_curved = 6;          // all but phi_0''
+        self->n_shape = steered ? 7 : 6;
         self->v_theta = 3;
         self->offset = 6;
         return;
@@ -83,10 +85,11 @@ static double *take(arena *from, int count)
 
 static void take_vectors(plant *self, arena *from)
 {
-    double **const on_joints[] = {&self->phi,      &self->v_phi,    &self->ubar,      &self->zeros,      &self->ones,
-                                  &self->bt_phi,   &self->aa_phi,   &self->g_load,    &self->u,          &self->b_v,
-                                  &self->b_ubar,   &self->g_v,      &self->on_phi,    &self->on_v,       &self->on_ubar,
-                                  &self->b_lambda, &self->g_lambda, &self->gait.sine, &self->gait.cosine};
+    double **const on_joints[] = {
+        &self->phi,         &self->v_phi,      &self->ubar,       &self->zeros,    &self->ones,     &self->bt_phi,
+        &self->aa_phi,      &self->g_load,     &self->u,          &self->b_v,      &self->b_ubar,   &self->g_v,
+        &self->on_phi,      &self->on_v,       &self->on_ubar,    &self->b_lambda, &self->g_lambda, &self->gait.sine,
+        &self->gait.cosine, &self->gait.place, &self->gait.growth};
     double **const on_inputs[] = {&self->y_x[0], &self->y_x[1], &self->y_x[2],  &self->y_x[3], &self->load_x,
                                   &self->dv_t_x, &self->dv_n_x, &self->kappa_x, &self->a_x,    &self->bend_x};
     for (size_t k = 0; k < sizeof on_joints / sizeof *on_joints; k++)
@@ -137,7 +140,7 @@ static void fill_tables(plant *self)
     for (int k = n_joint_inputs; k < self->n_shape; k++)
         self->col[k] = self->rest + k - n_joint_inputs;
     if (self->form == &plant_steered) {
-        const int steered[STEERED_INPUTS] = {9, 10, 11, 6, 12, 7, 8}; // a, omega, delta, phi_0, t, phi_0', phi_0''
+        const int steered[] = {9, 10, 11, 6, 12, 7, 8}; // a, omega, delta, phi_0, t, phi_0', phi_0''
         memcpy(self->col, steered, sizeof steered);
     }
     for (int i = 0; i < self->n; i++)

@@ -90,6 +90,7 @@ struct plant {
     double *in;
     double *phi, *v_phi, *ubar; // n each
     reference gait;
+    const int *kind;            // of the shape inputs, on the gait
     double *bt_phi, *aa_phi;    // B^T phi, A A^T phi
     double *g_load, *u;         // G (mt ubar + c_n v_phi), joint forces (22)
     double *b_v, *b_ubar, *g_v; // B v_phi, B ubar, G v_phi

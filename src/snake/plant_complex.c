@@ -8,13 +8,15 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "taper.h"
+
 enum { body = 6, most_inputs = 13 };
 
 struct complex_plant {
     moray_plant_spec spec;
     moray_plant_size size;
     double complex *block;
-    double complex *sine, *cosine;                                    // of omega t + (i-1) delta
+    double complex *sine, *cosine, *growth;                           // of omega t + (i-1) delta; 1 + taper s_i
     double complex *theta, *dtheta, *phi, *dphi, *ubar, *ddtheta, *u; // N or N-1 each, in the block
     double complex *on_theta, *on_dtheta, *on_ddtheta, *on_joints;    // derivatives of a weighted sum
     complex_link_z *links;
@@ -23,30 +25,32 @@ struct complex_plant {
 };
 
 // (25) and its derivatives; the offset and its own.
-static void gait_motion(struct complex_plant *plant, const double complex *s, double complex t,
+static void gait_motion(struct complex_plant *plant, const double complex *s, double complex taper, double complex t,
                         const double complex offset[3])
 {
     const double complex alpha = s[0], omega = s[1], delta = s[2];
-    for (int i = 0; i < plant->spec.robot.links - 1; i++) {
+    const int joints = plant->spec.robot.links - 1;
+    for (int i = 0; i < joints; i++) {
         const double complex sine = plant->sine[i] = sin(omega * t + i * delta);
         const double complex cosine = plant->cosine[i] = cos(omega * t + i * delta);
-        plant->phi[i] = alpha * sine + offset[0];
-        plant->dphi[i] = alpha * omega * cosine + offset[1];
-        plant->ubar[i] = -alpha * omega * omega * sine + offset[2];
+        const double complex growth = plant->growth[i] = 1 + taper * taper_place(i, joints);
+        plant->phi[i] = alpha * growth * sine + offset[0];
+        plant->dphi[i] = alpha * growth * omega * cosine + offset[1];
+        plant->ubar[i] = -alpha * growth * omega * omega * sine + offset[2];
     }
 }
 
-// Motion of the links at the input [heading, p_x, p_y, their rates, alpha, omega, delta, phi_0, t], or with phi_0,
-// phi_0', phi_0'' before alpha; then their accelerations and torques. Returns the joint power.
+// Motion of the links at the input [heading, p_x, p_y, their rates, alpha, omega, delta, phi_0, taper, t], or with
+// phi_0, phi_0', phi_0'' before alpha and no taper; then their accelerations and torques. Returns the joint power.
 static double complex move(struct complex_plant *plant, const double complex *in, complex_motion_z *motion,
                            double complex ddp[2])
 {
     const moray_robot *robot = &plant->spec.robot;
     const double complex *s = in + plant->size.nx + plant->size.nu;
     if (plant->spec.joints == MORAY_JOINTS_STEERED)
-        gait_motion(plant, s, s[3], in + body);
+        gait_motion(plant, s, 0, s[3], in + body);
     else
-        gait_motion(plant, s, s[4], (double complex[]){s[3], 0, 0});
+        gait_motion(plant, s, s[4], s[5], (double complex[]){s[3], 0, 0});
     complex_angles_z(robot->links, in[0], plant->phi, plant->theta);
     complex_angles_z(robot->links, in[3], plant->dphi, plant->dtheta);
     *motion = (complex_motion_z){plant->theta, plant->dtheta, in[4], in[5], plant->ubar};
@@ -93,14 +97,16 @@ static double complex pull_angles(int N, const double complex *on_angles, double
     return N * mean;
 }
 
-// Adds the gradient by alpha, omega, delta, t and by the offset from that by the rank-th derivative of the joints.
+// Adds the gradient by alpha, omega, delta, t, taper and by the offset from that by the rank-th derivative of the
+// joints.
 static void pull_gait(const struct complex_plant *plant, int rank, const double complex *s, double complex t,
-                      const double complex *on_joints, double complex by[4], double complex *by_offset)
+                      const double complex *on_joints, double complex by[5], double complex *by_offset)
 {
     const double complex alpha = s[0], omega = s[1];
+    const int joints = plant->spec.robot.links - 1;
     *by_offset = 0;
-    for (int i = 0; i < plant->spec.robot.links - 1; i++) {
-        const double complex S = plant->sine[i], C = plant->cosine[i], on = on_joints[i];
+    for (int i = 0; i < joints; i++) {
+        const double complex S = plant->sine[i], C = plant->cosine[i], on = plant->growth[i] * on_joints[i];
         const double complex wave = rank == 0 ? S : rank == 1 ? omega * C : -omega * omega * S;
         const double complex turn = alpha * (rank == 0 ? C : rank == 1 ? -omega * S : -omega * omega * C);
         const double complex faster = alpha * (rank == 0 ? 0 : rank == 1 ? C : -2 * omega * S);
@@ -108,7 +114,8 @@ static void pull_gait(const struct complex_plant *plant, int rank, const double 
         by[1] += on * (faster + t * turn);
         by[2] += on * i * turn;
         by[3] += on * omega * turn;
-        *by_offset += on;
+        by[4] += on_joints[i] * taper_place(i, joints) * alpha * wave;
+        *by_offset += on_joints[i];
     }
 }
 
@@ -122,7 +129,7 @@ static void weighted_gradient(struct complex_plant *plant, const double complex 
     const double *path = weight + size->nx, *on_angles = path + (spec->path_forces ? N - 1 : 0);
     const complex_weights weights = {weight + 3, spec->path_forces ? path : NULL, weight[size->nx + size->nc]};
     complex_gradient by = {plant->on_theta, plant->on_dtheta, plant->on_ddtheta, 0, 0};
-    double complex *const by_rank[] = {by.theta, by.dtheta, by.ddtheta}, by_gait[4] = {0}, by_offset[3], mean[3],
+    double complex *const by_rank[] = {by.theta, by.dtheta, by.ddtheta}, by_gait[5] = {0}, by_offset[3], mean[3],
                           ddp[2];
     complex_motion_z motion;
     move(plant, in, &motion, ddp);
@@ -139,10 +146,12 @@ static void weighted_gradient(struct complex_plant *plant, const double complex 
     gradient[3] = mean[1];
     gradient[4] = by.v_x;
     gradient[5] = by.v_y;
-    if (spec->joints == MORAY_JOINTS_STEERED)
+    if (spec->joints == MORAY_JOINTS_STEERED) {
         memcpy(gradient + body, by_offset, sizeof by_offset);
-    else
+    } else {
         gradient[s + 3] = by_offset[0];
+        gradient[s + 4] = by_gait[4];
+    }
     memcpy(gradient + s, by_gait, 3 * sizeof *gradient);
     gradient[t] = by_gait[3];
 }
@@ -204,7 +213,7 @@ static moray_status plant_new(struct complex_plant **result, const moray_plant_s
     if (plant) {
         plant->spec = *spec;
         plant->size = moray_plant_sizes(spec);
-        plant->block = calloc(13 * N, sizeof *plant->block);
+        plant->block = calloc(14 * N, sizeof *plant->block);
         plant->links = calloc(N, sizeof *plant->links);
         plant->dual = calloc(N, sizeof *plant->dual);
     }
@@ -212,10 +221,10 @@ static moray_status plant_new(struct complex_plant **result, const moray_plant_s
         plant_free(plant);
         return moray_error(MORAY_MEMORY, "no memory for a plant of %d links", spec->robot.links);
     }
-    double complex **parts[] = {&plant->sine,     &plant->cosine,   &plant->theta,     &plant->dtheta,
-                                &plant->phi,      &plant->dphi,     &plant->ubar,      &plant->ddtheta,
-                                &plant->u,        &plant->on_theta, &plant->on_dtheta, &plant->on_ddtheta,
-                                &plant->on_joints};
+    double complex **parts[] = {&plant->sine,       &plant->cosine,   &plant->growth,   &plant->theta,
+                                &plant->dtheta,     &plant->phi,      &plant->dphi,     &plant->ubar,
+                                &plant->ddtheta,    &plant->u,        &plant->on_theta, &plant->on_dtheta,
+                                &plant->on_ddtheta, &plant->on_joints};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         *parts[i] = plant->block + i * N;
     *result = plant;
@@ -226,7 +235,7 @@ static moray_status plant_new(struct complex_plant **result, const moray_plant_s
 static void probe(const moray_plant_spec *spec, double *in)
 {
     const double speed = spec->robot.l, state[body] = {0.1, 0, 0, 0.2, speed, 0.3 * speed};
-    const double on_gait[] = {0.2, 2, 0.7, 0.01, 0.4}, steered[] = {0.01, 0.003, 0.002, 0.2, 2, 0.7, 0.4};
+    const double on_gait[] = {0.2, 2, 0.7, 0.01, 0.1, 0.4}, steered[] = {0.01, 0.003, 0.002, 0.2, 2, 0.7, 0.4};
     memcpy(in, state, sizeof state);
     if (spec->joints == MORAY_JOINTS_STEERED)
         memcpy(in + body, steered, sizeof steered);

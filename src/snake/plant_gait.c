@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Joints on the gait: phi, v_phi, ubar are (25) and its derivatives, the shape inputs a, omega, delta, phi_0, t and,
-// where the offset moves, phi_0', phi_0''.
+// Joints on the gait: phi, v_phi, ubar are (25) and its derivatives, the shape inputs a, omega, delta, phi_0, taper, t;
+// where the offset moves, phi_0' and phi_0'' too, but no taper.
 #include "plant.h"
 
 #include "shape.h"
@@ -19,22 +19,25 @@ static triple triple_at(const plant *self, int k)
 
 static void shape(plant *self)
 {
-    double p[STEERED_INPUTS];
+    double p[GAIT_KINDS] = {0};
     for (int k = 0; k < self->n_shape; k++)
-        p[k] = self->in[self->col[k]];
+        p[self->kind[k]] = self->in[self->col[k]];
     reference_set(&self->gait, p);
     reference_values(&self->gait, self->phi, self->v_phi, self->ubar);
 }
 
 static void pull_back(const plant *self, const double *on_phi, const double *on_v, const double *on_ubar, double *out)
 {
-    reference_gradient(&self->gait, on_phi, on_v, on_ubar, out);
+    double by[GAIT_KINDS];
+    reference_gradient(&self->gait, on_phi, on_v, on_ubar, by);
+    for (int k = 0; k < self->n_shape; k++)
+        out[k] = by[self->kind[k]];
 }
 
-static triple tangent(const plant *self, int input)
+static triple tangent(const plant *self, int k)
 {
     const triple along = triple_at(self, 0);
-    reference_tangent(&self->gait, input, along.phi, along.v, along.ubar);
+    reference_tangent(&self->gait, self->kind[k], along.phi, along.v, along.ubar);
     return along;
 }
 
@@ -59,10 +62,10 @@ static void force_jacobian(const plant *self, double *values, int stride)
     }
 }
 
-// delta does not move the first joint.
+// delta does not move the first joint, taper not a joint that is alone.
 static bool moves_link(const plant *self, int input, int link)
 {
-    return input != GAIT_DELTA || (link > 0 && self->n > 1);
+    return input == GAIT_DELTA ? link > 0 && self->n > 1 : input != GAIT_TAPER || self->n > 1;
 }
 
 static double *angle_jacobian(const plant *self, double *values)
@@ -71,7 +74,7 @@ static double *angle_jacobian(const plant *self, double *values)
     for (int k = 0; k < self->n_s; k++) {
         const double *phi = tangent(self, k).phi;
         for (int i = 0; i <= n; i++)
-            if (moves_link(self, k, i))
+            if (moves_link(self, self->kind[k], i))
                 *values++ = self->half_inverse_L * ((i > 0 ? phi[i - 1] : 0) + (i < n ? phi[i] : 0));
     }
     return values;
@@ -81,7 +84,7 @@ static void angle_pattern(const plant *self, entries *list)
 {
     for (int k = 0; k < self->n_s; k++)
         for (int i = 0; i <= self->n; i++)
-            if (moves_link(self, k, i))
+            if (moves_link(self, self->kind[k], i))
                 add_entry(list, self->angles + i, self->col[k]);
 }
 
@@ -110,15 +113,14 @@ static triple curvature_along(const plant *self, const double g[FEATURES], doubl
 
 static void hessian(const plant *self, const double g[FEATURES], const double *weight, double *values)
 {
-    reference_hessian(&self->gait, self->on_phi, self->on_v, self->on_ubar, values);
-    for (int k = GAIT_PAIRS; k < GAIT_PAIRS + (self->n_shape - GAIT_INPUTS) * self->n_curved; k++)
-        values[k] = 0; // linear in the others
+    double second[GAIT_PAIRS], by[GAIT_KINDS];
+    reference_hessian(&self->gait, self->on_phi, self->on_v, self->on_ubar, second);
     for (int k = 0; k < self->n_shape; k++) {
-        double by_all[STEERED_INPUTS];
+        const int kind = self->kind[k];
         const triple row = curvature_along(self, g, weight[self->power], tangent(self, k));
-        reference_gradient(&self->gait, row.phi, row.v, row.ubar, by_all);
-        for (int j = 0; j <= k && j < self->n_curved; j++)
-            *values++ += by_all[j];
+        reference_gradient(&self->gait, row.phi, row.v, row.ubar, by);
+        for (int j = 0; j <= k && j < self->n_curved; j++) // linear in phi_0', phi_0''
+            *values++ = by[self->kind[j]] + (kind < GAIT_INPUTS ? second[kind * (kind + 1) / 2 + self->kind[j]] : 0);
     }
 }
 
