@@ -138,10 +138,48 @@ static void test_feasibility_of_large_numbers(void)
     CHECK_NEAR(kkt.feasibility, 1e3 / 2.0001e7, 1e-9, "a kilometre is not");
 }
 
-static bool stop_at_three(void *observer, const moray_progress *progress)
+// What was reported up to the last iteration, and the least violated of it after the start.
+struct record {
+    int last, stop;
+    double violation, objective;
+};
+
+static bool stop(void *observer, const moray_progress *progress)
 {
-    *(int *)observer = progress->iteration;
-    return progress->iteration < 3;
+    struct record *record = observer;
+    record->last = progress->iteration;
+    const double violation = fmax(progress->infeasibility, 1e-6);
+    const bool better =
+        violation < record->violation || (violation == record->violation && progress->objective < record->objective);
+    if (progress->iteration > 0 && !progress->restoring && better) {
+        record->violation = violation;
+        record->objective = progress->objective;
+    }
+    return progress->iteration < record->stop;
+}
+
+// Wherever it is stopped, the iterate is the best of those reported.
+static void test_interrupted(const moray_nlp *nlp)
+{
+    double x[4], z_lower[4], z_upper[4], g[2], lambda[2];
+    moray_iterate it = {x, z_lower, z_upper, g, lambda, 0};
+    moray_nlp_settings settings = moray_nlp_settings_default();
+    moray_nlp_info info;
+    for (int k = 1; k <= 8; k++) {
+        struct record record = {.stop = k, .violation = INFINITY, .objective = INFINITY};
+        double f, g_again[2];
+        memcpy(x, (double[]){1, 5, 5, 1}, sizeof x);
+        settings.progress = stop;
+        settings.observer = &record;
+        CHECK_OK(moray_ipopt_solve(nlp, &settings, &it, &info), "interrupted run");
+        CHECK(info.outcome == MORAY_NLP_INTERRUPTED && record.last == k, "stops when asked, at iteration %d",
+              record.last);
+        objective(NULL, x, true, &f);
+        constraints(NULL, x, true, g_again);
+        CHECK(it.objective == record.objective && fabs(f - it.objective) < 1e-12 && g_again[0] == g[0] &&
+                  g_again[1] == g[1],
+              "with the best iterate so far, of objective %.9g", it.objective);
+    }
 }
 
 int main(void)
@@ -176,13 +214,7 @@ int main(void)
     CHECK_NEAR(it.objective, 17.0140173, 1e-6, "the optimum does not depend on scaling");
     CHECK(kkt.error < 1e-6, "multipliers come back in user units: KKT %.1e", kkt.error);
 
-    int last = 0;
-    memcpy(x, (double[]){1, 5, 5, 1}, sizeof x);
-    settings.progress = stop_at_three;
-    settings.observer = &last;
-    CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "interrupted run");
-    CHECK(info.outcome == MORAY_NLP_INTERRUPTED && last == 3, "stops when asked, at iteration %d", last);
-    settings.progress = NULL;
+    test_interrupted(&nlp);
 
     const double impossible[] = {5000, 40};
     nlp.g_lower = impossible;

@@ -75,7 +75,9 @@ typedef struct moray_nlp_info {
     double evaluation_by[5];   // evaluation_seconds of each
 } moray_nlp_info;
 
-// Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there. Returns MORAY_OK
+// Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there; where it was
+// interrupted, reached a limit or stalled, the x, g and objective of the least violated iterate after the start, of
+// those violated by less than 1e-6 the one of least objective. Returns MORAY_OK
 // whenever Ipopt ran (read info->outcome), MORAY_MEMORY, or MORAY_INPUT when the problem cannot be set up.
 moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
                                moray_nlp_info *info);

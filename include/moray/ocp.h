@@ -165,14 +165,38 @@ typedef struct moray_solution moray_solution;
 
 // A guess: samples of each phase (piecewise linear, stretched to the phase's own first and last time), parameters
 // s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, u in the middle
-// of its bounds.
+// of its bounds. Fill it by hand, or by one of the functions below.
 typedef struct moray_guess {
     const moray_samples *phase;
     const double *s;
     const moray_solution *from; // NULL; a solution of a problem of the same sizes on any mesh and scheme: all from it
+    void *owned;                // what moray_guess_free frees
 } moray_guess;
 
+void moray_guess_free(moray_guess *guess); // of read and simulated guesses; harmless to others
+
 moray_guess moray_guess_from_solution(const moray_solution *solution); // borrows
+
+// Reads comma-separated values as in a trajectory.csv: first a line of names, "t" and those of the states and controls
+// ("x[0]", "u[0]" where the problem has none), units in brackets after a name and other columns ignored; with several
+// phases a column "phase", counted from 1. The parameters are guessed from their bounds: set guess->s for others.
+// Error: MORAY_IO; MORAY_INPUT naming the line, or the column that is missing; MORAY_MEMORY.
+moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const char *path);
+
+// u[nu] of phase p at time t and state x[nx].
+typedef void moray_control_fn(int phase, double t, const double *x, double *u, void *self);
+
+// From where a phase is simulated to a guess. samples 0: 100, evenly in time.
+typedef struct moray_drive {
+    double t0, tf;
+    const double *x0; // [nx]; NULL: the end of the phase before, which must have as many states
+    int samples;
+} moray_drive;
+
+// Integrates the dynamics of every phase with parameters s[ns] and a control, NULL for the middle of its bounds.
+// Error: MORAY_INPUT, MORAY_MEMORY, or what the integrator returned, with the name of the phase.
+moray_status moray_guess_simulate(moray_guess *guess, const moray_ocp *ocp, const moray_drive *phase, const double *s,
+                                  moray_control_fn *control, void *self, const moray_integrator *integrator);
 
 // ---- Solving
 // ---------------------------------------------------------------------------------------------------------------
@@ -194,7 +218,8 @@ typedef struct moray_settings {
 
 moray_settings moray_settings_default(void);
 
-// Transcribes and solves from `guess` (NULL: from the bounds). The solution keeps what it needs of the problem but must
+// Transcribes and solves from `guess` (NULL: from the bounds). Stopped early, the solution is the best iterate, see
+// moray_ipopt_solve. The solution keeps what it needs of the problem but must
 // not outlive it; free with moray_solution_free. A refined mesh starts from the interpolated solution of the last; when
 // one is not solved, the solution is that of the last solved (with the outcome of the failed where interrupted).
 // Returns MORAY_OK with *solution set whenever the solver ran, converged or not: read moray_solution_info(...)->outcome
@@ -204,6 +229,17 @@ moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, c
                          moray_solution **solution);
 void moray_solution_free(moray_solution *solution);
 
+// Keeps a solution, solved or not, in a text file, with its meshes and in full precision; the file is complete or not
+// there. Error: MORAY_IO, MORAY_INPUT (path too long).
+moray_status moray_solution_save(const moray_solution *solution, const char *path);
+
+// The solution of the same problem in such a file, as it was but for the history, of which the last mesh is left. To go
+// on from it, solve with the guess moray_guess_from_solution, and intervals = 0 for its meshes. settings: what the
+// certificate asks; NULL for the usual ones. Error: MORAY_IO, MORAY_MEMORY; MORAY_INPUT when the file is damaged or of
+// another problem, naming the line; MORAY_NUMERIC.
+moray_status moray_solution_load(moray_solution **solution, const moray_ocp *ocp, const moray_settings *settings,
+                                 const char *path);
+
 const moray_nlp_info *moray_solution_info(const moray_solution *solution);
 double moray_solution_objective(const moray_solution *solution);
 const double *moray_solution_parameters(const moray_solution *solution);           // s[ns]
@@ -211,7 +247,8 @@ const double *moray_solution_integrals(const moray_solution *solution, int phase
 void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf);
 
 // State x[nx] and control u[nu] at time t (clamped to the phase) from the collocation polynomials, the control kept
-// within its bounds, which a polynomial leaves beside a jump. Either may be NULL.
+// within its bounds, which a polynomial leaves beside a jump; where the control jumps between intervals, its value
+// before the jump. Either may be NULL.
 void moray_solution_at(const moray_solution *solution, int phase, double t, double *x, double *u);
 
 // The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the

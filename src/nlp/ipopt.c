@@ -5,6 +5,7 @@
 
 #include <IpStdCInterface.h> // the folder (coin or coin-or) is the package's business
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -14,7 +15,12 @@ struct session {
     const moray_nlp *nlp;
     const moray_nlp_settings *settings;
     moray_nlp_info *info;
+    double *last; // [n] where the Jacobian was last asked for: the iterate, when an iteration is reported
+    double *best; // [n] the iterate of the least violation, then objective
+    double best_violation, best_objective;
 };
+
+static const double as_good_as_feasible = 1e-6;
 
 enum { eval_objective, eval_gradient, eval_constraints, eval_jacobian, eval_hessian };
 
@@ -67,7 +73,6 @@ static Bool on_constraints(Index n, Number *x, Bool fresh, Index m, Number *g, U
 static Bool on_jacobian(Index n, Number *x, Bool fresh, Index m, Index nnz, Index *row, Index *col, Number *values,
                         UserDataPtr data)
 {
-    (void)n;
     (void)m;
     struct session *session = data;
     const moray_nlp *nlp = session->nlp;
@@ -76,6 +81,7 @@ static Bool on_jacobian(Index n, Number *x, Bool fresh, Index m, Index nnz, Inde
         memcpy(col, nlp->jac_col, (size_t)nnz * sizeof *col);
         return TRUE;
     }
+    memcpy(session->last, x, (size_t)n * sizeof *x);
     const double start = cpu();
     return account(session, eval_jacobian, start, nlp->jacobian(nlp->self, x, fresh, values));
 }
@@ -97,6 +103,17 @@ static Bool on_hessian(Index n, Number *x, Bool fresh, Number sigma, Index m, Nu
     return account(session, eval_hessian, start, nlp->hessian(nlp->self, x, fresh, sigma, lambda, values));
 }
 
+static void keep_best(struct session *session, double objective, double violation)
+{
+    const double counted = fmax(violation, as_good_as_feasible);
+    if (counted > session->best_violation ||
+        (counted == session->best_violation && objective >= session->best_objective))
+        return;
+    session->best_violation = counted;
+    session->best_objective = objective;
+    memcpy(session->best, session->last, (size_t)session->nlp->n * sizeof *session->best);
+}
+
 static Bool on_iteration(Index mode, Index iteration, Number objective, Number inf_pr, Number inf_du, Number mu,
                          Number d_norm, Number regularisation, Number alpha_du, Number alpha_pr, Index trials,
                          UserDataPtr data)
@@ -109,6 +126,8 @@ static Bool on_iteration(Index mode, Index iteration, Number objective, Number i
     (void)trials;
     struct session *session = data;
     session->info->iterations = iteration;
+    if (mode == 0 && iteration > 0) // the restoration's iterates have another violation; the start is no progress
+        keep_best(session, objective, inf_pr);
     if (!session->settings->progress)
         return TRUE;
     const moray_progress progress = {iteration, objective, inf_pr, inf_du, mode != 0};
@@ -168,6 +187,22 @@ static moray_nlp_outcome outcome_of(enum ApplicationReturnStatus code)
     }
 }
 
+static bool stopped_early(moray_nlp_outcome outcome)
+{
+    return outcome == MORAY_NLP_ITERATION_LIMIT || outcome == MORAY_NLP_INTERRUPTED || outcome == MORAY_NLP_STALLED ||
+           outcome == MORAY_NLP_INVALID;
+}
+
+static void take_best(const struct session *session, moray_iterate *iterate)
+{
+    const moray_nlp *nlp = session->nlp;
+    if (!stopped_early(session->info->outcome) || !(session->best_violation < INFINITY))
+        return;
+    memcpy(iterate->x, session->best, (size_t)nlp->n * sizeof *iterate->x);
+    iterate->objective = session->best_objective;
+    nlp->constraints(nlp->self, iterate->x, true, iterate->g);
+}
+
 static moray_status run(IpoptProblem problem, struct session *session, moray_iterate *iterate,
                         struct ipopt_timing *timing)
 {
@@ -179,6 +214,7 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
         AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
     session->info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective,
                                                    iterate->lambda, iterate->z_lower, iterate->z_upper, session));
+    take_best(session, iterate);
     return moray_ok();
 }
 
@@ -189,16 +225,22 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
         return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
     const double start = now(CLOCK_MONOTONIC), cpu_start = cpu();
+    double *block = calloc(2 * (size_t)nlp->n + 1, sizeof *block);
+    if (!block)
+        return moray_error(MORAY_MEMORY, "no memory for %d variables", nlp->n);
+    struct session session = {nlp, settings, info, block, block + nlp->n, INFINITY, INFINITY};
     // Ipopt copies the bounds.
     IpoptProblem problem = CreateIpoptProblem(
         nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
         nlp->nnz_jac, nlp->nnz_hess, 0, on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
-    if (!problem)
-        return moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
-    struct session session = {nlp, settings, info};
     struct ipopt_timing timing = {0};
-    moray_status status = run(problem, &session, iterate, &timing);
-    FreeIpoptProblem(problem); // writes the rest of the log
+    moray_status status =
+        moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
+    if (problem) {
+        status = run(problem, &session, iterate, &timing);
+        FreeIpoptProblem(problem); // writes the rest of the log
+    }
+    free(block);
     info->seconds = now(CLOCK_MONOTONIC) - start;
     info->cpu_seconds = cpu() - cpu_start;
     info->linear_seconds = ipopt_timing_close(&timing);

@@ -9,10 +9,16 @@
 
 // ---- Re-simulation ----
 
+struct resimulation {
+    struct examiner *e;
+    const struct interval *interval; // the one being integrated: its control also at its ends, where controls may jump
+};
+
 static bool resimulated_rhs(double t, const double *x, double *dx, void *self)
 {
-    struct examiner *e = self;
-    examiner_evaluate(e, t, x);
+    const struct resimulation *r = self;
+    struct examiner *e = r->e;
+    examiner_evaluate(e, r->interval, t, x);
     for (int i = 0; i < e->n; i++) {
         dx[i] = e->out[examiner_output(e, i)];
         if (!isfinite(dx[i]))
@@ -30,7 +36,7 @@ static void compare(const struct examiner *e, const double *x, const double *fou
     }
 }
 
-// Integrates interval by interval, since the control may jump between them; the integrals along with the states.
+// Integrates interval by interval, the integrals along with the states.
 static moray_status resimulate(struct examiner *e, const moray_integrator *integrator, moray_certificate *certificate)
 {
     const struct transcription *t = e->solution->transcription;
@@ -42,10 +48,12 @@ static moray_status resimulate(struct examiner *e, const moray_integrator *integ
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     memcpy(x, found + layout->node[0].x, (size_t)nx * sizeof *x);
     moray_solution_nodes(e->solution, e->p, time, NULL);
-    const moray_ode ode = {e->n, resimulated_rhs, e};
+    struct resimulation resimulation = {e, NULL};
+    const moray_ode ode = {e->n, resimulated_rhs, &resimulation};
     moray_status status = moray_ok();
     for (int k = 0; k < layout->mesh.intervals && !moray_failed(status); k++) {
         const int first = layout->interval[k].first, last = first + layout->interval[k].scheme->points - 1;
+        resimulation.interval = &layout->interval[k];
         status = integrator->run(integrator, &ode, time[first], time[last], x, NULL, 0, NULL, NULL);
         compare(e, x, found + layout->node[last].x, 0, nx, &certificate->resimulation);
     }

@@ -40,10 +40,12 @@ int examiner_output(const struct examiner *e, int i)
     return i < phase->nx ? i : i + phase->nc;
 }
 
-void examiner_evaluate(struct examiner *e, double t, const double *x)
+void examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
-    moray_solution_at(e->solution, e->p, t, e->in, e->in + phase->nx);
+    const struct phase_cache *cache = &e->solution->transcription->phase[e->p];
+    const double T = cache->tf - cache->t0;
+    solution_at_tau(e->solution, e->p, interval, T > 0 ? (t - cache->t0) / T : 0, e->in, e->in + phase->nx);
     if (x)
         memcpy(e->in, x, (size_t)phase->nx * sizeof *x);
     memcpy(e->in + phase->nx + phase->nu, moray_solution_parameters(e->solution), (size_t)phase->ns * sizeof *e->in);
@@ -98,7 +100,7 @@ double examiner_interval(struct examiner *e, const struct interval *interval, do
     memset(e->error, 0, (size_t)e->n * sizeof *e->error);
     for (int k = 0; k < count; k++) {
         const double tau = (k + 0.5) / count;
-        examiner_evaluate(e, cache->t0 + T * (start + tau * interval->width), NULL);
+        examiner_evaluate(e, interval, cache->t0 + T * (start + tau * interval->width), NULL);
         interpolant_slope(e, interval, tau);
         for (int i = 0; i < e->n; i++)
             e->error[i] += T * interval->width / count * fabs(e->slope[i] - e->out[examiner_output(e, i)]) / e->size[i];

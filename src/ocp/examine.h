@@ -26,12 +26,13 @@ void examiner_free(struct examiner *e);
 // Where the rate of the i-th integrated quantity stands in the map's output.
 int examiner_output(const struct examiner *e, int i);
 
-// Functions of the phase at time t with the interpolated control; state from the interpolant unless given.
-void examiner_evaluate(struct examiner *e, double t, const double *x);
+// Functions of the phase at time t of an interval with its interpolated control; state from the interpolant unless
+// given.
+void examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x);
 
-// Integral over an interval of |x~' - f(x~, u~)| / (1 + max |x|), or of the same of an integrand and its q, of the worst
-// of them. Raises *outside (NULL: not asked) to the largest violation of bounds and path constraints seen, relative to
-// 1 + |bound|.
+// Integral over an interval of |x~' - f(x~, u~)| / (1 + max |x|), or of the same of an integrand and its q, of the
+// worst of them. Raises *outside (NULL: not asked) to the largest violation of bounds and path constraints seen,
+// relative to 1 + |bound|.
 double examiner_interval(struct examiner *e, const struct interval *interval, double *outside);
 
 #endif

@@ -97,8 +97,8 @@ static void guess_from_solution(const struct transcription *t, int p, const mora
         x[layout->tf] = tf;
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
-        moray_solution_at(from, p, t0 + (tf - t0) * node->tau, x + node->x,
-                          node->collocated ? x + node->x + t->ocp->phase[p].nx : NULL);
+        solution_at_tau(from, p, NULL, node->tau, x + node->x,
+                        node->collocated ? x + node->x + t->ocp->phase[p].nx : NULL);
     }
 }
 

@@ -42,3 +42,10 @@ moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh)
     memcpy(copy->stages, mesh->stages, (size_t)mesh->intervals * sizeof *copy->stages);
     return moray_ok();
 }
+
+bool mesh_equal(const struct mesh *one, const struct mesh *other)
+{
+    const size_t n = (size_t)one->intervals;
+    return one->intervals == other->intervals && memcmp(one->edge, other->edge, (n + 1) * sizeof *one->edge) == 0 &&
+           memcmp(one->stages, other->stages, n * sizeof *one->stages) == 0;
+}

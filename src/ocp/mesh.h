@@ -17,5 +17,6 @@ moray_status mesh_new(struct mesh *mesh, int intervals);
 moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages);
 moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh);
 void mesh_free(struct mesh *mesh);
+bool mesh_equal(const struct mesh *one, const struct mesh *other); // in edges and stages
 
 #endif

@@ -117,10 +117,24 @@ static moray_status carry_phase(const moray_solution *from, moray_solution *to, 
     return moray_ok();
 }
 
+static bool same_meshes(const struct layout *one, const struct layout *other)
+{
+    bool same = one->family == other->family;
+    for (int p = 0; p < one->phases && same; p++)
+        same = mesh_equal(&one->phase[p].mesh, &other->phase[p].mesh);
+    return same;
+}
+
 moray_status carry_multipliers(const moray_solution *from, moray_solution *to)
 {
     const struct layout *old = &from->transcription->layout, *new = &to->transcription->layout;
     const moray_ocp *ocp = to->transcription->ocp;
+    if (same_meshes(old, new)) {
+        memcpy(to->iterate.z_lower, from->iterate.z_lower, (size_t) new->columns * sizeof(double));
+        memcpy(to->iterate.z_upper, from->iterate.z_upper, (size_t) new->columns * sizeof(double));
+        memcpy(to->iterate.lambda, from->iterate.lambda, (size_t) new->rows * sizeof(double));
+        return moray_ok();
+    }
     for (int p = 0; p < ocp->phases; p++)
         MORAY_TRY(carry_phase(from, to, p));
     const size_t parameters = (size_t)ocp->ns * sizeof(double);

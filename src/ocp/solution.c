@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double same_tau = 1e-12;
+
 const moray_nlp_info *moray_solution_info(const moray_solution *solution)
 {
     return &solution->info;
@@ -47,12 +49,13 @@ const char *moray_solution_diagnosis(const moray_solution *solution)
     return solution->diagnosis;
 }
 
+// The interval that ends at tau where two meet there: nodes at its end are its own (Radau).
 static const struct interval *interval_at(const struct phase_layout *layout, double tau)
 {
     int low = 0, high = layout->mesh.intervals - 1;
     while (low < high) {
         const int middle = (low + high + 1) / 2;
-        if (layout->mesh.edge[middle] <= tau)
+        if (layout->mesh.edge[middle] < tau - same_tau)
             low = middle;
         else
             high = middle - 1;
@@ -60,14 +63,15 @@ static const struct interval *interval_at(const struct phase_layout *layout, dou
     return &layout->interval[low];
 }
 
-void moray_solution_at(const moray_solution *solution, int p, double time, double *x, double *u)
+void solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau, double *x,
+                     double *u)
 {
     const struct transcription *t = solution->transcription;
     const struct phase_layout *layout = &t->layout.phase[p];
     const struct phase_cache *cache = &t->phase[p];
     const int nx = t->ocp->phase[p].nx, nu = t->ocp->phase[p].nu, n_out = t->ocp->phase[p].map->n_out;
-    const double T = cache->tf - cache->t0, tau = T > 0 ? fmin(fmax((time - cache->t0) / T, 0), 1) : 0;
-    const struct interval *interval = interval_at(layout, tau);
+    if (!interval)
+        interval = interval_at(layout, tau);
     const struct node *node = layout->node + interval->first;
     double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
     moray_scheme_basis(interval->scheme, (tau - node->tau) / interval->width, ell, integral);
@@ -78,10 +82,17 @@ void moray_solution_at(const moray_solution *solution, int p, double time, doubl
     for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
         const double *f = cache->out + (interval->first + j) * n_out;
         for (int r = 0; x && r < nx; r++)
-            x[r] += T * interval->width * integral[j] * f[r];
+            x[r] += (cache->tf - cache->t0) * interval->width * integral[j] * f[r];
         for (int r = 0; u && r < nu; r++)
             u[r] += ell[j] * solution->iterate.x[node[j].x + nx + r];
     }
     for (int r = 0; u && r < nu; r++)
         u[r] = fmin(fmax(u[r], t->ocp->phase[p].u[r].lower), t->ocp->phase[p].u[r].upper);
+}
+
+void moray_solution_at(const moray_solution *solution, int p, double time, double *x, double *u)
+{
+    const struct phase_cache *cache = &solution->transcription->phase[p];
+    const double T = cache->tf - cache->t0, tau = T > 0 ? fmin(fmax((time - cache->t0) / T, 0), 1) : 0;
+    solution_at_tau(solution, p, NULL, tau, x, u);
 }

@@ -24,10 +24,22 @@ moray_status fill_guess(struct transcription *t, const moray_guess *guess, doubl
 // Chooses x_scale and g_scale of the programme from bounds and the guess. Error: MORAY_MEMORY, MORAY_NUMERIC.
 moray_status choose_scales(struct transcription *t, const double *x);
 
+// moray_solution_at by the time in the phase, 0..1, on the polynomials of one interval; NULL: of the one at tau, before
+// an edge.
+void solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau, double *x,
+                     double *u);
+
 // Fills the multipliers of `to` with those of a solution of the same problem on any mesh. Error: MORAY_MEMORY.
 moray_status carry_multipliers(const moray_solution *from, moray_solution *to);
 
 // Writes the diagnosis text; the history ends with the last mesh that was tried.
 void diagnose(moray_solution *solution);
+
+bool is_solved(const moray_solution *solution); // to the tolerance or a looser one
+
+// Zeroed vectors for the programme of solution->transcription. Error: MORAY_MEMORY.
+moray_status allocate_iterate(moray_solution *solution);
+
+moray_mesh_record record_of(const moray_solution *solution, double mesh_error);
 
 #endif

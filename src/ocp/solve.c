@@ -69,7 +69,7 @@ static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
     return moray_ok();
 }
 
-static moray_status allocate_iterate(moray_solution *solution)
+moray_status allocate_iterate(moray_solution *solution)
 {
     const int n = solution->transcription->nlp.n, m = solution->transcription->nlp.m;
     double *block = calloc((size_t)(4 * n + 2 * m), sizeof *block);
@@ -93,7 +93,7 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
                                 .observer = settings->observer};
 }
 
-static bool is_solved(const moray_solution *solution)
+bool is_solved(const moray_solution *solution)
 {
     return solution->info.outcome == MORAY_NLP_SOLVED || solution->info.outcome == MORAY_NLP_ACCEPTABLE;
 }
@@ -150,7 +150,7 @@ static moray_status solve_mesh(const struct campaign *c, const moray_guess *gues
     return status;
 }
 
-static moray_mesh_record record_of(const moray_solution *solution, double error)
+moray_mesh_record record_of(const moray_solution *solution, double error)
 {
     const struct layout *layout = &solution->transcription->layout;
     moray_mesh_record record = {.variables = layout->columns,

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+//
+// Solutions in files: a line of what it is, one of every phase's mesh, then a line for every variable (x, z_lower,
+// z_upper) and for every constraint (lambda).
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ocp/refine.h"
+
+static const char *const families[] = {[MORAY_LOBATTO] = "lobatto", [MORAY_RADAU] = "radau", [MORAY_GAUSS] = "gauss"};
+
+// ---- Saving ----
+
+static void write_meshes(FILE *file, const struct layout *layout, const moray_ocp *ocp)
+{
+    for (int p = 0; p < layout->phases; p++) {
+        const struct mesh *mesh = &layout->phase[p].mesh;
+        fprintf(file, "phase %d %d %d %d intervals %d\n", ocp->phase[p].nx, ocp->phase[p].nu, ocp->phase[p].nc,
+                ocp->phase[p].nq, mesh->intervals);
+        for (int k = 0; k < mesh->intervals; k++)
+            fprintf(file, "%d %.17g\n", mesh->stages[k], mesh->edge[k + 1]);
+    }
+}
+
+static void write_solution(FILE *file, const moray_solution *solution)
+{
+    const struct transcription *t = solution->transcription;
+    const moray_iterate *it = &solution->iterate;
+    fprintf(file, "moray-solution 1\nscheme %s phases %d parameters %d events %d\n", families[t->layout.family],
+            t->ocp->phases, t->ocp->ns, t->ocp->ne);
+    write_meshes(file, &t->layout, t->ocp);
+    fprintf(file, "outcome %d iterations %d seconds %.17g\n", solution->info.outcome, solution->info.iterations,
+            solution->info.seconds);
+    fprintf(file, "objective %.17g variables %d constraints %d\n", it->objective, t->nlp.n, t->nlp.m);
+    for (int j = 0; j < t->nlp.n; j++)
+        fprintf(file, "%.17g %.17g %.17g\n", it->x[j], it->z_lower[j], it->z_upper[j]);
+    for (int i = 0; i < t->nlp.m; i++)
+        fprintf(file, "%.17g\n", it->lambda[i]);
+    fprintf(file, "end\n");
+}
+
+moray_status moray_solution_save(const moray_solution *solution, const char *path)
+{
+    char temporary[4096];
+    if (snprintf(temporary, sizeof temporary, "%s.part", path) >= (int)sizeof temporary)
+        return moray_error(MORAY_INPUT, "the path %.60s... is too long", path);
+    FILE *file = fopen(temporary, "w");
+    if (!file)
+        return moray_error(MORAY_IO, "%s: %s", temporary, strerror(errno));
+    write_solution(file, solution);
+    const bool written = !ferror(file), closed = fclose(file) == 0;
+    if (written && closed && rename(temporary, path) == 0)
+        return moray_ok();
+    const moray_status status = moray_error(MORAY_IO, "%s: %s", path, strerror(errno));
+    remove(temporary);
+    return status;
+}
+
+// ---- Loading ----
+
+struct reader {
+    FILE *file;
+    const char *path;
+    int line;
+    char text[400];
+};
+
+static moray_status damaged(const struct reader *r, const char *expected)
+{
+    return moray_error(MORAY_INPUT, "%s, line %d: %s expected", r->path, r->line, expected);
+}
+
+static moray_status next_line(struct reader *r)
+{
+    r->line++;
+    return fgets(r->text, sizeof r->text, r->file) ? moray_ok() : damaged(r, "more");
+}
+
+// A line of n numbers.
+static moray_status read_numbers(struct reader *r, int n, double *numbers)
+{
+    MORAY_TRY(next_line(r));
+    char *at = r->text;
+    for (int i = 0; i < n; i++) {
+        char *end;
+        numbers[i] = strtod(at, &end);
+        if (end == at || !isfinite(numbers[i]))
+            return damaged(r, "a finite number");
+        at = end;
+    }
+    return moray_ok();
+}
+
+static moray_status read_head(struct reader *r, const moray_ocp *ocp, moray_family *family)
+{
+    char scheme[20];
+    int version, phases, parameters, events;
+    MORAY_TRY(next_line(r));
+    if (sscanf(r->text, "moray-solution %d", &version) != 1 || version != 1)
+        return damaged(r, "moray-solution 1");
+    MORAY_TRY(next_line(r));
+    if (sscanf(r->text, "scheme %19s phases %d parameters %d events %d", scheme, &phases, &parameters, &events) != 4)
+        return damaged(r, "scheme, phases, parameters and events");
+    if (phases != ocp->phases || parameters != ocp->ns || events != ocp->ne)
+        return moray_error(MORAY_INPUT, "%s: has %d phases, %d parameters and %d events; problem %s has %d, %d and %d",
+                           r->path, phases, parameters, events, ocp->name, ocp->phases, ocp->ns, ocp->ne);
+    for (int f = MORAY_LOBATTO; f <= MORAY_GAUSS; f++)
+        if (strcmp(scheme, families[f]) == 0) {
+            *family = (moray_family)f;
+            return moray_ok();
+        }
+    return damaged(r, "scheme lobatto, radau or gauss");
+}
+
+static moray_status read_mesh(struct reader *r, const struct phase *phase, struct mesh *mesh)
+{
+    int nx, nu, nc, nq, intervals;
+    MORAY_TRY(next_line(r));
+    if (sscanf(r->text, "phase %d %d %d %d intervals %d", &nx, &nu, &nc, &nq, &intervals) != 5 || intervals < 1 ||
+        intervals > 1000000)
+        return damaged(r, "phase nx nu nc nq intervals k");
+    if (nx != phase->nx || nu != phase->nu || nc != phase->nc || nq != phase->nq)
+        return moray_error(MORAY_INPUT,
+                           "%s: a phase of %d states, %d controls, %d path constraints and %d integrals; phase %s has "
+                           "%d, %d, %d and %d",
+                           r->path, nx, nu, nc, nq, phase->name, phase->nx, phase->nu, phase->nc, phase->nq);
+    MORAY_TRY(mesh_new(mesh, intervals));
+    for (int k = 0; k < intervals; k++) {
+        double numbers[2];
+        MORAY_TRY(read_numbers(r, 2, numbers));
+        mesh->stages[k] = (int)numbers[0];
+        mesh->edge[k + 1] = numbers[1];
+        if (!(numbers[0] >= 1 && numbers[0] <= MORAY_MAX_STAGES) || !(mesh->edge[k + 1] > mesh->edge[k]))
+            return damaged(r, "stages and a later end of the interval");
+    }
+    return mesh->edge[intervals] == 1 ? moray_ok() : damaged(r, "1 as the end of the last interval");
+}
+
+static moray_status read_transcription(struct reader *r, const moray_ocp *ocp, moray_solution *solution)
+{
+    moray_family family = MORAY_LOBATTO;
+    MORAY_TRY(read_head(r, ocp, &family));
+    struct mesh *meshes = calloc((size_t)ocp->phases, sizeof *meshes);
+    moray_status status = meshes ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d meshes", ocp->phases);
+    for (int p = 0; p < ocp->phases && !moray_failed(status); p++)
+        status = read_mesh(r, &ocp->phase[p], &meshes[p]);
+    if (!moray_failed(status))
+        status = transcription_new(&solution->transcription, ocp, family, meshes);
+    for (int p = 0; meshes && p < ocp->phases; p++)
+        mesh_free(&meshes[p]);
+    free(meshes);
+    return moray_failed(status) ? status : allocate_iterate(solution);
+}
+
+static moray_status read_iterate(struct reader *r, moray_solution *solution)
+{
+    const moray_nlp *nlp = &solution->transcription->nlp;
+    moray_iterate *it = &solution->iterate;
+    int outcome, n, m;
+    MORAY_TRY(next_line(r));
+    if (sscanf(r->text, "outcome %d iterations %d seconds %lf", &outcome, &solution->info.iterations,
+               &solution->info.seconds) != 3 ||
+        outcome < MORAY_NLP_SOLVED || outcome > MORAY_NLP_INVALID)
+        return damaged(r, "outcome, iterations and seconds");
+    solution->info.outcome = (moray_nlp_outcome)outcome;
+    MORAY_TRY(next_line(r));
+    if (sscanf(r->text, "objective %lf variables %d constraints %d", &it->objective, &n, &m) != 3)
+        return damaged(r, "objective, variables and constraints");
+    if (n != nlp->n || m != nlp->m)
+        return moray_error(MORAY_INPUT, "%s: has %d variables and %d constraints, the problem %d and %d on this mesh",
+                           r->path, n, m, nlp->n, nlp->m);
+    for (int j = 0; j < n; j++) {
+        double numbers[3];
+        MORAY_TRY(read_numbers(r, 3, numbers));
+        it->x[j] = numbers[0], it->z_lower[j] = numbers[1], it->z_upper[j] = numbers[2];
+    }
+    for (int i = 0; i < m; i++)
+        MORAY_TRY(read_numbers(r, 1, &it->lambda[i]));
+    MORAY_TRY(next_line(r));
+    return strcmp(r->text, "end\n") == 0 ? moray_ok() : damaged(r, "the end");
+}
+
+// Caches, history and diagnosis, as after solving.
+static moray_status complete(moray_solution *solution)
+{
+    struct transcription *t = solution->transcription;
+    double error = NAN;
+    memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
+    if (!transcription_jacobians(t, solution->iterate.x))
+        return moray_error(MORAY_NUMERIC, "at the loaded solution, %.200s", t->failure.text);
+    solution->history = calloc(1, sizeof *solution->history);
+    if (!solution->history)
+        return moray_error(MORAY_MEMORY, "no memory for a history");
+    if (is_solved(solution))
+        MORAY_TRY(refine(solution, solution->settings.mesh_tolerance, 2, NULL, &error));
+    solution->history[solution->meshes++] = record_of(solution, error);
+    diagnose(solution);
+    return moray_ok();
+}
+
+moray_status moray_solution_load(moray_solution **result, const moray_ocp *ocp, const moray_settings *settings,
+                                 const char *path)
+{
+    struct reader reader = {.path = path};
+    *result = NULL;
+    moray_solution *solution = calloc(1, sizeof *solution);
+    if (!solution)
+        return moray_error(MORAY_MEMORY, "no memory for a solution");
+    solution->settings = settings ? *settings : moray_settings_default();
+    reader.file = fopen(path, "r");
+    moray_status status = reader.file ? moray_ok() : moray_error(MORAY_IO, "%s: %s", path, strerror(errno));
+    if (!moray_failed(status))
+        status = read_transcription(&reader, ocp, solution);
+    if (!moray_failed(status))
+        status = read_iterate(&reader, solution);
+    if (!moray_failed(status))
+        status = complete(solution);
+    if (reader.file)
+        fclose(reader.file);
+    if (moray_failed(status))
+        moray_solution_free(solution);
+    else
+        *result = solution;
+    return status;
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+//
+// Guesses that own their samples.
+#ifndef OCP_SAMPLES_H
+#define OCP_SAMPLES_H
+
+#include "ocp/problem.h"
+
+// Room for rows[p] samples of every phase; with = true also for parameters. Fill through the pointers, which guess
+// borrows and moray_guess_free frees. Error: MORAY_MEMORY.
+struct samples {
+    double *time, *x, *u;
+};
+moray_status guess_allocate(moray_guess *guess, const moray_ocp *ocp, const int *rows, bool parameters,
+                            struct samples *phase, double **s);
+
+#endif
