@@ -22,7 +22,9 @@ static bool row(const struct classic *classic, int argc, char **argv)
     if (argc > 4)
         settings.tolerance = atof(argv[4]);
     if (argc > 5)
-        settings.print_level = atoi(argv[5]);
+        settings.max_refinements = atoi(argv[5]);
+    if (argc > 6)
+        settings.print_level = atoi(argv[6]);
     const moray_status status =
         classic_solve(classic, &settings, &integrator, &result, diagnosis, (int)sizeof diagnosis);
     if (moray_failed(status)) {
@@ -30,11 +32,16 @@ static bool row(const struct classic *classic, int argc, char **argv)
         return false;
     }
     const moray_certificate *c = &result.certificate;
-    printf("%-22s %16.10g %12s %10.1e %-6s %4d it %7.2f s  KKT %.0e mesh %.0e between %.0e re-sim %.0e %s\n",
-           classic->name, result.value, classic->published, result.difference, result.agrees ? "agrees" : "DIFFERS",
-           result.info.iterations, result.info.seconds, c->kkt, c->mesh_error, c->between_nodes, c->resimulation,
-           c->pass ? "certified" : "not certified");
-    if (result.info.outcome != MORAY_NLP_SOLVED)
+    printf(
+        "%-22s %14.10g %11s %9.1e %-7s %2d meshes %4d intervals %4d it %6.2f s  KKT %.0e mesh %.0e between %.0e re-sim "
+        "%.0e %s\n",
+        classic->name, result.value, classic->published, result.difference, result.agrees ? "agrees" : "DIFFERS",
+        result.meshes, result.intervals, result.iterations, result.seconds, c->kkt, c->mesh_error, c->between_nodes,
+        c->resimulation,
+        c->pass               ? "certified"
+        : classic->fixed_mesh ? "(mesh as published)"
+                              : "NOT CERTIFIED");
+    if (result.outcome != MORAY_NLP_SOLVED)
         printf("%s", diagnosis);
     fflush(stdout);
     return result.agrees;

@@ -8,6 +8,8 @@ static const paper_study studies[] = {
     {"turning", "turning there and back: Fig. 8", paper_turning},
     {"linearising", "the linearising control law (22)", paper_linearising},
     {"ground", "the ground robot as a special case", paper_ground},
+    {"eel", "eel-like motion, the paper's future work", paper_eel},
+    {"fit", "constants of the rotational dynamics (20) for the given robot", paper_fit},
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
     {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
      paper_forces},
@@ -42,6 +44,12 @@ static const moray_option options[] = {
     ANGLE("theta_max_deg", theta_max, 0, 90, "deg", "link-angle amplitude of (24), where a study does not vary it"),
     ANGLE("omega_deg_s", omega, 0, 3600, "deg/s", "gait frequency, where a study does not vary it"),
     ANGLE("delta_deg", delta, 0, 180, "deg", "phase shift between joints; 360/(N-1) unless given"),
+    {.section = "problem",
+     .key = "write_ini",
+     .argument = "FILE",
+     .type = MORAY_OPTION_TEXT,
+     MORAY_AT(paper_settings, write_ini),
+     .help = "study fit: the robot's INI file, to write the fitted constants into"},
 };
 
 static paper_settings defaults(void)
@@ -50,6 +58,15 @@ static paper_settings defaults(void)
         .common = moray_common_defaults(), .theta_max = 20 * DEG, .omega = 120 * DEG, .delta = NAN};
     settings.common.current[0] = settings.common.current[1] = 0.1;
     return settings;
+}
+
+static moray_status check_write_ini(const paper_settings *settings)
+{
+    for (int i = 0; i < N_STUDIES; i++)
+        if (studies[i].run == paper_fit && !settings->chosen[i] && settings->write_ini[0])
+            return moray_error(MORAY_INPUT, "write_ini = %.100s: is for the study fit, which is not named",
+                               settings->write_ini);
+    return moray_ok();
 }
 
 // --as-printed; delta, which by Assumption 2 is 2 pi/(N-1).
@@ -79,6 +96,7 @@ static moray_status prepare(paper *p, const paper_settings *settings)
         p->gait[model] = paper_gait(p, (moray_model)model, settings->theta_max);
     }
     MORAY_TRY(moray_basin_new(&p->basin, p->robot, settings->common.current, 0));
+    p->basin.settings.sim.max_steps = 20000; // between samples; a misprint can make motion without end
     moray_swimmer_set_reading(p->basin.swimmer[MORAY_CONTROL_ORIENTED], settings->reading);
     p->json = moray_json_new();
     paper_json_head(p->json, settings);
@@ -152,7 +170,9 @@ int main(int argc, char **argv)
     int exit_code;
     if (!moray_app_start(&program, argc, argv, &settings, &exit_code))
         return exit_code;
-    moray_status status = complete(&settings);
+    moray_status status = check_write_ini(&settings);
+    if (!moray_failed(status))
+        status = complete(&settings);
     if (!moray_failed(status))
         status = prepare(&p, &settings);
     if (!moray_failed(status))

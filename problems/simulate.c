@@ -17,7 +17,8 @@ static const moray_option options[] = {
      .type = MORAY_OPTION_TEXT,
      MORAY_AT(simulate, schedule_file),
      .help = "comma-separated values: a line of names, t_s and any keys of [gait], then a line for each gait, which "
-             "keeps from the one before what its line leaves out"},
+             "keeps from the one before what its line leaves out; omega t of (25) counts from t = 0 in all of them, so "
+             "that a change of omega jumps in phase"},
     {.section = "simulation",
      .key = "duration_s",
      .flag = "duration",

@@ -54,6 +54,7 @@ int main(int argc, char **argv)
 
     moray_settings settings = moray_settings_default(); // what the options change
     settings.intervals = 30;
+    settings.max_refinements = 10; // finer meshes until the solution is as good as it claims
     const moray_app_constant constant = {
         .key = "l", .value = &track.l, .unit = "m", .help = "furthest position", .min = 0.01, .max = 1}; // --set l=0.1
     const moray_app_units units = {.x = (const char *const[]){"m", "m/s"}, .u = (const char *const[]){"m/s^2"}};

@@ -9,7 +9,7 @@
 #include "moray/run.h"
 
 struct world {
-    double gate, raise, undefined;
+    double gate, raise, undefined, crooked;
     int calls;
 };
 
@@ -21,7 +21,7 @@ static void move(const moray_node *at, moray_rates *out, const void *data)
         raise(SIGINT);
     }
     out->f[0] = at->x[1];
-    out->f[1] = at->u[0];
+    out->f[1] = world->crooked > 0 ? creal(at->u[0]) : at->u[0]; // no derivative
     out->g[0] = at->u[0] * at->u[0] / 2 + (world->undefined > 0 && at->u[0] == 0 ? NAN : 0);
 }
 
@@ -70,6 +70,7 @@ int main(int argc, char **argv)
     const moray_app_constant constants[] = {
         {.key = "gate", .value = &world.gate, .unit = "m", .help = "where the phases meet"},
         {.key = "raise", .value = &world.raise, .help = "how many times SIGINT comes"},
+        {.key = "crooked", .value = &world.crooked, .help = "whether a derivative is wrong"},
         {.key = "undefined", .value = &world.undefined, .help = "whether the effort is undefined at u = 0"}};
     const char *const units[] = {"m", "m/s"}, *const force[] = {"N"}, *const effort[] = {"N^2 s"};
     const moray_app_units both[] = {{.x = units, .u = force, .q = effort}, {.x = units, .u = force, .q = effort}};

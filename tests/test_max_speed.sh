@@ -49,6 +49,11 @@ check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep 
 run --current 0,0.4
 check "a cross current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.4000 m/s of it run across" err'
 
+# ---- Interrupted: ends at the next iteration, says so, leaves nothing (timeout sends what Ctrl-C sends)
+timeout --preserve-status -s INT 2 "$program" --set random_starts=10000 --out interrupted >out 2>err </dev/null
+code=$?
+check "Ctrl-C is told and leaves nothing: $(cat err)" eval '[ $code -eq 130 ] && one_line && grep -q interrupted err && [ ! -s out ] && [ ! -e interrupted ]'
+
 # ---- Bad input
 printf '[robot]\nlinks = 10\nspeed = 3\n' >unknown.ini
 : >file

@@ -87,6 +87,57 @@ static moray_nlp hock_schittkowski_71(void)
                        .hessian = hessian};
 }
 
+// x0 = x1 in metres of an orbit, and x0 free.
+static bool difference(void *self, const double *x, bool fresh, double *g)
+{
+    (void)self;
+    (void)fresh;
+    g[0] = x[0] - x[1];
+    return true;
+}
+static bool difference_jacobian(void *self, const double *x, bool fresh, double *v)
+{
+    (void)self;
+    (void)x;
+    (void)fresh;
+    v[0] = 1;
+    v[1] = -1;
+    return true;
+}
+static bool no_gradient(void *self, const double *x, bool fresh, double *g)
+{
+    (void)self;
+    (void)x;
+    (void)fresh;
+    g[0] = g[1] = 0;
+    return true;
+}
+
+static void test_feasibility_of_large_numbers(void)
+{
+    const double free_lower[] = {-MORAY_INFINITY, -MORAY_INFINITY}, free_upper[] = {MORAY_INFINITY, MORAY_INFINITY};
+    const moray_nlp nlp = {.n = 2,
+                           .m = 1,
+                           .x_lower = free_lower,
+                           .x_upper = free_upper,
+                           .g_lower = (const double[]){0},
+                           .g_upper = (const double[]){0},
+                           .nnz_jac = 2,
+                           .jac_row = (const int[]){0, 0},
+                           .jac_col = (const int[]){0, 1},
+                           .gradient = no_gradient,
+                           .constraints = difference,
+                           .jacobian = difference_jacobian};
+    double x[2] = {2e7, 2e7 + 1e-6}, none[2] = {0}, g[1], lambda[1] = {0};
+    const moray_iterate it = {x, none, none, g, lambda, 0};
+    moray_kkt kkt;
+    CHECK_OK(moray_kkt_error(&nlp, &it, &kkt), "KKT");
+    CHECK(kkt.feasibility < 1e-12, "a micron in 20000 km is feasible: %.1e", kkt.feasibility);
+    x[1] = 2e7 + 1e3;
+    moray_kkt_error(&nlp, &it, &kkt);
+    CHECK_NEAR(kkt.feasibility, 1e3 / 2.0001e7, 1e-9, "a kilometre is not");
+}
+
 static bool stop_at_three(void *observer, const moray_progress *progress)
 {
     *(int *)observer = progress->iteration;
@@ -101,6 +152,7 @@ int main(void)
     moray_nlp_settings settings = moray_nlp_settings_default();
     moray_nlp_info info;
     moray_kkt kkt;
+    test_feasibility_of_large_numbers();
     CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "HS71");
     CHECK(info.outcome == MORAY_NLP_SOLVED, "outcome: %s", moray_nlp_outcome_text(info.outcome));
     CHECK_NEAR(it.objective, 17.0140173, 1e-6, "published optimum");

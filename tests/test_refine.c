@@ -268,7 +268,57 @@ static void test_interrupted(void)
           "stopped on the second mesh");
     CHECK(moray_solution_info(solution)->outcome == MORAY_NLP_INTERRUPTED, "which the outcome says");
     CHECK(moray_solution_size(solution).variables == history[0].variables, "the solution is of the first");
+    CHECK(strstr(moray_solution_diagnosis(solution), "A finer mesh of ") &&
+              strstr(moray_solution_diagnosis(solution),
+                     "intervals was not solved (interrupted); this is the last that "
+                     "was."),
+          "which the diagnosis says");
     moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- Rayleigh problem with a mixed constraint (Betts 2010), which binds on parts of the time: between the nodes it is
+//      kept only if refinement looks there. The three families must agree. ----
+
+static void circuit(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num x1 = at->x[0], x2 = at->x[1], u = at->u[0];
+    out->f[0] = x2;
+    out->f[1] = -x1 + x2 * (1.4 - 0.14 * x2 * x2) + 4 * u;
+    out->c[0] = u + x1 / 6;
+    out->g[0] = u * u + x1 * x1;
+}
+
+static void test_path_constraint_between_nodes(void)
+{
+    moray_ocp *ocp = NULL;
+    const moray_phase_spec phase = {.name = "circuit",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nc = 1,
+                                    .nq = 1,
+                                    .continuous = circuit,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(4.5),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(-5), moray_fixed(-5)),
+                                    .c = MORAY_BOUNDS(moray_at_most(0))};
+    CHECK_OK(moray_ocp_new(&ocp,
+                           &(moray_ocp_spec){
+                               .name = "rayleigh", .phases = 1, .phase = &phase, .endpoint = total_cost, .data = &one}),
+             "Rayleigh problem");
+    const char *schemes[] = {"hermite-simpson", "radau3", "gauss3"};
+    for (int k = 0; k < 3; k++) {
+        moray_solution *solution = solve(ocp, schemes[k], 20, 15, NULL);
+        moray_certificate certificate;
+        CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+        CHECK(certificate.pass, "%s: mixed constraint between nodes within %.1e", schemes[k],
+              certificate.between_nodes);
+        CHECK_NEAR(last_mesh(solution).error, fmax(certificate.mesh_error, certificate.between_nodes / 100), 1e-15,
+                   "error of the last mesh");
+        CHECK_RELATIVE(moray_solution_objective(solution), 44.804444, 2e-6, schemes[k]);
+        moray_solution_free(solution);
+    }
     moray_ocp_free(ocp);
 }
 
@@ -282,6 +332,7 @@ int main(void)
     }
     test_phases_apart();
     test_guess_from_solution();
+    test_path_constraint_between_nodes();
     test_interrupted();
     return tap_done();
 }

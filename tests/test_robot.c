@@ -79,6 +79,37 @@ static void test_gait(void)
     CHECK_NEAR(back.offset, gait.offset, 1e-15, "mapping and back, offset");
 }
 
+// A gait whose offset is phi_0(t) = 0.01 + 0.02 t - 0.03 t^2, at t.
+static moray_gait steered_at(double t)
+{
+    return (moray_gait){.amplitude = 0.04,
+                        .omega = 2,
+                        .delta = 0.7,
+                        .offset = 0.01 + 0.02 * t - 0.03 * t * t,
+                        .offset_rate = 0.02 - 0.06 * t,
+                        .offset_acceleration = -0.06};
+}
+
+static void test_moving_offset(void)
+{
+    enum { n = 5 };
+    double phi[n], dphi[n], ddphi[n], later[n], earlier[n], unused[n], fast[n], slow[n];
+    const double t = 0.3, h = 1e-4;
+    const moray_gait now = steered_at(t), ahead = steered_at(t + h), behind = steered_at(t - h);
+    moray_gait_reference(&now, n, t, phi, dphi, ddphi);
+    moray_gait_reference(&ahead, n, t + h, later, fast, unused);
+    moray_gait_reference(&behind, n, t - h, earlier, slow, unused);
+    for (int i = 0; i < n; i++) {
+        CHECK_NEAR(dphi[i], (later[i] - earlier[i]) / (2 * h), 1e-9, "first derivative with a moving offset");
+        CHECK_NEAR(ddphi[i], (fast[i] - slow[i]) / (2 * h), 1e-8, "second derivative with a moving offset");
+    }
+    const moray_robot robot = moray_robot_paper();
+    const moray_gait there = moray_gait_map(&robot, &now, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    CHECK_NEAR(there.offset_rate / there.offset, now.offset_rate / now.offset, 1e-15, "the rate is mapped alike");
+    CHECK_NEAR(there.offset_acceleration / there.offset, now.offset_acceleration / now.offset, 1e-13,
+               "and the acceleration");
+}
+
 // The joints of a tapered wave as phasors of sin(omega t).
 static double complex joint_phasor(const moray_gait *gait, int n, int i)
 {
@@ -127,6 +158,7 @@ int main(void)
     test_bad_robots();
     test_amplitude_table();
     test_gait();
+    test_moving_offset();
     test_taper();
     return tap_done();
 }

@@ -1,31 +1,15 @@
 # SPDX-License-Identifier: MIT
 # What a program around moray_app_run gives its user. Arguments: the demo program, the source directory.
-case $1 in
-/*) demo=$1 ;;
-*) demo=$PWD/$1 ;;
-esac
-source=$2
-. "$source/tests/tap.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-
-# run ARGUMENTS: leaves $code, out and err.
-run() {
-    "$demo" "$@" >out 2>err </dev/null
-    code=$?
-}
+. "$2/tests/program.sh"
 
 # says TEXT: one line on standard error with TEXT in it.
 says() {
-    [ "$(wc -l <err)" -eq 1 ] && grep -q "^run_demo: " err && grep -qF -e "$1" err
+    one_line && grep -qF -e "$1" err
 }
 
 # has KEY VALUE TOLERANCE: the first value of KEY in the JSON.
 has() {
-    awk -v key="\"$1\":" -v want="$2" -v tolerance="$3" '
-        !seen && (at = index($0, key)) { seen = 1; got = substr($0, at + length(key)) + 0 }
-        END { exit !(seen && got - want <= tolerance && want - got <= tolerance) }' out
+    near "$(number "$1")" "$2" "$3"
 }
 
 # ---- Solved
@@ -62,6 +46,17 @@ check "the table: certificate" grep -q '^Certificate: pass$' out
 run --json --set gate=1.2 --scheme radau4 --intervals 7 --tol 1e-9
 check "--set reaches the functions, other options the solver" \
     eval '[ $code -eq 0 ] && has gate 1.2 0 && has intervals 7 0 && grep -q radau4 out && has tf 1.1341378 1e-6'
+
+run --json --scheme trapezoid --intervals 3 --set mesh_tol=1e-4 --set refinements=20
+check "a coarse mesh is refined: $(grep -c '"nodes"' out) meshes" \
+    eval '[ $code -eq 0 ] && [ $(grep -c "\"nodes\":" out) -gt 1 ] && has objective 3 1e-3'
+run --json --scheme trapezoid --intervals 3 --set mesh_tol=1e-4
+check "and only when asked for" eval '[ $code -eq 3 ] && [ $(grep -c "\"nodes\":" out) -eq 1 ]'
+run --check
+check "--check finds exact derivatives" eval '[ $code -eq 0 ] && grep -q "^first derivatives differ by at most [0-9.]*e-1" out'
+run --check --set crooked=1
+check "--check names the wrong one: exit 1" \
+    eval '[ $code -eq 1 ] && says "derivatives are wrong" && grep -q "dynamics of state v.*control u" out'
 
 # ---- Not certified, not solved, interrupted, not stated
 run --json --set mesh_tol=1e-300

@@ -5,7 +5,8 @@ case $1 in
 /*) simulate=$1 ;;
 *) simulate=$PWD/$1 ;;
 esac
-. "$2/tests/tap.sh"
+root=$(CDPATH='' cd -- "$2" && pwd)
+. "$root/tests/tap.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -92,6 +93,8 @@ turn() {
     found end_position_m "$6" 0.1
     near "p_y at 190 s" "$(second end_position_m)" "$7" 0.1
 }
+run --current 0.1,0.1 --schedule "$root/problems/schedules/turning.csv" --duration 190 --model complex
+found end_position_m 38.27 0.1
 turn phi0_deg -1.1401 1.1401 complex 26.2 38.27 23.22
 turn phi0_m 0.0038063 -0.0038063 control 25.3 39.10 23.27
 turn phi0_deg -1.1401 1.1401 control 25.3 39.10 23.27

@@ -46,6 +46,7 @@ typedef struct moray_nlp_settings {
     double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
     bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
     int print_level;    // 0: Ipopt's own log on standard output, 0..12
+    bool timing;        // false: true has the linear solver timed, which goes through a temporary file
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;
@@ -66,9 +67,12 @@ const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
 typedef struct moray_nlp_info {
     moray_nlp_outcome outcome;
     int iterations;
-    double seconds;            // whole solve
-    double evaluation_seconds; // of it in the callbacks
+    double seconds;            // whole solve, by the clock on the wall
+    double cpu_seconds;        // whole solve, of the processor
+    double evaluation_seconds; // of cpu_seconds, in the callbacks
+    double linear_seconds;     // of cpu_seconds, in the linear solver, to 1e-3; NaN unless asked for
     int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
+    double evaluation_by[5];   // evaluation_seconds of each
 } moray_nlp_info;
 
 // Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there. Returns MORAY_OK
@@ -79,7 +83,8 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
 // Optimality of an iterate, computed from the callbacks alone, in the user's units (nothing scaled).
 typedef struct moray_kkt {
     double stationarity;    // largest |d L / d x_j| / dual_scale
-    double feasibility;     // largest violation of a constraint or bound / (1 + |bound|)
+    double feasibility;     // largest violation of a bound / (1 + |bound|), or of a constraint / (1 + |bound| + its
+                            // largest |slope x_j|): metres of an orbit are not known to a micron
     double complementarity; // largest |multiplier x slack| / dual_scale
     double dual_scale;      // max(1, mean |multiplier|)
     double error;           // the largest of the three

@@ -42,6 +42,18 @@ static inline moray_num moray_clamp(moray_num z, moray_num lower, moray_num uppe
     return moray_min(moray_max(z, lower), upper);
 }
 
+// z to a real power; of a negative z to a whole one only.
+static inline moray_num moray_pow(moray_num z, double power)
+{
+    if (creal(z) > 0)
+        return cpow(z, power);
+    if (creal(z) == 0)
+        return CMPLX(pow(0, power), power == 1 ? cimag(z) : power > 1 ? 0 : NAN);
+    if (power != rint(power))
+        return NAN;
+    return fmod(power, 2) == 0 ? cpow(-z, power) : -cpow(-z, power);
+}
+
 // sqrt(x^2 + y^2); <tgmath.h> has it for real numbers only, as it has atan2.
 static inline moray_num moray_hypot(moray_num x, moray_num y)
 {

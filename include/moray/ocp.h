@@ -182,11 +182,12 @@ typedef struct moray_settings {
     int intervals;         // 20, of equal length, in every phase; 0: the meshes and the scheme of guess->from
     double tolerance;      // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
     double mesh_tolerance; // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
-    int max_refinements;   // 0: finer meshes tried while the mesh error is above mesh_tolerance
+    int max_refinements;   // 0: finer meshes tried while the certificate would not accept what is between the nodes
     int max_iterations;    // 1000
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log
+    bool timing;           // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
     moray_progress_fn *progress;
     void *observer;
 } moray_settings;
@@ -235,7 +236,7 @@ typedef struct moray_mesh_record {
     moray_nlp_outcome outcome;
     int iterations;
     double seconds;
-    double error; // see moray_certificate.mesh_error; NaN where not solved
+    double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved
     double objective;
 } moray_mesh_record;
 

@@ -50,6 +50,19 @@ static moray_status build(moray_ocp **ocp, const void *data)
         &(moray_ocp_spec){.name = "brachistochrone", .phases = 1, .phase = &phase, .endpoint = arrival, .data = data});
 }
 
+// Along the straight wire, whose speed follows from energy.
+static double start(int phase, double tau, double *x, double *u, const void *data)
+{
+    (void)phase;
+    const struct wire *wire = data;
+    const double length = hypot(wire->x, wire->y), v_end = sqrt(2 * wire->g * wire->y);
+    x[0] = wire->x * tau;
+    x[1] = wire->y * tau;
+    x[2] = v_end * sqrt(tau);
+    u[0] = atan2(wire->x, wire->y);
+    return 2 * length / v_end * sqrt(tau);
+}
+
 const struct classic classic_brachistochrone = {.name = "brachistochrone",
                                                 .title = "Brachistochrone to (10, 5)",
                                                 .source = "Bryson and Ho 1975, 2.7; dymos",
@@ -57,9 +70,10 @@ const struct classic classic_brachistochrone = {.name = "brachistochrone",
                                                 .closed_form = 1.8016031225,
                                                 .sign = 1,
                                                 .build = build,
+                                                .start = start,
                                                 .data = &(const struct wire){10, 5, 9.80665},
-                                                .scheme = "lobatto5",
-                                                .intervals = 10};
+                                                .scheme = "gauss3",
+                                                .intervals = 20};
 
 const struct classic classic_brachistochrone_near = {.name = "brachistochrone-near",
                                                      .title = "Brachistochrone to (2, 2)",
@@ -68,6 +82,7 @@ const struct classic classic_brachistochrone_near = {.name = "brachistochrone-ne
                                                      .closed_form = 0.8247591432,
                                                      .sign = 1,
                                                      .build = build,
+                                                     .start = start,
                                                      .data = &(const struct wire){2, 2, 9.8},
-                                                     .scheme = "lobatto5",
-                                                     .intervals = 10};
+                                                     .scheme = "gauss3",
+                                                     .intervals = 20};

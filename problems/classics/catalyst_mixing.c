@@ -56,4 +56,4 @@ const struct classic classic_catalyst_mixing = {.name = "catalyst-mixing",
                                                 .build = build,
                                                 .start = start,
                                                 .scheme = "radau3",
-                                                .intervals = 60};
+                                                .intervals = 20};

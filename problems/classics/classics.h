@@ -18,16 +18,19 @@ struct classic {
     const void *data;      // of the variant; handed to build and start
     moray_status (*build)(moray_ocp **ocp, const void *data);
     classic_start_fn *start; // NULL: straight between the bounds
-    const char *scheme;      // recommended
+    const char *scheme;      // recommended, with this many intervals to begin with
     int intervals;
-    double tolerance, mesh_tolerance; // 0: the settings' default
+    bool fixed_mesh;                  // the published value belongs to that mesh: not to be refined
+    double tolerance, mesh_tolerance; // 0: 1e-10 and 1e-6
 };
 
 extern const struct classic *const classics[]; // ends with NULL
 const struct classic *classic_find(const char *name);
 
 struct classic_result {
-    moray_nlp_info info;
+    moray_nlp_outcome outcome;
+    int meshes, intervals, iterations; // of all meshes, but for the intervals
+    double seconds;
     double value, difference; // in the textbook's sign; difference from what was printed
     bool agrees;              // with `computed` where there is one, else with `published`, rounded or cut; and with the
                               // closed form to 1e-7

@@ -68,8 +68,8 @@ const struct classic classic_goddard = {.name = "goddard",
                                         .build = build,
                                         .data = &(const double){MORAY_INFINITY},
                                         .start = start,
-                                        .scheme = "hermite-simpson",
-                                        .intervals = 100};
+                                        .scheme = "gauss3",
+                                        .intervals = 20};
 
 const struct classic classic_goddard_slow = {.name = "goddard-slow",
                                              .title = "Goddard rocket, v <= 0.1",
@@ -79,5 +79,5 @@ const struct classic classic_goddard_slow = {.name = "goddard-slow",
                                              .build = build,
                                              .data = &(const double){0.1},
                                              .start = start,
-                                             .scheme = "hermite-simpson",
-                                             .intervals = 100};
+                                             .scheme = "gauss3",
+                                             .intervals = 20};

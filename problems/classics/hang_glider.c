@@ -73,4 +73,5 @@ const struct classic classic_hang_glider = {.name = "hang-glider",
                                             .build = build,
                                             .start = start,
                                             .scheme = "trapezoid",
-                                            .intervals = 2000};
+                                            .intervals = 2000,
+                                            .fixed_mesh = true};

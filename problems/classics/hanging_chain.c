@@ -61,5 +61,5 @@ const struct classic classic_hanging_chain = {.name = "hanging-chain",
                                               .sign = 1,
                                               .build = build,
                                               .start = start,
-                                              .scheme = "lobatto5",
+                                              .scheme = "gauss3",
                                               .intervals = 20};

@@ -42,5 +42,5 @@ const struct classic classic_hypersensitive = {.name = "hypersensitive",
                                                .published = "1.330826",
                                                .sign = 1,
                                                .build = build,
-                                               .scheme = "lobatto5",
-                                               .intervals = 60};
+                                               .scheme = "gauss3",
+                                               .intervals = 20};

@@ -66,5 +66,5 @@ const struct classic classic_moon_lander = {.name = "moon-lander",
                                             .sign = 1,
                                             .build = build,
                                             .start = start,
-                                            .scheme = "radau3",
-                                            .intervals = 50};
+                                            .scheme = "gauss3",
+                                            .intervals = 20};

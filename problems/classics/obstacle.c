@@ -62,5 +62,5 @@ const struct classic classic_obstacle = {.name = "obstacle",
                                          .closed_form = 4.571044,
                                          .sign = 1,
                                          .build = build,
-                                         .scheme = "hermite-simpson",
-                                         .intervals = 40};
+                                         .scheme = "gauss3",
+                                         .intervals = 20};

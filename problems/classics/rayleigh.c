@@ -57,4 +57,4 @@ const struct classic classic_rayleigh = {.name = "rayleigh",
                                          .build = build,
                                          .start = start,
                                          .scheme = "hermite-simpson",
-                                         .intervals = 80};
+                                         .intervals = 400};

@@ -82,4 +82,5 @@ const struct classic classic_robot_arm = {.name = "robot-arm",
                                           .build = build,
                                           .start = start,
                                           .scheme = "trapezoid",
-                                          .intervals = 200};
+                                          .intervals = 200,
+                                          .fixed_mesh = true};

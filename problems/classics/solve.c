@@ -53,7 +53,7 @@ static bool agrees_with(double value, const char *printed)
 static void judge(const struct classic *classic, struct classic_result *result)
 {
     result->difference = result->value - strtod(classic->published, NULL);
-    result->agrees = result->info.outcome == MORAY_NLP_SOLVED &&
+    result->agrees = result->outcome == MORAY_NLP_SOLVED &&
                      agrees_with(result->value, classic->computed ? classic->computed : classic->published);
     if (classic->closed_form != 0)
         result->agrees =
@@ -65,12 +65,23 @@ moray_settings classic_settings(const struct classic *classic)
     moray_settings settings = moray_settings_default();
     settings.scheme = classic->scheme;
     settings.intervals = classic->intervals;
-    settings.tolerance = 1e-10;
-    if (classic->tolerance > 0)
-        settings.tolerance = classic->tolerance;
-    if (classic->mesh_tolerance > 0)
-        settings.mesh_tolerance = classic->mesh_tolerance;
-    return settings; // mesh refinement is switched on here
+    settings.tolerance = classic->tolerance > 0 ? classic->tolerance : 1e-10;
+    settings.mesh_tolerance = classic->mesh_tolerance > 0 ? classic->mesh_tolerance : 1e-6;
+    settings.max_refinements = classic->fixed_mesh ? 0 : 20;
+    return settings;
+}
+
+static void read_solution(const struct classic *classic, const moray_solution *solution, struct classic_result *result)
+{
+    const moray_mesh_record *mesh = moray_solution_history(solution, &result->meshes);
+    result->outcome = moray_solution_info(solution)->outcome;
+    for (int k = 0; k < result->meshes; k++) {
+        result->iterations += mesh[k].iterations;
+        result->seconds += mesh[k].seconds;
+        result->intervals = mesh[k].intervals;
+    }
+    result->value = classic->sign * moray_solution_objective(solution);
+    judge(classic, result);
 }
 
 moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
@@ -82,9 +93,7 @@ moray_status classic_solve(const struct classic *classic, const moray_settings *
     moray_solution *solution;
     moray_status status = solve_from_start(classic, ocp, settings, &solution);
     if (!moray_failed(status)) {
-        result->info = *moray_solution_info(solution);
-        result->value = classic->sign * moray_solution_objective(solution);
-        judge(classic, result);
+        read_solution(classic, solution, result);
         if (diagnosis)
             snprintf(diagnosis, (size_t)size, "%s", moray_solution_diagnosis(solution));
         status = moray_certify(solution, integrator, &result->certificate);

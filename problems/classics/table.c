@@ -23,7 +23,14 @@
     X(robot_arm)                                                                                                       \
     X(hanging_chain)                                                                                                   \
     X(moon_lander)                                                                                                     \
-    X(hang_glider)
+    X(hang_glider)                                                                                                     \
+    X(shuttle)                                                                                                         \
+    X(launch)                                                                                                          \
+    X(low_thrust)                                                                                                      \
+    X(low_thrust_slack)                                                                                                \
+    X(two_burn)                                                                                                        \
+    X(manutec)                                                                                                         \
+    X(swimmer)
 
 #define DECLARE(name) extern const struct classic classic_##name;
 CLASSICS(DECLARE)

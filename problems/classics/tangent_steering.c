@@ -66,5 +66,5 @@ const struct classic classic_tangent_steering = {.name = "tangent-steering",
                                                  .sign = 1,
                                                  .build = build,
                                                  .start = start,
-                                                 .scheme = "lobatto4",
-                                                 .intervals = 15};
+                                                 .scheme = "gauss3",
+                                                 .intervals = 20};

@@ -55,5 +55,5 @@ const struct classic classic_two_link_arm = {.name = "two-link-arm",
                                              .published = "2.988662",
                                              .sign = 1,
                                              .build = build,
-                                             .scheme = "radau3",
-                                             .intervals = 50};
+                                             .scheme = "gauss3",
+                                             .intervals = 20};

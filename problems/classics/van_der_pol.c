@@ -43,5 +43,6 @@ const struct classic classic_van_der_pol = {.name = "van-der-pol",
                                             .published = "1.047921",
                                             .sign = 1,
                                             .build = build,
-                                            .scheme = "lobatto4",
-                                            .intervals = 10};
+                                            .scheme = "trapezoid",
+                                            .intervals = 100,
+                                            .fixed_mesh = true};

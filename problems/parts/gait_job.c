@@ -135,7 +135,9 @@ int gait_job_main(const gait_program *program, int argc, char **argv)
     if (!moray_app_start(&app, argc, argv, &job, &exit_code))
         return exit_code;
     job.ticker = moray_ticker_start(stderr, job.common.quiet);
+    moray_interrupt_begin();
     moray_status status = work(&job);
+    moray_interrupt_end();
     moray_ticker_end(&job.ticker);
     if (!moray_failed(status))
         status = gait_job_report(&job);

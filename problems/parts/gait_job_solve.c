@@ -41,7 +41,7 @@ static bool show_iteration(void *observer, const moray_progress *at)
     moray_ticker_show(&job->ticker, "%s: iteration %d, %.5f %s, violation %.1e%s", job->name, at->iteration,
                       fastest ? -at->objective : at->objective, fastest ? "m/s" : "J/m", at->infeasibility,
                       at->restoring ? " (restoring feasibility)" : "");
-    return true;
+    return !moray_interrupted();
 }
 
 // The orbit is swum straight along the course where the gait cannot hold it.
@@ -113,7 +113,7 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
     const int random = at->model == job->common.model ? job->random_starts : 0;
     srand48(1);
     at->starts = known->n + random;
-    for (int k = 0; k < at->starts; k++) {
+    for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
         const moray_gait gait = k < known->n ? known->gait[k] : random_gait(job, at->model);
         moray_solution *solution = NULL;
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
@@ -176,10 +176,9 @@ moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *know
 {
     MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
     MORAY_TRY(solve_all(job, at, known));
-    const moray_nlp_info *info = moray_solution_info(at->solution);
+    if (moray_interrupted())
+        return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");
     at->promise = moray_gait_problem_promise(at->problem, at->solution);
-    if (info->outcome == MORAY_NLP_INTERRUPTED)
-        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations", info->iterations);
     if (!solved(at->solution) || at->promise.course_speed <= 0)
         return explain_failure(job, at);
     const moray_integrator integrator = moray_sim_integrator(&job->basin.settings.sim);

@@ -18,6 +18,7 @@ typedef struct paper_settings {
     double theta_max, omega, delta; // of the gait that studies take where they do not vary it
     moray_reading reading;          // of the control-oriented model
     bool as_printed;                // reading = printed
+    char write_ini[MORAY_PATH_SIZE]; // empty: none
     bool chosen[PAPER_STUDIES];
 } paper_settings;
 
@@ -45,7 +46,7 @@ typedef struct paper {
 // Does the study and tells what it finds. An error ends this study only: its text says why.
 typedef moray_status paper_run(paper *p);
 
-paper_run paper_straight, paper_turning, paper_linearising, paper_ground;
+paper_run paper_straight, paper_turning, paper_linearising, paper_ground, paper_eel, paper_fit;
 paper_run paper_mapping, paper_forces, paper_links, paper_offset, paper_errata;
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------

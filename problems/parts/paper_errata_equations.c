@@ -3,7 +3,7 @@
 // Errata in the equations of the control-oriented model: as printed beside as corrected.
 #include "paper_errata.h"
 
-enum { PERIODS = 15, LAST = 5, PER_PERIOD = 60, POINTS = 361 };
+enum { PERIODS = 15, LAST = 5, PER_PERIOD = 60, SAMPLES = PERIODS * PER_PERIOD + 1, POINTS = 361 };
 
 static moray_status swimmer_reading(paper *p, moray_reading reading, moray_swimmer **swimmer)
 {
@@ -50,29 +50,41 @@ static moray_status corrected_orbit(paper *p, moray_swim_track **orbit)
     return paper_orbit_of(p, &setup, &p->gait[MORAY_CONTROL_ORIENTED], POINTS, NULL, orbit);
 }
 
-// From rest; v_n[k] of sample k.
-static moray_status swim_23h(paper *p, moray_reading reading, moray_swim_track **track, double **v_n)
+// From rest: v_n of every sample, NaN where the simulation has broken off, and mean v_x of the last five periods.
+typedef struct sway {
+    double t[SAMPLES], v_n[SAMPLES], v_x, dv_n_rms;
+} sway;
+
+// That the equations as printed cannot be simulated to the end would be a finding, too.
+static moray_status swim_23h(paper *p, moray_reading reading, sway *s)
 {
     const moray_gait_change change = {0, p->gait[MORAY_CONTROL_ORIENTED]};
+    const double step = period_of(p) / PER_PERIOD;
     paper_swim_plan plan = {.model = MORAY_CONTROL_ORIENTED, .schedule = &change, .n_changes = 1};
+    moray_swim_track *track;
     MORAY_TRY(swimmer_reading(p, reading, &plan.swimmer));
-    MORAY_TRY(paper_swim(p, &plan, PERIODS * period_of(p), period_of(p) / PER_PERIOD, track));
-    MORAY_TRY(paper_numbers(p, (size_t)(*track)->n, v_n));
-    for (int k = 0; k < (*track)->n; k++)
-        (*v_n)[k] = (*track)->x[(k + 1) * (*track)->n_states - 1];
+    const moray_status status = paper_swim(p, &plan, (SAMPLES - 1) * step, step, &track);
+    if (moray_failed(status) && !(status.code == MORAY_NUMERIC && reading != MORAY_READ_CORRECTED))
+        return status;
+    for (int k = 0; k < SAMPLES; k++) {
+        s->t[k] = k * step;
+        s->v_n[k] = k < track->n ? track->x[(k + 1) * track->n_states - 1] : NAN;
+    }
+    const int last = SAMPLES - 1, from = last - LAST * PER_PERIOD;
+    s->v_x = track->n == SAMPLES ? (track->pose[last].p_x - track->pose[from].p_x) / (s->t[last] - s->t[from]) : NAN;
     return moray_ok();
 }
 
-static moray_status draw_23h(paper *p, moray_swim_track *const track[2], double *const v_n[2])
+static moray_status draw_23h(paper *p, const sway *printed, const sway *corrected)
 {
-    static const char *const labels[] = {"(16c)", "(23h) as printed"};
-    moray_curve curves[2];
-    moray_column columns[3] = {{.name = "t", .unit = "s", .values = track[0]->t}};
-    for (int c = 0; c < 2; c++) {
-        curves[c] = (moray_curve){.label = labels[c], .x = track[c]->t, .y = v_n[c], .n = track[c]->n};
-        columns[1 + c] = (moray_column){.name = c ? "v_n by (23h)" : "v_n by (16c)", .unit = "m/s", .values = v_n[c]};
-    }
-    MORAY_TRY(paper_csv(p, "e1", columns, 3, track[0]->n));
+    const moray_curve curves[] = {
+        {.label = "(16c)", .x = corrected->t, .y = corrected->v_n, .n = SAMPLES},
+        {.label = "(23h) as printed", .x = printed->t, .y = printed->v_n, .n = SAMPLES},
+    };
+    const moray_column columns[] = {{.name = "t", .unit = "s", .values = printed->t},
+                                    {.name = "v_n by (16c)", .unit = "m/s", .values = corrected->v_n},
+                                    {.name = "v_n by (23h)", .unit = "m/s", .values = printed->v_n}};
+    MORAY_TRY(paper_csv(p, "e1", columns, 3, SAMPLES));
     return paper_figure(p, &(moray_figure){.name = "e1",
                                            .title = "E1: lateral velocity from rest, control-oriented model",
                                            .x_label = "time [s]",
@@ -81,39 +93,46 @@ static moray_status draw_23h(paper *p, moray_swim_track *const track[2], double 
                                            .n_curves = 2});
 }
 
+static void json_23h(moray_json *json, const char *key, const sway *s)
+{
+    moray_json_open(json, key);
+    moray_json_number(json, "dv_n_rms_m_s2", s->dv_n_rms);
+    moray_json_number(json, "v_n_m_s", s->v_n[SAMPLES - 1]);
+    moray_json_number(json, "v_x_m_s", s->v_x);
+    moray_json_close(json);
+}
+
 moray_status erratum_23h(paper *p)
 {
     static const moray_reading readings[] = {MORAY_READ_23H_PRINTED, MORAY_READ_CORRECTED};
-    moray_swim_track *orbit, *track[2];
-    double dv_n[2][POINTS], *v_n[2], v_x[2], rms[2], end[2];
+    static sway s[2]; // printed, corrected
+    moray_swim_track *orbit;
+    double dv_n[POINTS];
     MORAY_TRY(corrected_orbit(p, &orbit));
     for (int c = 0; c < 2; c++) {
-        MORAY_TRY(acceleration(p, readings[c], orbit, dv_n[c]));
-        MORAY_TRY(swim_23h(p, readings[c], &track[c], &v_n[c]));
-        const int last = track[c]->n - 1, from = last - LAST * PER_PERIOD;
-        v_x[c] = (track[c]->pose[last].p_x - track[c]->pose[from].p_x) / (track[c]->t[last] - track[c]->t[from]);
-        rms[c] = root_mean_square(dv_n[c], POINTS);
-        end[c] = v_n[c][last];
+        MORAY_TRY(acceleration(p, readings[c], orbit, dv_n));
+        MORAY_TRY(swim_23h(p, readings[c], &s[c]));
+        s[c].dv_n_rms = root_mean_square(dv_n, POINTS);
     }
-    const double duration = track[0]->t[track[0]->n - 1];
     const moray_table_row rows[] = {
         {.label = "dv_n/dt in the corrected model's steady swimming, root mean square",
-         .value = {rms[0], rms[1]},
+         .value = {s[0].dv_n_rms, s[1].dv_n_rms},
          .unit = "m/s^2"},
-        {.label = paper_label(p, "v_n after %.4g s from rest", duration), .value = {end[0], end[1]}, .unit = "m/s"},
-        {.label = "v_x, mean of the last five periods of them", .value = {v_x[0], v_x[1]}, .unit = "m/s"},
+        {.label = paper_label(p, "v_n after %.4g s from rest", s[0].t[SAMPLES - 1]),
+         .value = {s[0].v_n[SAMPLES - 1], s[1].v_n[SAMPLES - 1]},
+         .unit = "m/s"},
+        {.label = "v_x, mean of the last five periods of them", .value = {s[0].v_x, s[1].v_x}, .unit = "m/s"},
     };
     moray_json_open(p->json, "e1");
-    moray_json_numbers(p->json, "dv_n_rms_printed_corrected_m_s2", rms, 2);
-    moray_json_numbers(p->json, "v_n_printed_corrected_m_s", end, 2);
-    moray_json_numbers(p->json, "v_x_printed_corrected_m_s", v_x, 2);
+    json_23h(p->json, "as_printed", &s[0]);
+    json_23h(p->json, "corrected", &s[1]);
     moray_json_close(p->json);
     MORAY_TRY(paper_table(p, &(moray_table){.title = "E1: (23h) has h_4 and h_5 the other way round than (16c)",
                                             .columns = {"as printed", "corrected"},
                                             .n_columns = 2,
                                             .rows = rows,
                                             .n_rows = 3}));
-    return draw_23h(p, (moray_swim_track *[]){track[1], track[0]}, (double *[]){v_n[1], v_n[0]});
+    return draw_23h(p, &s[0], &s[1]);
 }
 
 // ---- E2 ------------------------------------------------------------------------------------------------------------
@@ -126,7 +145,7 @@ static moray_status speed(paper *p, int way, double theta_max, double *v_x)
     const moray_gait_change change = {0, paper_gait(p, model, theta_max)};
     paper_swim_plan plan = {.model = model, .schedule = &change, .n_changes = 1};
     MORAY_TRY(paper_swimmer(p, p->robot, model, way == 2 ? MORAY_READ_L_PRINTED : MORAY_READ_CORRECTED, &plan.swimmer));
-    return paper_mean_velocity(p, &plan, PERIODS * period_of(p), LAST, v_x, NULL);
+    return paper_mean_velocity(p, &plan, PERIODS * period_of(p), LAST, v_x);
 }
 
 // (12) over the true link angle, for the small angles of the gait (24) inside the body: with phi of (28), both sines.

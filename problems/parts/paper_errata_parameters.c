@@ -67,39 +67,53 @@ moray_status erratum_offset_sign(paper *p)
 
 // ---- E4 ------------------------------------------------------------------------------------------------------------
 
+static moray_steady swim_at(paper *p, double omega, moray_status *status)
+{
+    moray_gait gait = p->gait[MORAY_FIRST_PRINCIPLES];
+    moray_steady steady;
+    moray_swim_track *orbit;
+    gait.omega = omega;
+    *status = paper_orbit(p, MORAY_FIRST_PRINCIPLES, &gait, 2, &steady, &orbit);
+    return moray_failed(*status) ? (moray_steady){.v_x = NAN, .power = NAN, .peak_effort = NAN} : steady;
+}
+
+static void json_frequency(moray_json *json, const char *key, double omega, const moray_steady *steady)
+{
+    moray_json_open(json, key);
+    moray_json_number(json, "omega_rad_s", omega);
+    moray_json_number(json, "v_x_m_s", steady->v_x);
+    moray_json_number(json, "power_W", steady->power);
+    moray_json_close(json);
+}
+
+// That nothing steady comes of the number as printed is a finding, too.
 moray_status erratum_frequency(paper *p)
 {
-    static const char *const keys[2] = {"as_printed", "corrected"};
-    const double omega[2] = {p->settings->omega / DEG, p->settings->omega}; // the number as rad/s, and as deg/s
-    moray_steady steady[2];
-    moray_swim_track *orbit;
-    moray_json_open(p->json, "e4_omega");
-    for (int c = 0; c < 2; c++) {
-        moray_gait gait = p->gait[MORAY_FIRST_PRINCIPLES];
-        gait.omega = omega[c];
-        MORAY_TRY(paper_orbit(p, MORAY_FIRST_PRINCIPLES, &gait, 2, &steady[c], &orbit));
-        moray_json_open(p->json, keys[c]);
-        moray_json_number(p->json, "omega_rad_s", omega[c]);
-        moray_json_number(p->json, "v_x_m_s", steady[c].v_x);
-        moray_json_number(p->json, "power_W", steady[c].power);
-        moray_json_close(p->json);
-    }
-    moray_json_close(p->json);
+    const double printed = p->settings->omega / DEG, corrected = p->settings->omega; // the number as rad/s, as deg/s
+    moray_status why, status;
+    const moray_steady fast = swim_at(p, printed, &why), steady = swim_at(p, corrected, &status);
+    if (moray_failed(status))
+        return status;
     const moray_table_row rows[] = {
-        {.label = "omega", .value = {omega[0], omega[1]}, .unit = "rad/s"},
-        {.label = "mean v_x, first-principles", .value = {steady[0].v_x, steady[1].v_x}, .unit = "m/s"},
-        {.label = "mean joint power", .value = {steady[0].power, steady[1].power}, .unit = "W"},
-        {.label = "peak joint torque", .value = {steady[0].peak_effort, steady[1].peak_effort}, .unit = "N m"},
+        {.label = "omega", .value = {printed, corrected}, .unit = "rad/s"},
+        {.label = "mean v_x, first-principles", .value = {fast.v_x, steady.v_x}, .unit = "m/s"},
+        {.label = "mean joint power", .value = {fast.power, steady.power}, .unit = "W"},
+        {.label = "peak joint torque", .value = {fast.peak_effort, steady.peak_effort}, .unit = "N m"},
     };
-    return paper_table(
+    moray_json_open(p->json, "e4_omega");
+    json_frequency(p->json, "as_printed", printed, &fast);
+    json_frequency(p->json, "corrected", corrected, &steady);
+    moray_json_close(p->json);
+    MORAY_TRY(paper_table(
         p, &(moray_table){.title = paper_label(p,
                                                "E4: omega = %g is a number of deg/s, not of rad/s (Fig. 7 stays "
                                                "below 0.5 m/s)",
-                                               omega[0]),
+                                               printed),
                           .columns = {"rad/s", "deg/s"},
                           .n_columns = 2,
                           .rows = rows,
-                          .n_rows = 4});
+                          .n_rows = 4}));
+    return moray_failed(why) ? paper_say(p, "E4: as rad/s it is not swum: %s.", why.text) : moray_ok();
 }
 
 moray_status erratum_lambda(paper *p)

@@ -43,10 +43,9 @@ typedef struct {
 static moray_status crawl(paper *p, double ratio, findings *f)
 {
     const moray_robot robot = ground_robot(p, ratio);
-    const double still[2] = {0, 0};
     moray_swimmer *swimmer[2];
     for (int model = 0; model < 2; model++)
-        MORAY_TRY(paper_swimmer_in(p, &robot, (moray_model)model, still, &swimmer[model]));
+        MORAY_TRY(paper_swimmer(p, &robot, (moray_model)model, p->settings->reading, &swimmer[model]));
     for (int i = 0; i < AMPLITUDES; i++) {
         paper_progress(p, "c_n/c_t = %g, theta_max %g deg", ratio, theta_max_deg[i]);
         for (int model = 0; model < 2; model++) {
@@ -94,11 +93,10 @@ static moray_status draw(paper *p, double ratio, const findings *f)
     moray_curve curves[3] = {[2] = {.label = "control-oriented with Assumption 4 in place of 5",
                                     .x = theta_max_deg,
                                     .y = f->simpler,
-                                    .n = AMPLITUDES}};
+                                    .n = AMPLITUDES,
+                                    .style = MORAY_CURVE_MARKED}};
     for (int k = 0; k < 2; k++)
         curves[k] = paper_model_curve(paper_model_order[k], theta_max_deg, f->speed[paper_model_order[k]], AMPLITUDES);
-    for (int k = 0; k < 3; k++)
-        curves[k].style = MORAY_CURVE_MARKED;
     const moray_column columns[] = {
         {"theta_max", "deg", theta_max_deg, 1},
         {"speed first-principles", "m/s", f->speed[MORAY_FIRST_PRINCIPLES], 1},
@@ -131,7 +129,7 @@ moray_status paper_ground(paper *p)
         MORAY_TRY(tell(p, ratios[r], &f));
         MORAY_TRY(paper_say(p,
                             "At c_n = %g c_t the control-oriented model's speed is within 5 %% of the first-principles "
-                            "model's up to %g deg; with Assumption 4, as in earlier ground models, up to %g deg.",
+                            "model's up to %g deg; with Assumption 4 in place of 5, up to %g deg.",
                             ratios[r], covered_to(f.excess, 5), covered_to(f.simpler_excess, 5)));
         MORAY_TRY(draw(p, ratios[r], &f));
     }

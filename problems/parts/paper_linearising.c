@@ -66,7 +66,7 @@ static moray_status try_states(paper *p, const moray_robot *robot, misses *worst
     moray_swimmer *swimmer;
     paper_forward f;
     double *x;
-    MORAY_TRY(paper_swimmer_in(p, robot, MORAY_CONTROL_ORIENTED, V, &swimmer));
+    MORAY_TRY(paper_swimmer(p, robot, MORAY_CONTROL_ORIENTED, p->settings->reading, &swimmer));
     MORAY_TRY(paper_forward_new(p, robot, &f));
     MORAY_TRY(paper_numbers(p, 7 * (size_t)N + 16, &x));
     double *dx = x + 2 * N + 4, *ubar = dx + 2 * N + 4, *u = ubar + N, *z = u + N;

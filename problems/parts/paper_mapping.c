@@ -130,9 +130,19 @@ static moray_status show_errors(paper *p)
                           .n_rows = N_ANGLES});
 }
 
+// The sines of (29) are 2 sin(theta_max sin x cos(delta/2)) cos(theta_max cos x sin(delta/2)), largest at x = pi/2.
+static moray_status conclude(paper *p)
+{
+    return paper_say(p,
+                     "The amplitude of (29) is 2 l sin(theta_max cos(delta/2)): (31), and so (33), comes closer to it "
+                     "than (30) as long as delta < 90 deg; here delta is %.3g deg.",
+                     p->settings->delta / DEG);
+}
+
 moray_status paper_mapping(paper *p)
 {
     MORAY_TRY(show_errors(p));
+    MORAY_TRY(conclude(p));
     MORAY_TRY(draw_period(p));
     MORAY_TRY(draw_errors(p));
     return show_swum_amplitudes(p);

@@ -28,7 +28,7 @@ typedef struct swum_amplitudes {
     double inner_angle, end_angle;              // (12) in the control-oriented model, mean over the links [rad]
 } swum_amplitudes;
 
-// Swims the gait on both models of the robot with N links. Error: those of moray_swim_steady.
+// Swims the gait on both models of the robot with N links in still water. Error: those of moray_swim_steady.
 moray_status swum_amplitudes_of(paper *p, int N, double theta_max, double delta, swum_amplitudes *s);
 
 // Propositions 1 and 2 for several theta_max, delta, N.

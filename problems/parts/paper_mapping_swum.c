@@ -5,7 +5,7 @@
 
 enum { POINTS = 721 };
 
-// One period of the gait of a model of the robot with N links.
+// One period of the gait of a model of the robot with N links, in still water: the joints do not feel it.
 static moray_status swim(paper *p, moray_model model, const swum_amplitudes *s, moray_swimmer **swimmer,
                          moray_swim_track **orbit)
 {
@@ -14,6 +14,7 @@ static moray_status swim(paper *p, moray_model model, const swum_amplitudes *s, 
     robot.links = s->N;
     MORAY_TRY(paper_swimmer(p, &robot, model, p->settings->reading, swimmer));
     setup.swimmer = *swimmer;
+    setup.current[0] = setup.current[1] = 0;
     const moray_gait gait = {
         .amplitude = model == MORAY_CONTROL_ORIENTED ? s->a : s->alpha, .omega = p->settings->omega, .delta = s->delta};
     return paper_orbit_of(p, &setup, &gait, POINTS, NULL, orbit);

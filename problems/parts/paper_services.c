@@ -88,15 +88,14 @@ moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model
 // printf into memory that is p's own; NULL when there is none.
 static char *print_text(paper *p, const char *format, va_list arguments)
 {
-    va_list again;
-    va_copy(again, arguments);
-    const size_t size = (size_t)vsnprintf(NULL, 0, format, again) + 1;
-    va_end(again);
-    char *text = malloc(size);
-    if (moray_failed(paper_own(p, text, free)))
-        return NULL;
-    vsnprintf(text, size, format, arguments);
-    return text;
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    const bool printed = stream && vfprintf(stream, format, arguments) >= 0;
+    if (stream && fclose(stream) == 0 && printed)
+        return moray_failed(paper_own(p, text, free)) ? NULL : text;
+    free(text);
+    return NULL;
 }
 
 const char *paper_label(paper *p, const char *format, ...)

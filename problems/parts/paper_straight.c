@@ -89,7 +89,7 @@ static moray_status measure(paper *p, double speed[2][AMPLITUDES])
         for (int model = 0; model < 2; model++) {
             const moray_gait_change change = {0, paper_gait(p, (moray_model)model, theta_max_deg[i] * DEG)};
             const paper_swim_plan plan = {.model = (moray_model)model, .schedule = &change, .n_changes = 1};
-            MORAY_TRY(paper_mean_velocity(p, &plan, HOLD, PERIODS, &speed[model][i], NULL));
+            MORAY_TRY(paper_mean_velocity(p, &plan, HOLD, PERIODS, &speed[model][i]));
         }
     }
     return moray_ok();

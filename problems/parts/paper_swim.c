@@ -1,19 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "paper_swim.h"
 
-static void release_swimmer(void *swimmer)
-{
-    moray_swimmer_free(swimmer);
-}
-
-moray_status paper_swimmer_in(paper *p, const moray_robot *robot, moray_model model, const double current[2],
-                           moray_swimmer **swimmer)
-{
-    MORAY_TRY(moray_swimmer_new(swimmer, robot, model));
-    moray_swimmer_set_current(*swimmer, current[0], current[1]);
-    return paper_own(p, *swimmer, release_swimmer);
-}
-
 moray_status paper_swim_at(paper *p, const paper_swim_plan *plan, const double *times, int n, moray_swim_track **track)
 {
     moray_swimmer *swimmer = plan->swimmer ? plan->swimmer : p->basin.swimmer[plan->model];
@@ -41,16 +28,12 @@ moray_status paper_swim(paper *p, const paper_swim_plan *plan, double duration, 
     return paper_swim_at(p, plan, times, n, track);
 }
 
-moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x,
-                                 double *v_y)
+moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x)
 {
     const double span = n_periods * 2 * M_PI / plan->schedule[0].gait.omega, times[] = {duration - span, duration};
     moray_swim_track *track;
     MORAY_TRY(paper_swim_at(p, plan, times, 2, &track));
-    if (v_x)
-        *v_x = (track->pose[1].p_x - track->pose[0].p_x) / span;
-    if (v_y)
-        *v_y = (track->pose[1].p_y - track->pose[0].p_y) / span;
+    *v_x = (track->pose[1].p_x - track->pose[0].p_x) / span;
     return moray_ok();
 }
 
@@ -87,7 +70,11 @@ const moray_model paper_model_order[2] = {MORAY_FIRST_PRINCIPLES, MORAY_CONTROL_
 
 moray_curve paper_model_curve(moray_model model, const double *x, const double *y, int n)
 {
-    return (moray_curve){.label = paper_model_names[model], .x = x, .y = y, .n = n};
+    return (moray_curve){.label = paper_model_names[model],
+                         .x = x,
+                         .y = y,
+                         .n = n,
+                         .style = n < 30 ? MORAY_CURVE_MARKED : MORAY_CURVE_LINE};
 }
 
 moray_status paper_compare(paper *p, const char *name, const char *title, const char *x_label, const char *y_label,

@@ -6,10 +6,6 @@
 
 #include "paper.h"
 
-// A swimmer of a robot in a current, p's own. Error: MORAY_INPUT (robot), MORAY_MEMORY.
-moray_status paper_swimmer_in(paper *p, const moray_robot *robot, moray_model model, const double current[2],
-                           moray_swimmer **swimmer);
-
 // What is swum: from rest at (0, p_y), straight along x, with the gaits of a schedule.
 typedef struct paper_swim_plan {
     moray_model model;
@@ -25,10 +21,8 @@ moray_status paper_swim_at(paper *p, const paper_swim_plan *plan, const double *
 // Simulates for a duration, with samples every `step` [s] from 0 on.
 moray_status paper_swim(paper *p, const paper_swim_plan *plan, double duration, double step, moray_swim_track **track);
 
-// Mean velocity over ground [m/s] in the last n_periods whole periods of a single gait, swum for a duration; one of the
-// two may be NULL.
-moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x,
-                                 double *v_y);
+// Mean velocity over ground along x [m/s] in the last n_periods whole periods of a single gait, swum for a duration.
+moray_status paper_mean_velocity(paper *p, const paper_swim_plan *plan, double duration, int n_periods, double *v_x);
 
 // The heading [rad] at t on average over a period that ends there, from a finely sampled track.
 double paper_mean_heading(const moray_swim_track *track, double t, double period);
@@ -38,7 +32,8 @@ typedef enum { PAPER_P_X, PAPER_P_Y, PAPER_V_X, PAPER_V_Y, PAPER_HEADING_DEG } p
 moray_status paper_series(paper *p, const moray_swim_track *track, paper_quantity quantity, double **values);
 
 // Figures of both models: the first-principles model first, as a solid line, and over it, dashed, the control-oriented
-// one, which oscillates less. paper_compare: y[model][n] over x[n]; name and texts as in moray_figure.
+// one, which oscillates less; few points are marked. paper_compare: y[model][n] over x[n]; name and texts as in
+// moray_figure.
 extern const moray_model paper_model_order[2];
 moray_curve paper_model_curve(moray_model model, const double *x, const double *y, int n);
 moray_status paper_compare(paper *p, const char *name, const char *title, const char *x_label, const char *y_label,

@@ -21,8 +21,8 @@ static const struct {
 };
 enum { N_LOOKS = sizeof looks / sizeof *looks };
 
-// A text in gnuplot's single quotes, where only the quote itself and a line's end mean something; quotes are appended in
-// double ones, for gnuplot cannot read two of them doubled.
+// A text in gnuplot's single quotes, where only the quote itself and a line's end mean something; quotes are appended
+// in double ones, for gnuplot cannot read two of them doubled.
 static void quote(FILE *script, const char *text)
 {
     fputc('\'', script);

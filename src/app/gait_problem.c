@@ -235,22 +235,11 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
 // The plant's state from the swimmer's.
 static void plant_state(const moray_gait_problem *problem, const double *full, double *x)
 {
-    const int N = problem->spec.robot.links;
     if (problem->spec.joints != MORAY_JOINTS_ON_GAIT) {
         memcpy(x, full, (size_t)problem->size.nx * sizeof *x);
         return;
     }
-    for (int half = 0; half < 2; half++, full += N + 2, x += 3) {
-        if (problem->spec.model == MORAY_CONTROL_ORIENTED) {
-            memcpy(x, full + N - 1, 3 * sizeof *x);
-            continue;
-        }
-        x[0] = 0;
-        for (int i = 0; i < N; i++)
-            x[0] += full[i] / N;
-        x[1] = full[N];
-        x[2] = full[N + 1];
-    }
+    moray_state_body(problem->spec.model, problem->spec.robot.links, full, x);
 }
 
 moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,

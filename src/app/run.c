@@ -17,6 +17,12 @@ static const moray_option own_rows[] = {
      .open = true,
      .help = "largest relative error between nodes that the certificate accepts"},
     {.section = "solver",
+     .key = "refinements",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(app_run, refinements),
+     .max = 100,
+     .help = "finer meshes tried while the error between nodes is above mesh_tol"},
+    {.section = "solver",
      .key = "max_iterations",
      .type = MORAY_OPTION_INT,
      MORAY_AT(app_run, max_iterations),
@@ -29,6 +35,10 @@ static const moray_option own_rows[] = {
      .max = INFINITY,
      .open = true,
      .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"},
+    {.flag = "check",
+     .type = MORAY_OPTION_BOOL,
+     MORAY_AT(app_run, check),
+     .help = "only compare the derivatives in use with differences of the functions, and say where they disagree most"},
 };
 enum { own_count = sizeof own_rows / sizeof *own_rows };
 
@@ -54,6 +64,7 @@ static void start_from_defaults(app_run *run)
     run->common.intervals = settings.intervals;
     run->common.tol = settings.tolerance;
     run->mesh_tol = settings.mesh_tolerance;
+    run->refinements = settings.max_refinements;
     run->max_iterations = settings.max_iterations;
     run->barrier = settings.barrier;
     for (int i = 0; i < app->n_constants; i++)
@@ -77,6 +88,7 @@ static moray_settings settings_of(app_run *run)
     settings.intervals = run->common.intervals;
     settings.tolerance = run->common.tol;
     settings.mesh_tolerance = run->mesh_tol;
+    settings.max_refinements = run->refinements;
     settings.max_iterations = run->max_iterations;
     settings.barrier = run->barrier;
     settings.progress = show_iteration;
@@ -102,14 +114,10 @@ static moray_status certify(app_run *run)
 
 static moray_status solve(app_run *run)
 {
-    const moray_app *app = run->app;
     const moray_settings settings = settings_of(run);
-    for (int i = 0; i < app->n_constants; i++)
-        *app->constants[i].value = run->constant[i];
-    MORAY_TRY(moray_ocp_new(&run->ocp, app->spec));
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
     moray_interrupt_begin();
-    moray_status status = moray_solve(run->ocp, &settings, app->guess, &run->solution);
+    moray_status status = moray_solve(run->ocp, &settings, run->app->guess, &run->solution);
     moray_interrupt_end();
     if (!moray_failed(status) && moray_solution_info(run->solution)->outcome == MORAY_NLP_SOLVED)
         status = certify(run);
@@ -136,21 +144,42 @@ static moray_status judge(const app_run *run)
     return moray_error(MORAY_NOT_SOLVED, "%s", said);
 }
 
+static const double doubtful = 1e-4; // difference that rounding does not explain
+
 // What to do about the number that fails the certificate.
 static void say_failure(const app_run *run)
 {
     const moray_certificate *c = &run->certificate;
     const double loose = 100 * run->mesh_tol, tight = 100 * run->common.tol;
-    const char *text = c->kkt > tight                  ? "the solver stopped short of an optimum: try a smaller tol"
-                       : c->mesh_error > run->mesh_tol ? "the mesh is too coarse: try more intervals or stages"
-                       : c->between_nodes > loose      ? "limits are passed between the nodes: try more intervals"
-                                                       : "the simulation departs from the solution: try more intervals "
-                                                         "or, where the equations are unstable, distrust it";
+    const char *text = c->kkt > tight ? "the solver stopped short of an optimum: try a smaller tol"
+                       : c->mesh_error > run->mesh_tol
+                           ? "the mesh is too coarse: try more refinements, intervals or stages"
+                       : c->between_nodes > loose ? "limits are passed between the nodes: try more intervals"
+                                                  : "the simulation departs from the solution: try more intervals "
+                                                    "or, where the equations are unstable, distrust it";
     fprintf(stderr, "%s: certificate failed: %s\n", run->name, text);
+}
+
+static moray_status check(const app_run *run)
+{
+    moray_ocp_derivative_report report;
+    MORAY_TRY(moray_ocp_check_derivatives(run->ocp, &report));
+    printf("first derivatives differ by at most %.1e%s%s\n", report.jacobian_error, *report.jacobian ? ": " : "",
+           report.jacobian);
+    printf("second derivatives differ by at most %.1e%s%s\n", report.hessian_error, *report.hessian ? ": " : "",
+           report.hessian);
+    if (report.jacobian_error > doubtful || report.hessian_error > doubtful)
+        return moray_error(MORAY_NUMERIC, "derivatives are wrong, or the functions are not smooth");
+    return moray_ok();
 }
 
 static moray_status work(app_run *run)
 {
+    for (int i = 0; i < run->app->n_constants; i++)
+        *run->app->constants[i].value = run->constant[i];
+    MORAY_TRY(moray_ocp_new(&run->ocp, run->app->spec));
+    if (run->check)
+        return check(run);
     MORAY_TRY(solve(run));
     MORAY_TRY(moray_run_show(run));
     return judge(run);
@@ -177,7 +206,7 @@ int moray_app_run(const moray_app *app, int argc, char **argv)
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;
     exit_code = moray_app_end(&program, &run, work(&run));
-    if (exit_code == MORAY_EXIT_SOLVED && !run.certificate.pass) {
+    if (exit_code == MORAY_EXIT_SOLVED && !run.check && !run.certificate.pass) {
         say_failure(&run);
         exit_code = MORAY_EXIT_CERTIFICATE;
     }

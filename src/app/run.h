@@ -9,7 +9,8 @@
 typedef struct app_run {
     moray_common common;
     double mesh_tol, barrier;
-    int max_iterations;
+    int refinements, max_iterations;
+    bool check;
     double constant[MORAY_APP_CONSTANTS];
     const moray_app *app;
     const char *name;

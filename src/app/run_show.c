@@ -77,10 +77,13 @@ static int solver_rows(const app_run *run, moray_table_row *rows)
 {
     const moray_nlp_info *info = moray_solution_info(run->solution);
     const moray_nlp_size size = moray_solution_size(run->solution);
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(run->solution, &meshes);
     const moray_table_row filled[] = {
         {.label = "outcome", .text = moray_nlp_outcome_text(info->outcome)},
         {.label = "scheme", .text = run->common.scheme},
-        {.label = "intervals", .value = {run->common.intervals}},
+        {.label = "meshes tried", .value = {meshes}},
+        {.label = "intervals of the last", .value = {mesh[meshes - 1].intervals}},
         {.label = "variables", .value = {size.variables}},
         {.label = "constraints", .value = {size.constraints}},
         {.label = "iterations", .value = {info->iterations}},
@@ -98,14 +101,15 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
         {.label = "optimality and feasibility (KKT)", .value = {c->kkt, 100 * run->common.tol}},
         {.label = "error of the dynamics between nodes", .value = {c->mesh_error, run->mesh_tol}},
         {.label = "violation of limits between nodes", .value = {c->between_nodes, loose}},
-        {.label = "difference to a re-simulation", .value = {c->resimulation, loose}}};
+        {.label = "difference to a re-simulation", .value = {c->resimulation, loose}},
+        {.label = "spread of the Hamiltonian", .value = {c->hamiltonian, NAN}}};
     memcpy(rows, filled, sizeof filled);
     return sizeof filled / sizeof *filled;
 }
 
 moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
-    enum { solver_room = 10, certificate_room = 4 };
+    enum { solver_room = 10, certificate_room = 5 };
     const int solution_room = count_rows(run->app->spec);
     *t = (run_tables){.rows = calloc((size_t)solution_room + solver_room + certificate_room, sizeof *t->rows),
                       .texts = calloc((size_t)solution_room, sizeof *t->texts)};
@@ -137,6 +141,26 @@ void moray_run_tables_free(run_tables *t)
 }
 
 // ---- JSON ----------------------------------------------------------------------------------------------------------
+
+static void json_meshes(moray_json *json, const moray_solution *solution)
+{
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(solution, &meshes);
+    moray_json_open_list(json, "meshes");
+    for (int k = 0; k < meshes; k++) {
+        moray_json_open(json, NULL);
+        moray_json_text(json, "status", moray_nlp_outcome_text(mesh[k].outcome));
+        moray_json_number(json, "intervals", mesh[k].intervals);
+        moray_json_number(json, "nodes", mesh[k].nodes);
+        moray_json_number(json, "nvar", mesh[k].variables);
+        moray_json_number(json, "iterations", mesh[k].iterations);
+        moray_json_number(json, "time_s", mesh[k].seconds);
+        moray_json_number(json, "mesh_error", mesh[k].error);
+        moray_json_number(json, "objective", mesh[k].objective);
+        moray_json_close(json);
+    }
+    moray_json_close(json);
+}
 
 static void json_phase(moray_json *json, const app_run *run, int p)
 {
@@ -175,6 +199,7 @@ static moray_json *make_json(const app_run *run)
     moray_json_close(json);
     moray_solver_to_json(json, run->solution);
     moray_json_close(json);
+    json_meshes(json, run->solution);
     moray_certificate_to_json(json, run->certified ? &run->certificate : NULL);
     moray_json_text(json, "diagnosis", solved ? NULL : moray_solution_diagnosis(run->solution));
     return json;

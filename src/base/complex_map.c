@@ -15,6 +15,8 @@ struct complex_self {
     double complex *in, *out;
 };
 
+// A real function of real numbers: an imaginary part says that a root, logarithm or power has left its domain, and
+// would swamp the complex step.
 static void complex_value(void *opaque, const double *in, double *out)
 {
     struct complex_self *self = opaque;
@@ -22,7 +24,7 @@ static void complex_value(void *opaque, const double *in, double *out)
         self->in[j] = in[j];
     self->function(self->map.user, self->in, self->out);
     for (int i = 0; i < self->map.n_out; i++)
-        out[i] = creal(self->out[i]);
+        out[i] = cimag(self->out[i]) == 0 ? creal(self->out[i]) : NAN;
 }
 
 static void complex_along(struct numeric_map *map, const double *in, const double *direction, bool rough, double *slope)

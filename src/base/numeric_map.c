@@ -143,7 +143,8 @@ static moray_status check_finite(struct numeric_map *self, const double *probe)
     self->kind->value(self, probe, self->slope);
     for (int i = 0; i < self->n_out; i++)
         if (!isfinite(self->slope[i]))
-            return moray_error(MORAY_INPUT, "output %d of the function is %g at the probe point; it must be finite", i,
+            return moray_error(MORAY_INPUT,
+                               "output %d of the function is %g at the probe point; it must be finite and real", i,
                                self->slope[i]);
     return moray_ok();
 }

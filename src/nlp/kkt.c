@@ -12,12 +12,13 @@ static void keep_worst(double *worst, int *where, double value, int here)
     }
 }
 
-static double violation(double value, double lower, double upper)
+// Relative to 1 + |bound| + size.
+static double violation(double value, double lower, double upper, double size)
 {
     if (lower > -MORAY_INFINITY && value < lower)
-        return (lower - value) / (1 + fabs(lower));
+        return (lower - value) / (1 + fabs(lower) + size);
     if (upper < MORAY_INFINITY && value > upper)
-        return (value - upper) / (1 + fabs(upper));
+        return (value - upper) / (1 + fabs(upper) + size);
     return 0;
 }
 
@@ -60,21 +61,29 @@ static void lagrangian_gradient(const moray_nlp *nlp, const moray_iterate *it, c
         gradient[j] += it->z_upper[j] - it->z_lower[j];
 }
 
-static void measure(const moray_nlp *nlp, const moray_iterate *it, const double *g, const double *gradient,
-                    moray_kkt *kkt)
+// size[m]: largest |slope x_j| of each constraint, below whose rounding nothing can be asked of it
+static void constraint_sizes(const moray_nlp *nlp, const moray_iterate *it, const double *jac, double *size)
+{
+    for (int k = 0; k < nlp->nnz_jac; k++)
+        size[nlp->jac_row[k]] = fmax(size[nlp->jac_row[k]], fabs(jac[k] * it->x[nlp->jac_col[k]]));
+}
+
+static void measure(const moray_nlp *nlp, const moray_iterate *it, const double *g, const double *size,
+                    const double *gradient, moray_kkt *kkt)
 {
     *kkt = (moray_kkt){.dual_scale = mean_multiplier(nlp, it), .worst_variable = -1, .worst_constraint = -1};
     int ignored;
     for (int j = 0; j < nlp->n; j++) {
         if (nlp->x_lower[j] < nlp->x_upper[j]) // a fixed variable's own multiplier takes up whatever is left
             keep_worst(&kkt->stationarity, &kkt->worst_variable, fabs(gradient[j]) / kkt->dual_scale, j);
-        keep_worst(&kkt->feasibility, &kkt->worst_constraint, violation(it->x[j], nlp->x_lower[j], nlp->x_upper[j]),
+        keep_worst(&kkt->feasibility, &kkt->worst_constraint, violation(it->x[j], nlp->x_lower[j], nlp->x_upper[j], 0),
                    nlp->m + j);
         if (nlp->x_lower[j] < nlp->x_upper[j])
             keep_worst(&kkt->complementarity, &ignored, bound_complementarity(nlp, it, j) / kkt->dual_scale, j);
     }
     for (int i = 0; i < nlp->m; i++) {
-        keep_worst(&kkt->feasibility, &kkt->worst_constraint, violation(g[i], nlp->g_lower[i], nlp->g_upper[i]), i);
+        keep_worst(&kkt->feasibility, &kkt->worst_constraint,
+                   violation(g[i], nlp->g_lower[i], nlp->g_upper[i], size[i]), i);
         keep_worst(&kkt->complementarity, &ignored, row_complementarity(nlp, it, g, i) / kkt->dual_scale, i);
     }
     kkt->error = fmax(kkt->stationarity, fmax(kkt->feasibility, kkt->complementarity));
@@ -82,16 +91,17 @@ static void measure(const moray_nlp *nlp, const moray_iterate *it, const double 
 
 moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt)
 {
-    double *block = calloc((size_t)(nlp->n + nlp->m + nlp->nnz_jac) + 1, sizeof *block);
+    double *block = calloc((size_t)(nlp->n + 2 * nlp->m + nlp->nnz_jac) + 1, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to check %d variables", nlp->n);
-    double *gradient = block, *g = block + nlp->n, *jac = g + nlp->m;
+    double *gradient = block, *g = block + nlp->n, *size = g + nlp->m, *jac = size + nlp->m;
     const bool ok = nlp->constraints(nlp->self, iterate->x, true, g) &&
                     nlp->gradient(nlp->self, iterate->x, false, gradient) &&
                     nlp->jacobian(nlp->self, iterate->x, false, jac);
     if (ok) {
         lagrangian_gradient(nlp, iterate, jac, gradient);
-        measure(nlp, iterate, g, gradient, kkt);
+        constraint_sizes(nlp, iterate, jac, size);
+        measure(nlp, iterate, g, size, gradient, kkt);
     }
     free(block);
     return ok ? moray_ok() : moray_error(MORAY_NUMERIC, "a function of the problem is not finite at the solution");

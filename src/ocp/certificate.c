@@ -108,7 +108,7 @@ moray_status moray_certify(const moray_solution *solution, const moray_integrato
     const moray_settings *settings = &solution->settings;
     certificate->pass = certificate->kkt <= 100 * settings->tolerance &&
                         certificate->mesh_error <= settings->mesh_tolerance &&
-                        certificate->between_nodes <= 100 * settings->mesh_tolerance &&
+                        certificate->between_nodes <= violation_slack * settings->mesh_tolerance &&
                         certificate->resimulation <= 100 * settings->mesh_tolerance;
     return moray_ok();
 }

@@ -6,6 +6,9 @@
 
 #include "ocp/solution.h"
 
+// Violations between nodes may be this many times the mesh tolerance: they are seen at single points, not integrated.
+enum { violation_slack = 100 };
+
 // A phase under examination, with room for one evaluation.
 struct examiner {
     const moray_solution *solution;

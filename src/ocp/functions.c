@@ -123,6 +123,11 @@ moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec)
     return ocp->endpoint ? moray_ok() : wrap_endpoint(ocp);
 }
 
+bool phase_is_differenced(const struct phase *p)
+{
+    return p->wrapped && p->wrapped->real;
+}
+
 void unwrap_functions(moray_ocp *ocp)
 {
     for (int i = 0; ocp->phase && i < ocp->phases; i++) {

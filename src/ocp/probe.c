@@ -76,13 +76,14 @@ static void probe_list(const moray_bounds *bounds, int n, int trial, double **in
         *(*in)++ = probe_value(bounds[i], size_of(bounds[i]), i, trial);
 }
 
-// The middle between the ends says most about where a state lives.
+// The middle between the ends says most about where a state lives; beside it, because both may be fixed at zero.
 static void probe_states(const struct phase *p, int trial, double **in)
 {
     for (int i = 0; i < p->nx; i++) {
         const double x0 = probe_value(p->x0[i], state_size(p, i), i, trial);
         const double xf = probe_value(p->xf[i], state_size(p, i), i + 7, trial);
-        *(*in)++ = 0.55 * x0 + 0.45 * xf;
+        const double middle = 0.55 * x0 + 0.45 * xf, beside = 0.05 * (state_size(p, i) + fabs(middle));
+        *(*in)++ = fmin(fmax(middle + beside, p->x[i].lower), p->x[i].upper);
     }
 }
 

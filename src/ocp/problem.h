@@ -43,5 +43,6 @@ bool bounds_are_fixed(moray_bounds bounds);
 // Turns the user functions of the spec into maps. Error: MORAY_MEMORY, MORAY_INPUT.
 moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec);
 void unwrap_functions(moray_ocp *ocp);
+bool phase_is_differenced(const struct phase *p); // of a function that knows only double
 
 #endif

@@ -163,7 +163,9 @@ static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double
         r->mesh.intervals = 0;
     }
     for (int k = 0; k < layout->mesh.intervals; k++) {
-        const double error = examiner_interval(&r->e, &layout->interval[k], NULL);
+        double outside = 0;
+        double error = examiner_interval(&r->e, &layout->interval[k], &outside);
+        error = fmax(error, outside / violation_slack); // what the certificate will ask
         *worst = fmax(*worst, error);
         if (mesh)
             refine_interval(r, &layout->interval[k], layout->mesh.raised_from[k], error);

@@ -42,6 +42,7 @@ static bool fail_at_node(struct transcription *t, int p, int n, int bad)
     const struct phase_cache *cache = &t->phase[p];
     char name[name_size];
     phase_output_name(t->ocp, p, bad, name, name_size);
+    t->failures++;
     t->failure = moray_error(MORAY_NUMERIC, "%s of phase %s is not finite at t = %.6g", name, t->ocp->phase[p].name,
                              cache->t0 + (cache->tf - cache->t0) * t->layout.phase[p].node[n].tau);
     return false;
@@ -88,6 +89,7 @@ static bool end_values(struct transcription *t)
         return true;
     char name[name_size];
     endpoint_output_name(t->ocp, bad, name, name_size);
+    t->failures++;
     t->failure = moray_error(MORAY_NUMERIC, "%s of %s is not finite", name, t->ocp->name);
     return false;
 }

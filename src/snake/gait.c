@@ -11,8 +11,8 @@ void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double
         const double argument = omega * t + i * gait->delta;
         const double sine = sin(argument), cosine = cos(argument);
         phi[i] = a * sine + gait->offset; // (25)
-        dphi[i] = a * omega * cosine;
-        ddphi[i] = -a * omega * omega * sine;
+        dphi[i] = a * omega * cosine + gait->offset_rate;
+        ddphi[i] = -a * omega * omega * sine + gait->offset_acceleration;
     }
 }
 
@@ -37,6 +37,9 @@ moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, mora
     const double theta_max = moray_theta_max_from_amplitude(robot, from, gait->amplitude, gait->delta);
     moray_gait mapped = *gait;
     mapped.amplitude = moray_amplitude_from_theta_max(robot, to, theta_max, gait->delta);
-    mapped.offset = gait->amplitude == 0 ? 0 : -gait->offset * mapped.amplitude / gait->amplitude; // erratum E3
+    const double ratio = gait->amplitude == 0 ? 0 : -mapped.amplitude / gait->amplitude; // erratum E3
+    mapped.offset *= ratio;
+    mapped.offset_rate *= ratio;
+    mapped.offset_acceleration *= ratio;
     return mapped;
 }

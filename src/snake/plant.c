@@ -2,20 +2,21 @@
 #include "plant.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "shape.h"
 
 moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
 {
     const int N = spec->robot.links;
-    const bool free = spec->joints == MORAY_JOINTS_FREE;
-    return (moray_plant_size){
-        .nx = spec->joints == MORAY_JOINTS_ON_GAIT ? 6 : 2 * N + 4,
-        .nu = free ? N - 1 : 0,
-        .ns = free ? 0 : GAIT_INPUTS - 1,
-        .nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0),
-        .nq = 1,
-    };
+    const moray_plant_size forms[] = {[MORAY_JOINTS_ON_GAIT] = {.nx = 6, .ns = 4},
+                                      [MORAY_JOINTS_CLOSED_LOOP] = {.nx = 2 * N + 4, .ns = 4},
+                                      [MORAY_JOINTS_FREE] = {.nx = 2 * N + 4, .nu = N - 1},
+                                      [MORAY_JOINTS_STEERED] = {.nx = 8, .nu = 1, .ns = 3}};
+    moray_plant_size size = forms[spec->joints];
+    size.nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0);
+    size.nq = 1;
+    return size;
 }
 
 static void place_outputs(plant *self, const moray_plant_spec *spec)
@@ -33,10 +34,17 @@ static void place_outputs(plant *self, const moray_plant_spec *spec)
 static void place_inputs(plant *self, moray_joints joints)
 {
     const int n = self->n;
-    if (joints == MORAY_JOINTS_ON_GAIT) {
-        self->form = &plant_on_gait;
-        self->n_shape = self->n_s = self->n_curved = GAIT_INPUTS;
+    self->gait.n = n;
+    self->gait.n_inputs = joints == MORAY_JOINTS_STEERED ? STEERED_INPUTS : GAIT_INPUTS;
+    self->joint_states = joints == MORAY_JOINTS_CLOSED_LOOP || joints == MORAY_JOINTS_FREE;
+    if (!self->joint_states) {
+        const bool steered = joints == MORAY_JOINTS_STEERED;
+        self->form = steered ? &plant_steered : &plant_on_gait;
+        self->n_s = GAIT_INPUTS;
+        self->n_curved = GAIT_INPUTS + steered;
+        self->n_shape = self->gait.n_inputs;
         self->v_theta = 3;
+        self->offset = 6;
         return;
     }
     const bool free = joints == MORAY_JOINTS_FREE;
@@ -93,7 +101,7 @@ static void take_vectors(plant *self, arena *from)
 static void take_matrices(plant *self, arena *from)
 {
     const int n = self->n;
-    if (self->form == &plant_on_gait)
+    if (!self->joint_states)
         return;
     self->b_tangent = self->b_columns = take(from, n * n);
     self->g_tangent = self->g = take(from, n * n);
@@ -125,13 +133,16 @@ static void fill_joint_tables(plant *self)
 
 static void fill_tables(plant *self)
 {
-    const int n_joint_inputs = self->form == &plant_on_gait ? 0 : 2 * self->n;
+    const int n_joint_inputs = self->joint_states ? 2 * self->n : 0;
     for (int k = n_joint_inputs; k < self->n_shape; k++)
         self->col[k] = self->rest + k - n_joint_inputs;
+    if (self->form == &plant_steered) {
+        const int steered[STEERED_INPUTS] = {9, 10, 11, 6, 12, 7, 8}; // a, omega, delta, phi_0, t, phi_0', phi_0''
+        memcpy(self->col, steered, sizeof steered);
+    }
     for (int i = 0; i < self->n; i++)
         self->ones[i] = 1;
-    self->gait.n = self->n;
-    if (self->form != &plant_on_gait)
+    if (self->joint_states)
         fill_joint_tables(self);
     entries last = {0};
     if (self->form->last_hessian_pattern)

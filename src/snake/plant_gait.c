@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Joints on the gait: phi, v_phi, ubar are (25) and its derivatives, the shape inputs a, omega, delta, phi_0, t.
+// Joints on the gait: phi, v_phi, ubar are (25) and its derivatives, the shape inputs a, omega, delta, phi_0, t and,
+// where the offset moves, phi_0', phi_0''.
 #include "plant.h"
 
 #include "shape.h"
@@ -18,7 +19,10 @@ static triple triple_at(const plant *self, int k)
 
 static void shape(plant *self)
 {
-    reference_set(&self->gait, self->in + self->rest);
+    double p[STEERED_INPUTS];
+    for (int k = 0; k < self->n_shape; k++)
+        p[k] = self->in[self->col[k]];
+    reference_set(&self->gait, p);
     reference_values(&self->gait, self->phi, self->v_phi, self->ubar);
 }
 
@@ -46,7 +50,7 @@ static void gram(const plant *self, double c_v, const double *v, double c_ubar, 
 static void force_jacobian(const plant *self, double *values, int stride)
 {
     const triple product = triple_at(self, 1);
-    for (int k = 0; k < GAIT_INPUTS; k++) {
+    for (int k = 0; k < self->n_shape; k++) {
         const triple along = tangent(self, k);
         shape_a_dbar_transposed(self->n + 1, along.phi, product.phi);
         gram(self, self->body.c_n, along.v, self->body.mt, along.ubar, product.v);
@@ -64,7 +68,7 @@ static bool moves_link(const plant *self, int input, int link)
 static double *angle_jacobian(const plant *self, double *values)
 {
     const int n = self->n;
-    for (int k = 0; k < GAIT_INPUTS; k++) {
+    for (int k = 0; k < self->n_s; k++) {
         const double *phi = tangent(self, k).phi;
         for (int i = 0; i <= n; i++)
             if (moves_link(self, k, i))
@@ -75,7 +79,7 @@ static double *angle_jacobian(const plant *self, double *values)
 
 static void angle_pattern(const plant *self, entries *list)
 {
-    for (int k = 0; k < GAIT_INPUTS; k++)
+    for (int k = 0; k < self->n_s; k++)
         for (int i = 0; i <= self->n; i++)
             if (moves_link(self, k, i))
                 add_entry(list, self->angles + i, self->col[k]);
@@ -107,18 +111,53 @@ static triple curvature_along(const plant *self, const double g[FEATURES], doubl
 static void hessian(const plant *self, const double g[FEATURES], const double *weight, double *values)
 {
     reference_hessian(&self->gait, self->on_phi, self->on_v, self->on_ubar, values);
-    for (int k = 0; k < GAIT_INPUTS; k++) {
-        double by_all[GAIT_INPUTS];
+    for (int k = GAIT_PAIRS; k < GAIT_PAIRS + (self->n_shape - GAIT_INPUTS) * self->n_curved; k++)
+        values[k] = 0; // linear in the others
+    for (int k = 0; k < self->n_shape; k++) {
+        double by_all[STEERED_INPUTS];
         const triple row = curvature_along(self, g, weight[self->power], tangent(self, k));
         reference_gradient(&self->gait, row.phi, row.v, row.ubar, by_all);
-        for (int j = 0; j <= k; j++)
+        for (int j = 0; j <= k && j < self->n_curved; j++)
             *values++ += by_all[j];
     }
+}
+
+// The offset, v_n's neighbour in the state, and its rate.
+static void offset_rates(const plant *self, double *out)
+{
+    out[self->offset] = self->in[self->offset + 1];
+    out[self->offset + 1] = self->in[self->offset + 2];
+}
+
+static double *offset_jacobian(const plant *self, double *values)
+{
+    (void)self;
+    *values++ = 1;
+    *values++ = 1;
+    return values;
+}
+
+static void offset_pattern(const plant *self, entries *list)
+{
+    add_entry(list, self->offset, self->offset + 1);
+    add_entry(list, self->offset + 1, self->offset + 2);
 }
 
 const plant_form plant_on_gait = {
     .shape = shape,
     .pull_back = pull_back,
+    .force_jacobian = force_jacobian,
+    .angle_jacobian = angle_jacobian,
+    .angle_pattern = angle_pattern,
+    .hessian = hessian,
+};
+
+const plant_form plant_steered = {
+    .shape = shape,
+    .pull_back = pull_back,
+    .joint_rates = offset_rates,
+    .joint_rates_jacobian = offset_jacobian,
+    .joint_rates_pattern = offset_pattern,
     .force_jacobian = force_jacobian,
     .angle_jacobian = angle_jacobian,
     .angle_pattern = angle_pattern,

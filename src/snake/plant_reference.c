@@ -3,12 +3,16 @@
 
 #include <math.h>
 
-void reference_set(reference *at, const double p[GAIT_INPUTS])
+void reference_set(reference *at, const double *p)
 {
     at->a = p[GAIT_A];
     at->omega = p[GAIT_OMEGA];
-    at->phi_0 = p[GAIT_PHI_0];
     at->t = p[GAIT_T];
+    at->offset[0] = p[GAIT_PHI_0];
+    if (at->n_inputs == STEERED_INPUTS) {
+        at->offset[1] = p[GAIT_DPHI_0];
+        at->offset[2] = p[GAIT_DDPHI_0];
+    }
     for (int i = 0; i < at->n; i++) {
         const double argument = p[GAIT_OMEGA] * p[GAIT_T] + i * p[GAIT_DELTA];
         at->sine[i] = sin(argument);
@@ -20,30 +24,40 @@ void reference_values(const reference *at, double *phi, double *v, double *acc)
 {
     const double a_omega = at->a * at->omega;
     for (int i = 0; i < at->n; i++) {
-        phi[i] = at->a * at->sine[i] + at->phi_0;
-        v[i] = a_omega * at->cosine[i];
-        acc[i] = -a_omega * at->omega * at->sine[i];
+        phi[i] = at->a * at->sine[i] + at->offset[0];
+        v[i] = a_omega * at->cosine[i] + at->offset[1];
+        acc[i] = -a_omega * at->omega * at->sine[i] + at->offset[2];
     }
 }
 
-// Every input makes the wave grow, turns its phase (at a rate linear in i), shifts it or, omega alone, speeds it up.
+// Every input makes the wave grow, turns its phase (at a rate linear in i), shifts it or its derivatives or, omega
+// alone, speeds it up.
 void reference_tangent(const reference *at, int input, double *phi, double *v, double *acc)
 {
     const double a = at->a, omega = at->omega;
-    const double grow = input == GAIT_A, shift = input == GAIT_PHI_0, faster = input == GAIT_OMEGA ? a : 0;
+    const double grow = input == GAIT_A, faster = input == GAIT_OMEGA ? a : 0;
     const double turn = input == GAIT_OMEGA ? a * at->t : input == GAIT_T ? a * omega : 0;
     const double turn_by_i = input == GAIT_DELTA ? a : 0;
+    const double shift = input == GAIT_PHI_0, drift = input == GAIT_DPHI_0, push = input == GAIT_DDPHI_0;
     for (int i = 0; i < at->n; i++) {
         const double S = at->sine[i], C = at->cosine[i], turn_i = turn + turn_by_i * i;
         const double wave = grow * S + turn_i * C;
         phi[i] = wave + shift;
-        v[i] = omega * (grow * C - turn_i * S) + faster * C;
-        acc[i] = -omega * (omega * wave + 2 * faster * S);
+        v[i] = omega * (grow * C - turn_i * S) + faster * C + drift;
+        acc[i] = -omega * (omega * wave + 2 * faster * S) + push;
     }
 }
 
+static double sum_of(int n, const double *x)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += x[i];
+    return sum;
+}
+
 void reference_gradient(const reference *at, const double *on_phi, const double *on_v, const double *on_acc,
-                        double gradient[GAIT_INPUTS])
+                        double *gradient)
 {
     const double a = at->a, omega = at->omega;
     double by_a = 0, by_omega = 0, by_delta = 0, by_phi_0 = 0, by_phase = 0; // phase: omega t, where it stands in (25)
@@ -62,6 +76,10 @@ void reference_gradient(const reference *at, const double *on_phi, const double 
     gradient[GAIT_DELTA] = a * by_delta;
     gradient[GAIT_PHI_0] = by_phi_0;
     gradient[GAIT_T] = a * omega * by_phase;
+    if (at->n_inputs == STEERED_INPUTS) {
+        gradient[GAIT_DPHI_0] = sum_of(at->n, on_v);
+        gradient[GAIT_DDPHI_0] = sum_of(at->n, on_acc);
+    }
 }
 
 // Sums over the joints of which every second derivative consists, per unit of a. Phase stands for omega t; where a

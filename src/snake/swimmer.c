@@ -15,6 +15,11 @@ struct moray_swimmer {
     double *reference; // phi, phi_ref and their rates, N-1 each
 };
 
+static const snake_model *model_of(moray_model model)
+{
+    return model == MORAY_CONTROL_ORIENTED ? &control_model : &complex_model;
+}
+
 moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model)
 {
     *swimmer = NULL;
@@ -24,7 +29,7 @@ moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot
         return moray_error(MORAY_MEMORY, "a swimmer of %d links: no memory", robot->links);
     made->robot = made->read = *robot;
     made->kind = model;
-    made->model = model == MORAY_CONTROL_ORIENTED ? &control_model : &complex_model;
+    made->model = model_of(model);
     made->scratch = malloc(made->model->scratch_bytes(robot->links));
     made->reference = malloc(4 * (size_t)(robot->links - 1) * sizeof(double));
     if (made->scratch == NULL || made->reference == NULL) {
@@ -81,6 +86,20 @@ void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, 
 void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi)
 {
     swimmer->model->joints(swimmer->robot.links, x, phi, v_phi);
+}
+
+void moray_state_body(moray_model model, int links, const double *x, double body[6])
+{
+    model_of(model)->body(links, x, body);
+}
+
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
+                           double *x)
+{
+    const int n = swimmer->robot.links - 1;
+    double *phi = swimmer->reference, *v_phi = phi + n;
+    moray_gait_reference(gait, n, t, phi, v_phi, v_phi + n);
+    swimmer->model->assemble(n + 1, phi, v_phi, body, x);
 }
 
 static bool all_finite(const double *values, int n)

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// Orbits about the oblate Earth in modified equinoctial elements (p, f, g, h, k, L), in feet and seconds (Betts 2001,
+// sec. 5.3; constants as there).
+#ifndef ORBIT_H
+#define ORBIT_H
+
+#include "moray/ocp.h"
+
+// Rates of the elements under the accelerations delta (radial, transverse, normal) besides the oblate Earth's.
+void orbit_rates(const moray_num *element, const moray_num *delta, moray_num *rate);
+
+// Radial and transverse velocity.
+void orbit_velocity(const moray_num *element, moray_num *radial, moray_num *transverse);
+
+// A start by simulation: x[n], n <= 8, carried from time 0 to `time` by the dynamics under constant controls and
+// parameters, with 400 steps of the classical Runge-Kutta method.
+void orbit_propagate(moray_continuous_fn *dynamics, int n, double *x, const moray_num *u, const moray_num *s,
+                     double time);
+
+#endif

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+//
+// Space shuttle re-entry (Betts 2001, sec. 5.1): the largest cross range, without a limit on heating.
+//
+//   maximise latitude theta(tf)
+//   h' = v sin gamma,  phi' = v / r cos gamma sin psi / cos theta,  theta' = v / r cos gamma cos psi
+//   v' = -D / m - g sin gamma
+//   gamma' = L / (m v) cos beta + cos gamma (v / r - g / v)
+//   psi' = L sin beta / (m v cos gamma) + v / (r cos theta) cos gamma sin psi sin theta
+//   r = Re + h, g = mu / r^2, rho = rho0 exp(-h / hr), L, D = (cL, cD) S rho v^2 / 2
+//   cL = a0 + a1 alpha, cD = b0 + b1 alpha + b2 alpha^2 (alpha in degrees), -90 <= alpha <= 90, -90 <= beta <= 1 deg
+//   (260000 ft, 0, 0, 25600 ft/s, -1 deg, 90 deg) to h = 80000 ft, v = 2500 ft/s, gamma = -5 deg
+//                                                                                       theta(tf) = 34.1412 deg
+#include <math.h>
+#include <tgmath.h>
+
+#include "classics.h"
+
+static const double degree = M_PI / 180;
+static const double Re = 20902900, mu = 0.14076539e17, rho0 = 0.002378, hr = 23800, S = 2690, m = 203000 / 32.174;
+static const double a0 = -0.20704, a1 = 0.029244, b0 = 0.07854, b1 = -0.61592e-2, b2 = 0.621408e-3;
+
+static void reenter(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num theta = at->x[2], v = at->x[3], gamma = at->x[4], psi = at->x[5], beta = at->u[1];
+    const moray_num r = Re + at->x[0], g = mu / (r * r), alpha = at->u[0] / degree;
+    const moray_num pressure = rho0 * exp(-at->x[0] / hr) * v * v / 2;
+    const moray_num L = (a0 + a1 * alpha) * S * pressure, D = (b0 + b1 * alpha + b2 * alpha * alpha) * S * pressure;
+    out->f[0] = v * sin(gamma);
+    out->f[1] = v / r * cos(gamma) * sin(psi) / cos(theta);
+    out->f[2] = v / r * cos(gamma) * cos(psi);
+    out->f[3] = -D / m - g * sin(gamma);
+    out->f[4] = L / (m * v) * cos(beta) + cos(gamma) * (v / r - g / v);
+    out->f[5] = L * sin(beta) / (m * v * cos(gamma)) + v / (r * cos(theta)) * cos(gamma) * sin(psi) * sin(theta);
+}
+
+static void cross_range(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = -at->phase[0].xf[2] / degree;
+}
+
+static moray_status build(moray_ocp **ocp, const void *data)
+{
+    (void)data;
+    const moray_bounds upright = moray_between(-89 * degree, 89 * degree);
+    const moray_phase_spec phase = {
+        .name = "entry",
+        .nx = 6,
+        .nu = 2,
+        .continuous = reenter,
+        .t0 = moray_fixed(0),
+        .tf = moray_between(100, 4000),
+        .x = MORAY_BOUNDS(moray_between(0, 300000), moray_free(), upright, moray_between(1, 40000), upright,
+                          moray_between(-M_PI, M_PI)),
+        .x0 = MORAY_BOUNDS(moray_fixed(260000), moray_fixed(0), moray_fixed(0), moray_fixed(25600),
+                           moray_fixed(-1 * degree), moray_fixed(90 * degree)),
+        .xf = MORAY_BOUNDS(moray_fixed(80000), moray_free(), moray_free(), moray_fixed(2500), moray_fixed(-5 * degree),
+                           moray_free()),
+        .u = MORAY_BOUNDS(moray_between(-90 * degree, 90 * degree), moray_between(-90 * degree, 1 * degree))};
+    return moray_ocp_new(ocp,
+                         &(moray_ocp_spec){.name = "shuttle", .phases = 1, .phase = &phase, .endpoint = cross_range});
+}
+
+// Straight where both ends are given, else as at the beginning; no lift control; 2000 s.
+static double start(int phase, double tau, double *x, double *u, const void *data)
+{
+    (void)phase;
+    (void)data;
+    x[0] = 260000 - 180000 * tau;
+    x[1] = x[2] = 0;
+    x[3] = 25600 - 23100 * tau;
+    x[4] = (-1 - 4 * tau) * degree;
+    x[5] = 90 * degree;
+    u[0] = u[1] = 0;
+    return 2000 * tau;
+}
+
+const struct classic classic_shuttle = {.name = "shuttle",
+                                        .title = "Space shuttle re-entry",
+                                        .source = "Betts 2001, 5.1",
+                                        .published = "34.1412",
+                                        .sign = -1,
+                                        .build = build,
+                                        .start = start,
+                                        .scheme = "gauss3",
+                                        .intervals = 40};
