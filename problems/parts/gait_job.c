@@ -6,7 +6,7 @@
 
 static const char *const joint_forms[] = {"on-gait", "closed-loop", NULL};
 
-static const moray_option shared[] = {
+const moray_option gait_job_options[GAIT_JOB_OPTIONS] = {
     GAIT_RANGE("theta_max_deg", theta_max, 0, 89, "deg", "link-angle amplitude of (24)"),
     GAIT_RANGE("omega_deg_s", omega, 1, 3600, "deg/s", "gait frequency"),
     GAIT_RANGE("delta_deg", delta, 1, 179, "deg", "phase shift between joints"),
@@ -34,12 +34,12 @@ static const moray_option shared[] = {
      .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"},
 };
 
-enum { n_shared = sizeof shared / sizeof *shared, most_options = n_shared + 10 };
+enum { most_options = GAIT_JOB_OPTIONS + 10 };
 
 // A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
 enum { usual_intervals = 12, effort_intervals = 60 };
 
-static gait_job defaults(const gait_program *program)
+gait_job gait_job_defaults(const gait_program *program)
 {
     gait_job job = {.common = moray_common_defaults(),
                     .name = program->name,
@@ -73,20 +73,30 @@ static moray_status speed_demand(const gait_job *job, stage *at)
     return moray_ok();
 }
 
-static moray_status optimise_and_prove(gait_job *job, moray_model model, const gait_starts *known)
+moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at)
 {
-    stage *at = &job->stage[model];
     at->model = model;
     at->power = isnan(job->power) ? job->paper.steady[model].power : job->power;
-    MORAY_TRY(speed_demand(job, at));
-    MORAY_TRY(gait_job_optimise(job, at, known));
+    return speed_demand(job, at);
+}
+
+moray_status gait_job_prove(gait_job *job, stage *at)
+{
     moray_ticker_show(&job->ticker, "%s: the optimised gait on both models", job->name);
-    MORAY_TRY(moray_gait_trial_run(&job->basin, &at->promise.gait, model, &at->trial));
+    MORAY_TRY(moray_gait_trial_run(&job->basin, &at->promise.gait, at->model, &at->trial));
     at->gain = moray_gait_gain_over(&job->basin, &at->trial, &job->paper);
     return moray_ok();
 }
 
-static moray_status work(gait_job *job)
+static moray_status optimise_and_prove(gait_job *job, moray_model model, const gait_starts *known)
+{
+    stage *at = &job->stage[model];
+    MORAY_TRY(gait_job_demand(job, model, at));
+    MORAY_TRY(gait_job_optimise(job, at, known));
+    return gait_job_prove(job, at);
+}
+
+moray_status gait_job_prepare(gait_job *job)
 {
     const moray_gait paper = moray_gait_paper(&job->common.robot);
     moray_family family;
@@ -96,7 +106,12 @@ static moray_status work(gait_job *job)
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     MORAY_TRY(moray_basin_new(&job->basin, &job->common.robot, job->common.current, job->common.course));
     moray_ticker_show(&job->ticker, "%s: the paper's gait on both models", job->name);
-    MORAY_TRY(moray_gait_trial_run(&job->basin, &paper, MORAY_CONTROL_ORIENTED, &job->paper));
+    return moray_gait_trial_run(&job->basin, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
+}
+
+static moray_status work(gait_job *job)
+{
+    MORAY_TRY(gait_job_prepare(job));
     const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
     MORAY_TRY(optimise_and_prove(job, MORAY_CONTROL_ORIENTED, &one));
     if (job->common.model == MORAY_CONTROL_ORIENTED)
@@ -115,25 +130,31 @@ static bool certified(const gait_job *job)
     return pass;
 }
 
-static void release(gait_job *job)
+void gait_job_stage_free(stage *at)
 {
-    for (int model = 0; model < 2; model++) {
-        moray_solution_free(job->stage[model].solution);
-        moray_gait_problem_free(job->stage[model].problem);
-    }
+    moray_solution_free(at->solution);
+    moray_gait_problem_free(at->problem);
+    at->solution = NULL;
+    at->problem = NULL;
+}
+
+void gait_job_free(gait_job *job)
+{
+    for (int model = 0; model < 2; model++)
+        gait_job_stage_free(&job->stage[model]);
     moray_basin_free(&job->basin);
 }
 
 int gait_job_main(const gait_program *program, int argc, char **argv)
 {
     moray_option options[most_options];
-    memcpy(options, shared, sizeof shared);
-    memcpy(options + n_shared, program->options, (size_t)program->n_options * sizeof *options);
+    memcpy(options, gait_job_options, sizeof gait_job_options);
+    memcpy(options + GAIT_JOB_OPTIONS, program->options, (size_t)program->n_options * sizeof *options);
     const moray_program app = {.name = program->name,
                                .summary = program->summary,
                                .options = options,
-                               .n_options = n_shared + program->n_options};
-    gait_job job = defaults(program);
+                               .n_options = GAIT_JOB_OPTIONS + program->n_options};
+    gait_job job = gait_job_defaults(program);
     int exit_code;
     if (!moray_app_start(&app, argc, argv, &job, &exit_code))
         return exit_code;
@@ -147,6 +168,6 @@ int gait_job_main(const gait_program *program, int argc, char **argv)
     exit_code = moray_app_end(&app, &job, status);
     if (exit_code == MORAY_EXIT_SOLVED && !certified(&job))
         exit_code = MORAY_EXIT_CERTIFICATE;
-    release(&job);
+    gait_job_free(&job);
     return exit_code;
 }

@@ -69,13 +69,32 @@ int gait_job_main(const gait_program *program, int argc, char **argv);
 
 // ---- Pieces --------------------------------------------------------------------------------------------------------
 
+enum { GAIT_JOB_OPTIONS = 10 }; // of every gait job
+extern const moray_option gait_job_options[GAIT_JOB_OPTIONS];
+
+gait_job gait_job_defaults(const gait_program *program);
+
+// Swims the paper's gait. Error: that of moray_scheme_parse, moray_basin_new or moray_gait_trial_run.
+moray_status gait_job_prepare(gait_job *job);
+
+// Sets model, power and speed of a stage. Error: MORAY_NOT_SOLVED where the paper's gait, which makes the default
+// speed, fails.
+moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at);
+
+void gait_job_stage_free(stage *at);
+void gait_job_free(gait_job *job);
+
 // Known gaits of a model to start from.
 typedef struct gait_starts {
     moray_gait gait[2];
     int n;
 } gait_starts;
 
-// Builds the problem of at->model with the limits of job and at. Error: those of moray_gait_problem_new.
+// The problem of at->model with the limits of job and at.
+moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
+                                      const double current[2]);
+
+// Builds it. Error: those of moray_gait_problem_new.
 moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
                               moray_gait_problem **problem);
 
@@ -83,9 +102,28 @@ moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_g
 moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
                             moray_solution **solution);
 
+// Solves from an orbit of the gait. Error: those of moray_solve.
+moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,
+                                 const moray_swim_track *orbit, moray_solution **solution);
+
+moray_gait gait_job_random(const gait_job *job, moray_model model); // by drand48, within the limits of the gait
+
+// Certificate of a stage's solution. Error: those of moray_certify.
+moray_status gait_job_certify(gait_job *job, stage *at);
+
+// Swims the promised gait on both models, and compares it with the paper's. Error: those of moray_gait_trial_run.
+moray_status gait_job_prove(gait_job *job, stage *at);
+
 // Problem, best solution from the starts and random ones, promise and certificate of a stage whose model, power and
 // speed are set. Error: MORAY_NOT_SOLVED saying why, MORAY_INTERRUPTED, and those of the above.
 moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known);
+
+// Parts of the summary: what the job is, and one stage.
+void gait_job_json_head(moray_json *json, const gait_job *job);
+void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at);
+
+// trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
+moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);
 
 // The summary; moray_json_free it.
 moray_json *gait_job_json(const gait_job *job);

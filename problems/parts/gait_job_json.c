@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gait_job.h"
 
-static void json_head(moray_json *json, const gait_job *job)
+void gait_job_json_head(moray_json *json, const gait_job *job)
 {
     moray_json_text(json, "problem", job->name);
     moray_json_text(json, "version", moray_version());
@@ -44,7 +44,7 @@ static void json_solver(moray_json *json, const stage *at)
     moray_certificate_to_json(json, &at->certificate);
 }
 
-static void json_stage(moray_json *json, const gait_job *job, const stage *at)
+void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
 {
     moray_json_number(json, "power_limit_W", at->power);
     moray_json_number(json, "least_course_speed_m_s", at->speed);
@@ -59,8 +59,8 @@ static void json_stage(moray_json *json, const gait_job *job, const stage *at)
 moray_json *gait_job_json(const gait_job *job)
 {
     moray_json *json = moray_json_new();
-    json_head(json, job);
-    json_stage(json, job, last_stage(job));
+    gait_job_json_head(json, job);
+    gait_job_json_stage(json, job, last_stage(job));
     moray_json_open(json, "baseline");
     moray_gait_to_json(json, "gait", &job->common.robot, job->paper.gait);
     moray_steady_to_json(json, "predicted", MORAY_CONTROL_ORIENTED, &job->paper, job->common.course);
@@ -68,7 +68,7 @@ moray_json *gait_job_json(const gait_job *job)
     moray_json_close(json);
     if (job->common.model == MORAY_FIRST_PRINCIPLES) {
         moray_json_open(json, "control_oriented_optimum");
-        json_stage(json, job, &job->stage[MORAY_CONTROL_ORIENTED]);
+        gait_job_json_stage(json, job, &job->stage[MORAY_CONTROL_ORIENTED]);
         moray_json_close(json);
     }
     return json;

@@ -136,9 +136,9 @@ static void print_tables(const gait_job *job)
 enum { samples = 201 };
 
 // The optimal orbit over one period: time, states, joint coordinates of (25).
-static moray_status write_trajectory(const gait_job *job, moray_output *output)
+moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output)
 {
-    const bool control = job->common.model == MORAY_CONTROL_ORIENTED;
+    const bool control = at->model == MORAY_CONTROL_ORIENTED;
     const char *const names[2][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
                                      {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
     const char *const units[] = {"rad", "m", "m", "rad/s", "m/s", "m/s"};
@@ -151,14 +151,14 @@ static moray_status write_trajectory(const gait_job *job, moray_output *output)
     char(*joint_names)[16] = calloc((size_t)joints, sizeof *joint_names);
     moray_status status = data && columns && joint_names ? moray_ok() : moray_error(MORAY_MEMORY, "no memory");
     double t0, tf, *x = data + samples * width, *phi = x + states;
-    moray_solution_times(last_stage(job)->solution, 0, &t0, &tf);
+    moray_solution_times(at->solution, 0, &t0, &tf);
     for (int k = 0; k < samples && !moray_failed(status); k++) {
         double *row = data + k * width;
         row[0] = t0 + (tf - t0) * k / (samples - 1);
-        moray_solution_at(last_stage(job)->solution, 0, row[0], x, NULL);
+        moray_solution_at(at->solution, 0, row[0], x, NULL);
         memcpy(row + 1, x + full, 3 * sizeof *row);
         memcpy(row + 4, x + states - 3, 3 * sizeof *row);
-        moray_gait_reference(&last_stage(job)->promise.gait, joints, row[0], phi, phi + joints, phi + 2 * joints);
+        moray_gait_reference(&at->promise.gait, joints, row[0], phi, phi + joints, phi + 2 * joints);
         memcpy(row + 7, phi, (size_t)joints * sizeof *row);
     }
     for (int j = 0; j < width && !moray_failed(status); j++) {
@@ -223,7 +223,7 @@ static moray_status write_files(const gait_job *job, const moray_json *json)
     FILE *file;
     MORAY_TRY(moray_output_file(output, "summary.json", &file));
     MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(write_trajectory(job, output));
+    MORAY_TRY(gait_job_trajectory(job, last_stage(job), output));
     moray_status figure = draw_start(job, output);
     if (moray_failed(figure) && !job->common.quiet)
         fprintf(stderr, "%s: no figure: %s\n", job->name, figure.text);

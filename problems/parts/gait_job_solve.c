@@ -9,12 +9,12 @@ static double limit(double value)
 }
 
 // The joints' own limits and form are those of --model.
-moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
-                              moray_gait_problem **problem)
+moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
+                                      const double current[2])
 {
     const bool revolute = at->model == MORAY_FIRST_PRINCIPLES, own = at->model == job->common.model;
     const double *offset = revolute ? job->offset_angle : job->offset;
-    const moray_gait_problem_spec spec = {
+    return (moray_gait_problem_spec){
         .robot = job->common.robot,
         .model = at->model,
         .goal = goal,
@@ -30,6 +30,12 @@ moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_g
                    .joint_rate = own ? limit(job->joint_rate * (revolute ? DEG : 1)) : MORAY_INFINITY,
                    .joint_effort = own ? limit(job->joint_effort) : MORAY_INFINITY,
                    .course_speed = goal == MORAY_GAIT_THRIFTIEST ? at->speed : 0}};
+}
+
+moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
+                              moray_gait_problem **problem)
+{
+    const moray_gait_problem_spec spec = gait_job_spec(job, at, goal, current);
     return moray_gait_problem_new(problem, &spec);
 }
 
@@ -45,9 +51,8 @@ static bool show_iteration(void *observer, const moray_progress *at)
     return !moray_interrupted();
 }
 
-// The orbit is swum straight along the course where the gait cannot hold it.
-moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
-                            moray_solution **solution)
+moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,
+                                 const moray_swim_track *orbit, moray_solution **solution)
 {
     const moray_settings settings = {.scheme = job->common.scheme,
                                      .intervals = job->common.intervals,
@@ -58,6 +63,13 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
                                      .own_scaling = true,
                                      .progress = show_iteration,
                                      .observer = job};
+    return moray_gait_problem_solve(problem, &settings, gait, orbit, solution);
+}
+
+// The orbit is swum straight along the course where the gait cannot hold it.
+moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
+                            moray_solution **solution)
+{
     const moray_swim_setup setup = moray_basin_setup(&job->basin, at->model);
     moray_steady steady;
     moray_swim_track orbit = {0};
@@ -65,7 +77,7 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
     const double heading = moray_failed(status) ? job->common.course : steady.start_heading;
     status = moray_swim_steady(&setup, gait, heading, &steady, &orbit, 101);
     if (!moray_failed(status))
-        status = moray_gait_problem_solve(problem, &settings, gait, &orbit, solution);
+        status = gait_job_solve_from(job, problem, gait, &orbit, solution);
     moray_swim_track_free(&orbit);
     return status;
 }
@@ -75,7 +87,7 @@ static double uniform(double low, double high)
     return low + (high - low) * drand48();
 }
 
-static moray_gait random_gait(const gait_job *job, moray_model model)
+moray_gait gait_job_random(const gait_job *job, moray_model model)
 {
     const double theta_max = uniform(job->theta_max[0], job->theta_max[1]);
     moray_gait gait = {.omega = uniform(job->omega[0], job->omega[1]), .delta = uniform(job->delta[0], job->delta[1])};
@@ -126,7 +138,7 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
     srand48(1);
     at->starts = known->n + random;
     for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
-        const moray_gait gait = tapered(job, k < known->n ? known->gait[k] : random_gait(job, at->model));
+        const moray_gait gait = tapered(job, k < known->n ? known->gait[k] : gait_job_random(job, at->model));
         moray_solution *solution = NULL;
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
         if (!moray_failed(status))
@@ -184,6 +196,12 @@ static moray_status explain_failure(gait_job *job, const stage *at)
     return explain_no_way(job, at);
 }
 
+moray_status gait_job_certify(gait_job *job, stage *at)
+{
+    const moray_integrator integrator = moray_sim_integrator(&job->basin.settings.sim);
+    return moray_certify(at->solution, &integrator, &at->certificate);
+}
+
 moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known)
 {
     MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
@@ -193,6 +211,5 @@ moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *know
     at->promise = moray_gait_problem_promise(at->problem, at->solution);
     if (!solved(at->solution) || at->promise.course_speed <= 0)
         return explain_failure(job, at);
-    const moray_integrator integrator = moray_sim_integrator(&job->basin.settings.sim);
-    return moray_certify(at->solution, &integrator, &at->certificate);
+    return gait_job_certify(job, at);
 }

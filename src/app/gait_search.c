@@ -41,6 +41,14 @@ static moray_status check(const moray_gait_problem_spec *spec)
     return moray_ok();
 }
 
+// As many as write_limits writes.
+static int count_limits(const moray_gait_problem_spec *spec)
+{
+    const moray_gait_limits *limits = &spec->limits;
+    return limited(limits->power) + limited(limits->joint_rate) + limited(limits->joint_effort) +
+           (limits->course_speed > 0) + (flows(spec) ? 2 : 0);
+}
+
 moray_status moray_gait_search_new(moray_gait_search **result, const moray_gait_problem_spec *spec, const char *scheme,
                                    int intervals)
 {
@@ -56,8 +64,7 @@ moray_status moray_gait_search_new(moray_gait_search **result, const moray_gait_
         search->lower[j] = bounds[j].lower;
         search->upper[j] = bounds[j].upper;
     }
-    search->limits =
-        limited(limits->power) + limited(limits->joint_rate) + limited(limits->joint_effort) + (flows(spec) ? 2 : 0);
+    search->limits = count_limits(spec);
     moray_orbit_spec orbit = moray_orbit_spec_default(&spec->robot, spec->model);
     memcpy(orbit.current, spec->current, sizeof orbit.current);
     orbit.course = spec->course;

@@ -206,7 +206,7 @@ static bool set_sub_methods(nlopt_opt opt, const moray_search_problem *p, const 
               nlopt_set_local_optimizer(global, local) > 0 &&
               nlopt_set_population(global, (unsigned)settings->population) > 0;
     if (middle) // it stops by the count alone, which the rounds of the Lagrangian share
-        ok = ok && nlopt_set_maxeval(middle, 1 + settings->max_evaluations / 8) > 0 &&
+        ok = ok && nlopt_set_maxeval(middle, 1 + settings->max_evaluations / 4) > 0 &&
              nlopt_set_local_optimizer(opt, middle) > 0;
     nlopt_destroy(middle);
     nlopt_destroy(local);
