@@ -75,9 +75,9 @@ typedef struct moray_heading_plan {
 
 // Solves; start and undulation of the spec are set by this, t0 is 0. Starts from the plan `from` (of any model,
 // averaged or not; its gait is where the search begins), or with NULL from the reference as though it were followed by
-// `gait`. Where the gait is free the cruise is found again and the plan made anew until they agree. Errors: those of
-// moray_heading_new, moray_cruise_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or not. Free
-// with moray_heading_plan_free.
+// `gait`, which may be NULL otherwise. Where the gait is free the cruise is found again and the plan made anew until
+// they agree. Errors: those of moray_heading_new, moray_cruise_find and moray_solve. Returns MORAY_OK whenever the
+// solver ran, solved or not. Free with moray_heading_plan_free.
 moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
                                      const moray_settings *settings, const moray_gait *gait,
                                      const moray_heading_plan *from);

@@ -76,6 +76,11 @@ void moray_swim_track_free(moray_swim_track *track); // safe on a zeroed track, 
 // A moray_swim_observer with a moray_swim_track as `self`: adds the sample; false when the track is full.
 bool moray_swim_track_add(const moray_swim_sample *sample, void *track);
 
+// The robot drawn along a track of at least two samples, at equal intervals of time, as often as there is room: points
+// x[n], y[n] of strokes along the links, each stroke followed by a NaN. y is part of x; free(*x). Error: MORAY_MEMORY.
+moray_status moray_swim_outline(const moray_swim_track *track, const moray_swimmer *swimmer, double **x, double **y,
+                                int *n);
+
 // ---- Steady swimming ------------------------------------------------------------------------------------------------
 
 typedef struct moray_swim_settings {

@@ -21,45 +21,12 @@ static moray_status draw(const simulate *run, const moray_figure *figure)
 
 // ---- Path ----------------------------------------------------------------------------------------------------------
 
-static double path_length(const moray_swim_track *track)
-{
-    double length = 0;
-    for (int k = 1; k < track->n; k++)
-        length += hypot(track->pose[k].p_x - track->pose[k - 1].p_x, track->pose[k].p_y - track->pose[k - 1].p_y);
-    return length;
-}
-
-// As many robots as fit on the path with room between them.
-static int count_robots(const moray_swim_track *track, const moray_robot *robot)
-{
-    const double fit = path_length(track) / (1.5 * 2 * robot->l * robot->links);
-    return fit < 2 ? 2 : fit > 12 ? 12 : (int)fit;
-}
-
-// The links of sample k as strokes, each interrupted by a NaN: the prismatic joints leave gaps between them.
-static void trace_links(const simulate_results *results, int k, double *scratch, double *x, double *y)
-{
-    const moray_robot *robot = moray_swimmer_robot(results->swimmer);
-    const int N = robot->links;
-    double *x_i = scratch, *y_i = scratch + N, *angle = scratch + 2 * N;
-    moray_swimmer_links(results->swimmer, results->track.x + (size_t)k * results->track.n_states, x_i, y_i, angle);
-    for (int i = 0; i < N; i++)
-        for (int point = 0; point < 3; point++) {
-            const double along = point == 0 ? -robot->l : point == 1 ? robot->l : NAN;
-            x[3 * i + point] = x_i[i] + along * cos(angle[i]);
-            y[3 * i + point] = y_i[i] + along * sin(angle[i]);
-        }
-}
-
 static moray_status draw_path(const simulate *run, const simulate_results *results)
 {
     const moray_swim_track *track = &results->track;
-    const int N = run->common.robot.links, robots = count_robots(track, &run->common.robot), n = 3 * N * robots;
-    double *x = malloc((size_t)(2 * n + 3 * N) * sizeof *x), *y = x + n;
-    if (!x)
-        return no_memory();
-    for (int i = 0; i < robots; i++)
-        trace_links(results, (int)((double)(track->n - 1) * i / (robots - 1)), y + n, x + 3 * N * i, y + 3 * N * i);
+    double *x, *y;
+    int n;
+    MORAY_TRY(moray_swim_outline(track, results->swimmer, &x, &y, &n));
     const moray_curve curves[] = {{.label = "robot, at equal intervals of time", .x = x, .y = y, .n = n},
                                   {.label = "centre of mass",
                                    .x = &track->pose->p_x,

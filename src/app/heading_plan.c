@@ -168,7 +168,9 @@ moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_headi
                                      const moray_heading_plan *from)
 {
     moray_heading_spec own = *spec;
-    moray_gait start = *gait;
+    moray_gait start;
+    if (gait)
+        start = *gait;
     if (from) {
         start = moray_steering_gait(moray_solution_parameters(from->solution));
         start = moray_gait_map(&spec->robot, &start, from->cruise.model, spec->model);

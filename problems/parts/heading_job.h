@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#ifndef PARTS_HEADING_JOB_H
+#define PARTS_HEADING_JOB_H
+
+#include "steer.h"
+
+// How the robot is steered in a trial.
+typedef enum {
+    HEADING_FEEDBACK, // phi_0 = k (theta_ref - theta), perhaps of theta_ref ahead of its time
+    HEADING_PLAN,     // a plan, blindly
+    HEADING_BOTH,     // a plan, and k (theta_plan - theta)
+    HEADING_RECEDING  // plans made anew from the measured state
+} heading_law;
+
+enum { HEADING_TRIALS = 10, HEADING_GAITS = 3 }; // gaits: the paper's, those of the two plans
+
+// One way of steering, on both models.
+typedef struct heading_trial {
+    const char *name;
+    heading_law law;
+    int gait;                     // swum
+    moray_model plan;             // whose plan
+    bool preview;                 // the reference is known ahead
+    double gain, lead;            // [m/rad of the control-oriented model], [s]
+    int evaluations;              // spent on tuning these
+    moray_heading_score score[2]; // by the model swum on
+    moray_recede_record record[2];
+} heading_trial;
+
+typedef struct heading_job {
+    moray_common common; // model: of the last plan; with complex there is one on the control-oriented model before
+    char reference_text[MORAY_PATH_SIZE];
+    double horizon; // [s]
+    steer_input input;
+    double weight_power, weight_steering;
+    double max_error;
+    int intervals_per_period, refinements;
+    double replan_periods, look_ahead_periods;
+    bool recede;
+    int evaluations;
+    // found along the way
+    moray_reference reference;
+    moray_cruise cruise[HEADING_GAITS][2]; // by the model swum on
+    moray_heading_plan averaged, plan[2];
+    moray_certificate certificate[2];
+    double turn_rate; // sustained at the limit of the offset, by the model of the last plan [rad/s]
+    heading_trial trial[HEADING_TRIALS];
+    int n_trials;
+    moray_ticker ticker;
+} heading_job;
+
+static inline const moray_heading_plan *heading_last_plan(const heading_job *job)
+{
+    return &job->plan[job->common.model];
+}
+
+// Plans: averaged, control-oriented, and with the complex model first-principles. Error: MORAY_NOT_SOLVED saying what
+// limits the robot, MORAY_INTERRUPTED, and those of moray_heading_plan_make.
+moray_status heading_make_plans(heading_job *job);
+
+// Limits of the model, with the gait that is swum where `gait` is not NULL.
+moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool averaged);
+
+// What keeps the robot from following more closely, in one paragraph.
+void heading_explain(const heading_job *job, char *text, size_t size);
+
+// Tunes and swims every trial. Error: those of moray_voyage_run.
+moray_status heading_run_trials(heading_job *job);
+
+// Swims one of them again, to be drawn.
+moray_status heading_swim(const heading_job *job, heading_trial *trial, moray_model model, moray_voyage *voyage);
+
+moray_json *heading_json(const heading_job *job);
+
+// Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
+moray_status heading_report(heading_job *job);
+
+#endif

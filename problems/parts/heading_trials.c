@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "heading_job.h"
+
+static const double look_every = 0.1;             // of a pilot [s]
+static const double rough = 1e-6, careful = 1e-8; // tolerances of simulations
+enum { per_second = 20 };
+
+// ---- Helms
+// ------------------------------------------------------------------------------------------------------------
+
+// What a pilot steers for.
+typedef struct aim {
+    const moray_reference *reference;
+    double lead;
+    const moray_heading_plan *plan;
+} aim;
+
+static double reference_ahead(const moray_swim_sample *sample, void *self)
+{
+    const aim *to = self;
+    double rate;
+    return moray_reference_at(to->reference, sample->t + to->lead, &rate);
+}
+
+static double planned(const moray_swim_sample *sample, void *self)
+{
+    const aim *to = self;
+    double x[MORAY_STEERING_STATES];
+    moray_solution_at(to->plan->solution, 0, sample->t, x, NULL);
+    return moray_cruise_heading(&to->plan->cruise, sample->t, x[0]);
+}
+
+// All that a helm may need, for one trial on one model.
+typedef struct helmsman {
+    aim aim;
+    moray_plan plan;
+    moray_pilot pilot;
+    moray_recede *recede;
+    moray_helm helm;
+} helmsman;
+
+// Offsets of the model per offset of the other, with the trial's gait.
+static double offset_ratio(const heading_job *job, const heading_trial *trial, moray_model from, moray_model to)
+{
+    const moray_cruise *cruise = job->cruise[trial->gait];
+    return from == to ? 1 : -cruise[to].gait.amplitude / cruise[from].gait.amplitude; // erratum E3
+}
+
+static void set_pilot(const heading_job *job, const heading_trial *trial, moray_model model, helmsman *h)
+{
+    const double ratio = offset_ratio(job, trial, MORAY_CONTROL_ORIENTED, model);
+    const bool both = trial->law == HEADING_BOTH;
+    h->aim = (aim){&job->reference, trial->lead, &job->plan[trial->plan]};
+    h->pilot = (moray_pilot){.target = both ? planned : reference_ahead,
+                             .self = &h->aim,
+                             .gain = trial->gain * ratio,
+                             .plan = both ? &h->plan : NULL,
+                             .cruise = &job->cruise[trial->gait][model],
+                             .offset = job->input.offset * fabs(ratio),
+                             .offset_rate = job->input.offset_rate * fabs(ratio),
+                             .period = look_every};
+    h->helm = moray_pilot_helm(&h->pilot);
+}
+
+// Plans of the trial's gait, on a mesh a little coarser than that of the whole plan.
+static moray_status set_receding(const heading_job *job, const heading_trial *trial, moray_model model, helmsman *h)
+{
+    const moray_cruise *planned_cruise = &job->cruise[trial->gait][trial->plan];
+    const double period = 2 * M_PI / planned_cruise->gait.omega;
+    moray_recede_spec spec = {.heading = heading_spec(job, trial->plan, false),
+                              .settings = moray_settings_default(),
+                              .planned = planned_cruise,
+                              .measured = &job->cruise[trial->gait][model],
+                              .scale = offset_ratio(job, trial, trial->plan, model),
+                              .horizon = job->look_ahead_periods * period,
+                              .interval = job->replan_periods * period,
+                              .preview = trial->preview};
+    const moray_gait *gait = &planned_cruise->gait;
+    moray_steering_limits *limits = &spec.heading.limits;
+    const double control_ratio = offset_ratio(job, trial, MORAY_CONTROL_ORIENTED, trial->plan);
+    limits->theta_max =
+        moray_fixed(moray_theta_max_from_amplitude(&job->common.robot, trial->plan, gait->amplitude, gait->delta));
+    limits->omega = moray_fixed(gait->omega);
+    limits->delta = moray_fixed(gait->delta);
+    limits->power = MORAY_INFINITY;
+    limits->offset = job->input.offset * fabs(control_ratio);
+    limits->offset_rate = job->input.offset_rate * fabs(control_ratio);
+    spec.heading.max_error = MORAY_INFINITY;
+    spec.settings.scheme = "radau4";
+    spec.settings.intervals = (int)ceil(4 * job->look_ahead_periods);
+    spec.settings.tolerance = 1e-6;
+    spec.settings.max_iterations = 200;
+    MORAY_TRY(moray_recede_new(&h->recede, &spec));
+    h->helm = moray_recede_helm(h->recede);
+    return moray_ok();
+}
+
+static moray_status set_helm(const heading_job *job, const heading_trial *trial, moray_model model, helmsman *h)
+{
+    *h = (helmsman){.plan = {job->plan[trial->plan].solution, offset_ratio(job, trial, trial->plan, model)}};
+    if (trial->law == HEADING_RECEDING)
+        return set_receding(job, trial, model, h);
+    if (trial->law == HEADING_PLAN)
+        h->helm = moray_plan_helm(&h->plan);
+    else
+        set_pilot(job, trial, model, h);
+    return moray_ok();
+}
+
+// ---- Swimming
+// ---------------------------------------------------------------------------------------------------------
+
+static moray_status swim(const heading_job *job, heading_trial *trial, moray_model model, double tolerance,
+                         moray_voyage *voyage)
+{
+    helmsman h;
+    double rate;
+    MORAY_TRY(set_helm(job, trial, model, &h));
+    const moray_voyage_plan plan = {.robot = &job->common.robot,
+                                    .cruise = &job->cruise[trial->gait][model],
+                                    .heading = moray_reference_at(&job->reference, 0, &rate),
+                                    .current = {job->common.current[0], job->common.current[1]},
+                                    .helm = &h.helm,
+                                    .duration = job->horizon,
+                                    .intervals = (int)ceil(per_second * job->horizon),
+                                    .tolerance = tolerance};
+    const moray_status status = moray_voyage_run(voyage, &plan);
+    if (h.recede)
+        trial->record[model] = *moray_recede_record_of(h.recede);
+    moray_recede_free(h.recede);
+    return status;
+}
+
+moray_status heading_swim(const heading_job *job, heading_trial *trial, moray_model model, moray_voyage *voyage)
+{
+    return swim(job, trial, model, careful, voyage);
+}
+
+static moray_status score(const heading_job *job, heading_trial *trial, moray_model model, double tolerance)
+{
+    moray_voyage voyage;
+    MORAY_TRY(swim(job, trial, model, tolerance, &voyage));
+    trial->score[model] = moray_voyage_heading_score(&voyage, &job->cruise[trial->gait][model], &job->reference);
+    moray_voyage_free(&voyage);
+    return moray_ok();
+}
+
+// ---- Tuning
+// -----------------------------------------------------------------------------------------------------------
+
+typedef struct tuning {
+    const heading_job *job;
+    heading_trial *trial;
+    moray_status status; // of a simulation that failed
+} tuning;
+
+// What the plans minimise, but for the steering, on the first-principles model; the gain on a logarithmic scale.
+static bool judge(void *self, const double *x, double *f, double *c, double *gradient, double *jacobian)
+{
+    tuning *t = self;
+    (void)c, (void)gradient, (void)jacobian;
+    t->trial->gain = exp(x[0]);
+    if (t->trial->law == HEADING_FEEDBACK && t->trial->preview)
+        t->trial->lead = x[1];
+    const moray_status status = score(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
+    if (moray_failed(status))
+        t->status = status;
+    const moray_heading_score *s = &t->trial->score[MORAY_FIRST_PRINCIPLES];
+    *f = s->rms * s->rms / (100 * DEG * DEG) + t->job->weight_power * s->power;
+    moray_ticker_show(&t->job->ticker, "heading_tracking: tuning %s: gain %.3g m/rad, lead %.2f s: RMS %.3f deg",
+                      t->trial->name, t->trial->gain, t->trial->lead, s->rms / DEG);
+    return !moray_failed(status);
+}
+
+static moray_status tune(const heading_job *job, heading_trial *trial)
+{
+    const bool lead = trial->law == HEADING_FEEDBACK && trial->preview;
+    const double lower[] = {log(0.002), 0}, upper[] = {log(0.5), 8};
+    double x[] = {log(0.06), 2.5};
+    tuning t = {.job = job, .trial = trial, .status = moray_ok()};
+    const moray_search_problem problem = {.n = 1 + lead, .lower = lower, .upper = upper, .self = &t, .evaluate = judge};
+    moray_search_settings settings = moray_search_settings_default();
+    moray_search_info info;
+    settings.method = MORAY_SEARCH_COBYLA;
+    settings.x_tolerance = 1e-3;
+    settings.f_tolerance = 1e-4;
+    settings.max_evaluations = job->evaluations * (1 + lead);
+    MORAY_TRY(moray_search(&problem, &settings, x, &info));
+    trial->gain = exp(x[0]);
+    trial->lead = lead ? x[1] : 0;
+    trial->evaluations = info.evaluations;
+    return moray_ok();
+}
+
+// ---- All
+// --------------------------------------------------------------------------------------------------------------
+
+static const char *const plan_names[] = {"control-oriented plan", "first-principles plan"};
+static const char *const both_names[] = {"control-or. plan + feedback", "first-pr. plan + feedback"};
+static const char *const receding_names[] = {"receding, control-oriented", "receding, first-principles"};
+
+static void add(heading_job *job, heading_trial trial)
+{
+    job->trial[job->n_trials++] = trial;
+}
+
+static void choose_trials(heading_job *job)
+{
+    const moray_model first = MORAY_CONTROL_ORIENTED, last = job->common.model;
+    const int found = 1 + (int)last;
+    add(job, (heading_trial){.name = "feedback, paper's gait"});
+    add(job, (heading_trial){.name = "feedback, gait found", .gait = found});
+    add(job, (heading_trial){.name = "feedback ahead, gait found", .gait = found, .preview = true});
+    for (int model = first; model <= (int)last; model++) {
+        const heading_trial blind = {.name = plan_names[model],
+                                     .law = HEADING_PLAN,
+                                     .gait = 1 + model,
+                                     .plan = (moray_model)model,
+                                     .preview = true};
+        heading_trial both = blind;
+        both.name = both_names[model];
+        both.law = HEADING_BOTH;
+        add(job, blind);
+        add(job, both);
+    }
+    for (int model = first; model <= (int)last && job->recede; model++)
+        add(job, (heading_trial){.name = receding_names[model],
+                                 .law = HEADING_RECEDING,
+                                 .gait = found,
+                                 .plan = (moray_model)model,
+                                 .preview = true});
+    if (job->recede)
+        add(job, (heading_trial){.name = "receding, nothing known ahead", .law = HEADING_RECEDING, .gait = found});
+}
+
+moray_status heading_run_trials(heading_job *job)
+{
+    choose_trials(job);
+    for (int k = 0; k < job->n_trials; k++) {
+        heading_trial *trial = &job->trial[k];
+        moray_ticker_show(&job->ticker, "heading_tracking: %s", trial->name);
+        if (trial->law == HEADING_FEEDBACK || trial->law == HEADING_BOTH)
+            MORAY_TRY(tune(job, trial));
+        for (int model = 0; model < 2; model++)
+            MORAY_TRY(score(job, trial, (moray_model)model, careful));
+    }
+    return moray_ok();
+}
