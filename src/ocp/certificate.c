@@ -46,6 +46,7 @@ static moray_status resimulate(struct examiner *e, const moray_integrator *integ
     moray_status status = moray_ok();
     for (int k = 0; k < layout->mesh.intervals && !moray_failed(status); k++) {
         const int first = layout->interval[k].first, last = first + layout->interval[k].scheme->points - 1;
+        e->interval = &layout->interval[k];
         status = integrator->run(integrator, &ode, time[first], time[last], x, NULL, 0, NULL, NULL);
         compare(e, x, found + layout->node[last].x, 0, nx, &certificate->resimulation);
     }

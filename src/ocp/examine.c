@@ -43,7 +43,7 @@ int examiner_output(const struct examiner *e, int i)
 void examiner_evaluate(struct examiner *e, double t, const double *x)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
-    moray_solution_at(e->solution, e->p, t, e->in, e->in + phase->nx);
+    solution_on_interval(e->solution, e->p, e->interval, t, e->in, e->in + phase->nx);
     if (x)
         memcpy(e->in, x, (size_t)phase->nx * sizeof *x);
     memcpy(e->in + phase->nx + phase->nu, moray_solution_parameters(e->solution), (size_t)phase->ns * sizeof *e->in);
@@ -95,6 +95,7 @@ double examiner_interval(struct examiner *e, const struct interval *interval, do
     const struct phase_cache *cache = &t->phase[e->p];
     const int count = samples_between * interval->scheme->points;
     const double T = cache->tf - cache->t0, start = t->layout.phase[e->p].node[interval->first].tau;
+    e->interval = interval;
     memset(e->error, 0, (size_t)e->n * sizeof *e->error);
     for (int k = 0; k < count; k++) {
         const double tau = (k + 0.5) / count;

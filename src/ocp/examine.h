@@ -13,6 +13,7 @@ enum { violation_slack = 100 };
 struct examiner {
     const moray_solution *solution;
     int p;
+    const struct interval *interval; // under examination
     int n;            // quantities that are integrated: the states, then the integrals q
     double *in, *out; // of the phase's map at the last point
     double *size;     // [n]: 1 + max |x| over the phase, 1 + |q|
@@ -26,7 +27,8 @@ void examiner_free(struct examiner *e);
 // Where the rate of the i-th integrated quantity stands in the map's output.
 int examiner_output(const struct examiner *e, int i);
 
-// Functions of the phase at time t with the interpolated control; state from the interpolant unless given.
+// Functions of the phase at time t of the interval with the interpolated control; state from the interpolant unless
+// given.
 void examiner_evaluate(struct examiner *e, double t, const double *x);
 
 // Integral over an interval of |x~' - f(x~, u~)| / (1 + max |x|), or of the same of an integrand and its q, of the worst

@@ -60,15 +60,27 @@ static const struct interval *interval_at(const struct phase_layout *layout, dou
     return &layout->interval[low];
 }
 
+static double normalised(const struct phase_cache *cache, double time)
+{
+    const double T = cache->tf - cache->t0;
+    return T > 0 ? fmin(fmax((time - cache->t0) / T, 0), 1) : 0;
+}
+
 void moray_solution_at(const moray_solution *solution, int p, double time, double *x, double *u)
 {
     const struct transcription *t = solution->transcription;
-    const struct phase_layout *layout = &t->layout.phase[p];
+    const struct interval *interval = interval_at(&t->layout.phase[p], normalised(&t->phase[p], time));
+    solution_on_interval(solution, p, interval, time, x, u);
+}
+
+void solution_on_interval(const moray_solution *solution, int p, const struct interval *interval, double time,
+                          double *x, double *u)
+{
+    const struct transcription *t = solution->transcription;
     const struct phase_cache *cache = &t->phase[p];
     const int nx = t->ocp->phase[p].nx, nu = t->ocp->phase[p].nu, n_out = t->ocp->phase[p].map->n_out;
-    const double T = cache->tf - cache->t0, tau = T > 0 ? fmin(fmax((time - cache->t0) / T, 0), 1) : 0;
-    const struct interval *interval = interval_at(layout, tau);
-    const struct node *node = layout->node + interval->first;
+    const double T = cache->tf - cache->t0, tau = normalised(cache, time);
+    const struct node *node = t->layout.phase[p].node + interval->first;
     double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
     moray_scheme_basis(interval->scheme, (tau - node->tau) / interval->width, ell, integral);
     if (x)
