@@ -4,7 +4,19 @@
 #include "parts/paper_main.h"
 
 static const paper_study studies[] = {
+    {"straight", "straight motion with growing amplitude: Fig. 7", paper_straight},
+    {"turning", "turning there and back: Fig. 8", paper_turning},
+    {"linearising", "the linearising control law (22)", paper_linearising},
+    {"ground", "the ground robot as a special case", paper_ground},
+    {"eel", "eel-like motion, the paper's future work", paper_eel},
+    {"fit", "constants of the rotational dynamics (20) for the given robot", paper_fit},
     {"mapping", "joint amplitudes: Fig. 6 and Propositions 1 and 2", paper_mapping},
+    {"forces", "force terms I-VIII of (6): what propels, and what cancels (Property 1, Fig. 2, Remark 3)",
+     paper_forces},
+    {"links", "how the links move and what the fluid does to them (Properties 2 and 4)", paper_links},
+    {"offset", "turning rate by joint offset and by speed (Property 3)", paper_offset},
+    {"errata", "the misprints of the paper, swum as printed and as corrected (E1-E4 and the sign in (13))",
+     paper_errata},
 };
 enum { N_STUDIES = sizeof studies / sizeof *studies };
 _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room for every study");
@@ -15,10 +27,29 @@ _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room fo
         .max = high, .open = true, .unit = in, .help = text                                                            \
     }
 
+_Static_assert(sizeof(moray_reading) == sizeof(int), "choices are stored as int");
+
 static const moray_option options[] = {
+    {.section = "problem",
+     .key = "reading",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(paper_settings, reading),
+     .choices = paper_reading_names,
+     .help = "equations of the control-oriented model: corrected; with (23h) as printed (erratum E1); with l of (8), "
+             "(12), (13) as printed (E2); with both"},
+    {.flag = "as-printed",
+     .type = MORAY_OPTION_BOOL,
+     MORAY_AT(paper_settings, as_printed),
+     .help = "as --set reading=printed"},
     ANGLE("theta_max_deg", theta_max, 0, 90, "deg", "link-angle amplitude of (24), where a study does not vary it"),
     ANGLE("omega_deg_s", omega, 0, 3600, "deg/s", "gait frequency, where a study does not vary it"),
     ANGLE("delta_deg", delta, 0, 180, "deg", "phase shift between joints; 360/(N-1) unless given"),
+    {.section = "problem",
+     .key = "write_ini",
+     .argument = "FILE",
+     .type = MORAY_OPTION_TEXT,
+     MORAY_AT(paper_settings, write_ini),
+     .help = "study fit: the robot's INI file, to write the fitted constants into"},
 };
 
 static paper_settings defaults(void)
@@ -29,9 +60,20 @@ static paper_settings defaults(void)
     return settings;
 }
 
-// delta, which by Assumption 2 is 2 pi/(N-1).
+static moray_status check_write_ini(const paper_settings *settings)
+{
+    for (int i = 0; i < N_STUDIES; i++)
+        if (studies[i].run == paper_fit && !settings->chosen[i] && settings->write_ini[0])
+            return moray_error(MORAY_INPUT, "write_ini = %.100s: is for the study fit, which is not named",
+                               settings->write_ini);
+    return moray_ok();
+}
+
+// --as-printed; delta, which by Assumption 2 is 2 pi/(N-1).
 static moray_status complete(paper_settings *settings)
 {
+    if (settings->as_printed)
+        settings->reading = MORAY_READ_PRINTED;
     const int N = settings->common.robot.links;
     if (!isnan(settings->delta))
         return moray_ok();
@@ -54,6 +96,8 @@ static moray_status prepare(paper *p, const paper_settings *settings)
         p->gait[model] = paper_gait(p, (moray_model)model, settings->theta_max);
     }
     MORAY_TRY(moray_basin_new(&p->basin, p->robot, settings->common.current, 0));
+    p->basin.settings.sim.max_steps = 20000; // between samples; a misprint can make motion without end
+    moray_swimmer_set_reading(p->basin.swimmer[MORAY_CONTROL_ORIENTED], settings->reading);
     p->json = moray_json_new();
     paper_json_head(p->json, settings);
     return moray_ok();
@@ -126,7 +170,9 @@ int main(int argc, char **argv)
     int exit_code;
     if (!moray_app_start(&program, argc, argv, &settings, &exit_code))
         return exit_code;
-    moray_status status = complete(&settings);
+    moray_status status = check_write_ini(&settings);
+    if (!moray_failed(status))
+        status = complete(&settings);
     if (!moray_failed(status))
         status = prepare(&p, &settings);
     if (!moray_failed(status))

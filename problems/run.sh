@@ -19,5 +19,7 @@ if [ -z "$known" ]; then
 fi
 shift
 
-install_packages && configure "$root/build" && quietly ninja -C "$root/build" "problems/$name" || exit 1
-exec "$root/build/problems/$name" "$@"
+program=problems/$name
+[ "$name" != benchmark ] || program=problems/moray-benchmark # Meson keeps the short name to itself
+install_packages && configure "$root/build" && quietly ninja -C "$root/build" "$program" || exit 1
+exec "$root/build/$program" "$@"

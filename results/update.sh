@@ -35,3 +35,5 @@ show() {
 
 show max_speed max_speed
 show max_speed_free max_speed --set theta_max_deg=1:60
+show min_energy min_energy
+show paper paper all

@@ -38,15 +38,19 @@ static void input_kinds(const moray_plant_spec *spec, input_kind *kinds)
     const int n = spec->robot.links - 1;
     const input_kind phi = {-0.2, 0.2, 5e-3}, angle = {-3, 3, 0.03}, position = {-1, 1, 0.1}, v_phi = {-1, 1, 0.1};
     const input_kind rate = {-1, 1, 0.1}, ubar = {-1, 1, 0.1};
-    const input_kind gait[] = {{0.05, 0.2, 2e-3}, {1, 3, 5e-3}, {0.3, 1.2, 1e-3}, {-0.05, 0.05, 2e-3}};
+    const input_kind gait[] = {
+        {0.05, 0.2, 2e-3}, {1, 3, 5e-3}, {0.3, 1.2, 1e-3}, {-0.05, 0.05, 2e-3}, {-0.8, 0.8, 1e-2}};
     input_kind *next = kinds;
-    const bool joints = spec->joints != MORAY_JOINTS_ON_GAIT;
+    const bool steered = spec->joints == MORAY_JOINTS_STEERED;
+    const bool joints = spec->joints != MORAY_JOINTS_ON_GAIT && !steered;
     for (int i = 0; i < n && joints; i++)
         *next++ = phi;
     *next++ = angle, *next++ = position, *next++ = position;
     for (int i = 0; i < n && joints; i++)
         *next++ = v_phi;
     *next++ = rate, *next++ = rate, *next++ = rate;
+    if (steered)
+        *next++ = (input_kind){-0.05, 0.05, 2e-3}, *next++ = v_phi;
     for (int i = 0; i < size.nu; i++)
         *next++ = ubar;
     for (int i = 0; i < size.ns; i++)

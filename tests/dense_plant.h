@@ -61,7 +61,9 @@ static dense_state dense_unpack(const dense_plant *self, const num *in)
     const moray_plant_size size = moray_plant_sizes(&self->spec);
     const num *s = in + size.nx + size.nu, t = s[size.ns];
     const int n = self->n;
-    if (self->spec.joints != MORAY_JOINTS_ON_GAIT) {
+    const bool steered = self->spec.joints == MORAY_JOINTS_STEERED;
+    const bool on_gait = steered || self->spec.joints == MORAY_JOINTS_ON_GAIT;
+    if (!on_gait) {
         x.at_theta = n;
         x.at_v_theta = 2 * n + 3;
     }
@@ -69,11 +71,12 @@ static dense_state dense_unpack(const dense_plant *self, const num *in)
         num ref = 0, dref = 0, ddref = 0; // (25)
         if (self->spec.joints != MORAY_JOINTS_FREE) {
             const num argument = s[1] * t + i * s[2];
-            ref = s[0] * csin(argument) + s[3];
-            dref = s[0] * s[1] * ccos(argument);
-            ddref = -s[0] * s[1] * s[1] * csin(argument);
+            const num taper = steered ? 0 : s[4];
+            const num a = s[0] * (1 + taper * (n > 1 ? (2.0 * i - (n - 1)) / (n - 1) : 0));
+            ref = a * csin(argument) + (steered ? in[6] : s[3]);
+            dref = a * s[1] * ccos(argument) + (steered ? in[7] : 0);
+            ddref = -a * s[1] * s[1] * csin(argument) + (steered ? in[8] : 0);
         }
-        const bool on_gait = self->spec.joints == MORAY_JOINTS_ON_GAIT;
         x.phi[i] = on_gait ? ref : in[i];
         x.v_phi[i] = on_gait ? dref : in[n + 3 + i];
         x.ubar[i] =
@@ -133,7 +136,10 @@ static void dense_value(const dense_plant *self, const num *in, num *out)
     const dense_state x = dense_unpack(self, in);
     const dense_rates rates = dense_dynamics(self, &x);
     const int n = self->n, theta = x.at_theta, v_theta = x.at_v_theta;
-    if (self->spec.joints != MORAY_JOINTS_ON_GAIT)
+    if (self->spec.joints == MORAY_JOINTS_STEERED) {
+        out[6] = in[7];
+        out[7] = in[8];
+    } else if (self->spec.joints != MORAY_JOINTS_ON_GAIT)
         for (int i = 0; i < n; i++) {
             out[i] = x.v_phi[i];
             out[n + 3 + i] = x.ubar[i];

@@ -1,34 +1,6 @@
 # SPDX-License-Identifier: MIT
 # What a user meets at the command line. Arguments: the demo program, the source directory.
-case $1 in
-/*) demo=$1 ;;
-*) demo=$PWD/$1 ;;
-esac
-source=$2
-. "$source/tests/tap.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-
-# run ARGUMENTS: leaves $code, out and err.
-run() {
-    "$demo" "$@" >out 2>err </dev/null
-    code=$?
-}
-
-one_line() {
-    [ "$(wc -l <err)" -eq 1 ] && grep -q '^options_demo: ' err
-}
-
-# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it, no --out.
-refuse() {
-    text=$1
-    shift
-    run "$@" --json --out fresh
-    check "exit 2: $(cat err)" [ $code -eq 2 ]
-    check "one line that says '$text'" eval 'one_line && grep -qF -e "$text" err'
-    check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
-}
+. "$2/tests/program.sh"
 
 printf '[robot]\nc_m = 3\n' >unknown.ini
 printf '[robot]\nlinks = 3\nlinks = 3\n' >twice.ini
@@ -78,8 +50,8 @@ run --help
 check "--help: exit 0, on standard output alone" eval '[ $code -eq 0 ] && [ ! -s err ] && grep -q -- "--links N" out'
 run --version
 check "--version: $(cat out)" eval '[ $code -eq 0 ] && grep -q "^options_demo (moray) [0-9.]*$" out'
-check "--help to a full disk fails" eval '! "$demo" --help >/dev/full'
-check "--json to a full disk fails" eval '! "$demo" --json >/dev/full'
+check "--help to a full disk fails" eval '! "$program" --help >/dev/full'
+check "--json to a full disk fails" eval '! "$program" --json >/dev/full'
 
 run --json
 cp out by_default

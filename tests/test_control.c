@@ -2,25 +2,8 @@
 //
 // Control-oriented model: against (14), (15) solved as one linear system, against the matrices of (16)-(18) as
 // printed, the errata E1 and E2, and cases worked by hand. L = 2l throughout.
-#include "dense.h"
-#include "random_robot.h"
+#include "printed_model.h"
 #include "snake/control.h"
-
-typedef struct {
-    moray_robot robot;
-    double V[2], x[MAX_STATES], ubar[MAX_LINKS];
-    shape_matrices shape;
-} scene;
-
-static scene random_scene(random_seed *seed, int N)
-{
-    scene s = {.robot = random_robot(seed, N), .shape = shape_matrices_new(N)};
-    random_vector(seed, 1, 2, s.V);
-    random_vector(seed, 2, 2 * N + 4, s.x);
-    random_vector(seed, 0.2, N - 1, s.x);
-    random_vector(seed, 5, N - 1, s.ubar);
-    return s;
-}
 
 // dv_t, dv_n in dv[2] and u[N-1] by the code under test.
 static bool swim(const scene *s, double dv[2], double *u)
@@ -33,32 +16,12 @@ static bool swim(const scene *s, double dv[2], double *u)
     return regular;
 }
 
-// Velocity relative to the current in the t-n frame: R^T of (7) minus V.
-static void relative_velocity(const scene *s, double *v_tr, double *v_nr)
-{
-    const int N = s->robot.links;
-    const double c = cos(s->x[N - 1]), sine = sin(s->x[N - 1]), v_t = s->x[2 * N + 2], v_n = s->x[2 * N + 3];
-    const double rel_x = v_t * c - v_n * sine - s->V[0], rel_y = v_t * sine + v_n * c - s->V[1];
-    *v_tr = c * rel_x + sine * rel_y;
-    *v_nr = c * rel_y - sine * rel_x;
-}
-
-typedef struct {
-    double c_p, mu_p, c_n_hat, m_tilde;
-} coefficients;
-
-static coefficients by_hand(const moray_robot *r)
-{
-    const double L = 2 * r->l;
-    return (coefficients){(r->c_n - r->c_t) / (2 * L), r->mu_n / (2 * L), r->c_n / (4 * L * L), r->m + r->mu_n};
-}
-
 // (14) for accelerations (phi'', dv_t, dv_n)[N+1].
 static void fluid_forces(const scene *s, const double *accelerations, double *f_t, double *f_n)
 {
     const moray_robot *r = &s->robot;
     const int N = r->links;
-    const coefficients k = by_hand(r);
+    const coefficients k = by_hand(r, 2 * r->l);
     double a[MAX_LINKS], bend[MAX_LINKS], bend_rate[MAX_LINKS], v_tr, v_nr;
     relative_velocity(s, &v_tr, &v_nr);
     dense_apply(s->shape.A, true, s->x, a);
@@ -128,66 +91,13 @@ static void check_equations_of_motion(random_seed *seed, int N)
     CHECK_NEAR(error, 0, 1e-10, "the forces u of (22) cause ubar, dv_t, dv_n by (14), (15)");
 }
 
-// The functions h_1..h_5 and the sums of (16)-(18), from dense products.
-typedef struct {
-    double h_1, h_2, h_3, h_4, h_5, s, q, w, z;
-} printed;
-
-static printed as_printed(const scene *scene_)
-{
-    const moray_robot *r = &scene_->robot;
-    const double N = r->links, m = r->m, *phi = scene_->x;
-    const int n = r->links - 1;
-    const coefficients k = by_hand(r);
-    double a[MAX_LINKS], bend[MAX_LINKS];
-    printed p = {0};
-    dense_apply(scene_->shape.A, true, phi, a);
-    p.q = dot(n + 1, a, a);
-    for (int i = 0; i < n; i++)
-        p.s += phi[i];
-    dense_apply(scene_->shape.A_Dbar, false, phi + n + 3, bend);
-    p.w = dot(n, phi, bend);
-    dense_apply(scene_->shape.A_Dbar, false, scene_->ubar, bend);
-    p.z = dot(n, phi, bend);
-    p.h_1 = 1 / (N * N * m * k.m_tilde - 4 * k.mu_p * k.mu_p * p.s * p.s);
-    p.h_2 = 2 * N * p.s * (k.c_p * k.m_tilde - r->c_n * k.mu_p);
-    p.h_3 = 4 * k.c_p * k.mu_p * p.s * p.s - N * N * k.m_tilde * r->c_t - N * k.m_tilde * k.c_n_hat * p.q;
-    p.h_4 = 2 * p.s * (N * k.c_p * m - N * r->c_t * k.mu_p - k.c_n_hat * k.mu_p * p.q);
-    p.h_5 = 4 * k.c_p * k.mu_p * p.s * p.s - N * N * m * r->c_n;
-    return p;
-}
-
-// (22) with M, D, K of (18) as matrices.
-static void printed_forces(const scene *s, printed p, double *u)
-{
-    const moray_robot *r = &s->robot;
-    const int n = r->links - 1;
-    const double N = r->links;
-    const coefficients k = by_hand(r);
-    double v_tr, v_nr, A_Dt_phi[MAX_LINKS], A_Dbar_phi[MAX_LINKS], total[MAX_LINKS];
-    relative_velocity(s, &v_tr, &v_nr);
-    dense_apply(s->shape.A_Dt, false, s->x, A_Dt_phi);
-    dense_apply(s->shape.A_Dbar, true, s->x, A_Dbar_phi);
-    const double K = 2 * N * k.mu_p * p.h_1 * p.s * (r->c_n * k.mu_p - k.m_tilde * k.c_p) * v_nr +
-                     N * k.m_tilde * p.h_1 * (N * k.mu_p * r->c_t + k.c_n_hat * k.mu_p * p.q - N * r->m * k.c_p) * v_tr;
-    for (int i = 0; i < n; i++) {
-        total[i] = K * A_Dt_phi[i];
-        for (int j = 0; j < n; j++) {
-            const double outer = N * k.m_tilde * k.mu_p * p.h_1 * A_Dt_phi[i] * A_Dbar_phi[j];
-            total[i] += ((i == j) * k.m_tilde + k.mu_p * outer) * s->ubar[j];
-            total[i] += ((i == j) * r->c_n + k.c_p * outer) * s->x[n + 3 + j];
-        }
-    }
-    dense_apply(s->shape.gram_inverse, false, total, u);
-}
-
 static void check_printed_matrices(random_seed *seed, int N)
 {
     double dv_error = 0, u_error = 0, swapped_error = INFINITY;
     for (int trial = 0; trial < 5; trial++) {
         scene s = random_scene(seed, N);
-        const coefficients k = by_hand(&s.robot);
-        const printed p = as_printed(&s);
+        const coefficients k = by_hand(&s.robot, 2 * s.robot.l);
+        const printed p = as_printed(&s, 2 * s.robot.l);
         double dv[2], u[MAX_LINKS], u_want[MAX_LINKS], v_tr, v_nr;
         CHECK(swim(&s, dv, u), "state %d of %d links is regular", trial, N);
         relative_velocity(&s, &v_tr, &v_nr);
@@ -195,7 +105,7 @@ static void check_printed_matrices(random_seed *seed, int N)
         const double want[2] = {p.h_1 * (p.h_2 * v_nr + p.h_3 * v_tr - N * k.m_tilde * bending),
                                 p.h_1 * (p.h_4 * v_tr + p.h_5 * v_nr - 2 * k.mu_p * p.s * bending)};
         const double swapped = p.h_1 * (p.h_4 * v_nr + p.h_5 * v_tr - 2 * k.mu_p * p.s * bending); // (23h)
-        printed_forces(&s, p, u_want);
+        printed_forces(&s, 2 * s.robot.l, p, u_want);
         dv_error = fmax(dv_error, relative_distance(2, dv, want));
         u_error = fmax(u_error, relative_distance(N - 1, u, u_want));
         swapped_error = fmin(swapped_error, fabs(swapped - dv[1]) / fabs(dv[1]));
@@ -281,7 +191,7 @@ static void check_straight(random_seed *seed, int N)
 static void check_singular(random_seed *seed, int N)
 {
     scene s = random_scene(seed, N);
-    const coefficients k = by_hand(&s.robot);
+    const coefficients k = by_hand(&s.robot, 2 * s.robot.l);
     const double limit = N * sqrt(s.robot.m * k.m_tilde) / (2 * k.mu_p);
     double dv[2], u[MAX_LINKS];
     for (int i = 0; i < N - 1; i++)

@@ -122,10 +122,56 @@ static void test_checker(void)
           "an entry missing from the pattern is found");
 }
 
+// u = (x1, x2), base = (u0^2 u1, u1), extra = (x0 x1, x2^2) inserted in between
+static void inner(void *self, const double complex *u, double complex *out)
+{
+    (void)self;
+    out[0] = u[0] * u[0] * u[1];
+    out[1] = u[1];
+}
+static void outer(void *self, const double complex *x, double complex *out)
+{
+    (void)self;
+    out[0] = x[0] * x[1];
+    out[1] = x[2] * x[2];
+}
+
+static void test_join(void)
+{
+    moray_map base, extra, map;
+    const double x[] = {0.4, 1.5, -0.7}, w[] = {0.9, -1.1, 0.3, 0.6};
+    double out[4], values[16];
+    moray_derivative_report report;
+    bool found;
+    CHECK_OK(moray_map_from_complex(&base, 2, 2, inner, NULL, NULL, x + 1), "base");
+    CHECK_OK(moray_map_from_complex(&extra, 3, 2, outer, NULL, NULL, x), "extra");
+    CHECK_OK(moray_map_join(&map, &base, (int[]){1, 2}, &extra, 1), "joined");
+    CHECK(!base.self && !extra.self, "the map has taken over both");
+    CHECK(map.n_in == 3 && map.n_out == 4, "sizes: %d in, %d out", map.n_in, map.n_out);
+    map.value(map.self, x, out);
+    CHECK_NEAR(out[0], x[1] * x[1] * x[2], 1e-15, "base output before");
+    CHECK_NEAR(out[1], x[0] * x[1], 1e-15, "extra output");
+    CHECK_NEAR(out[2], x[2] * x[2], 1e-15, "extra output");
+    CHECK_NEAR(out[3], x[2], 1e-15, "base output behind");
+    CHECK_OK(moray_check_derivatives(&map, x, w, &report), "check");
+    CHECK(report.jacobian_error < 1e-10 && report.hessian_error < 1e-9, "derivatives: %.1e, %.1e",
+          report.jacobian_error, report.hessian_error);
+    map.hessian(map.self, x, w, values);
+    CHECK_NEAR(entry(&map.hess, values, 2, 1, &found), w[0] * 2 * x[1], 1e-9, "Hessian entry of the base");
+    int twice = 0;
+    for (int k = 0; k < map.hess.nnz; k++)
+        for (int l = 0; l < k; l++)
+            twice += map.hess.row[k] == map.hess.row[l] && map.hess.col[k] == map.hess.col[l];
+    CHECK(map.jac.nnz == 6 && twice == 0, "entries of both merged: %d, %d twice", map.jac.nnz, twice);
+    moray_map_release(&map);
+    CHECK(!map.self, "released");
+}
+
 int main(void)
 {
     test_complex_step();
     test_not_finite();
     test_checker();
+    test_join();
     return tap_done();
 }

@@ -1,41 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The program max_speed as a user meets it. Arguments: the program, the source directory.
-case $1 in
-/*) program=$1 ;;
-*) program=$PWD/$1 ;;
-esac
-source=$2
-. "$source/tests/tap.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-
-run() {
-    "$program" "$@" >out 2>err </dev/null
-    code=$?
-}
-
-# number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
-number() {
-    [ $# -eq 1 ] && set -- . "$1"
-    awk -v block="\"$1\"" -v key="\"$2\"" 'index($0, block) || block == "\".\"" { seen = 1 }
-        seen && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
-}
-
-# near VALUE EXPECTED TOLERANCE
-near() {
-    awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { exit !(a != "" && a - b <= t && b - a <= t) }'
-}
-
-# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it, no --out.
-refuse() {
-    text=$1
-    shift
-    run "$@" --json --out fresh
-    check "exit 2: $(cat err)" [ $code -eq 2 ]
-    check "one line that says '$text'" eval '[ "$(wc -l <err)" -eq 1 ] && grep -qF -e "$text" err'
-    check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
-}
+. "$2/tests/program.sh"
 
 # ---- The control-oriented model, from the paper's gait and from 20 random starts (paper-notes, section 5)
 run --model control --json --set random_starts=20 --out results
@@ -72,6 +37,13 @@ run --json --set theta_max_deg=1:60
 check "at least 10.5 % with theta_max free: $(number gain speed_percent_at_equal_power)" \
     eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" "BEGIN { exit !(g >= 10.5) }"'
 
+run --json --set theta_max_deg=1:60 --set taper=-1:1
+check "at least 11.5 % with a taper as well, larger at the tail: $(number gain speed_percent_at_equal_power)" \
+    eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" -v t="$(number gait taper)" \
+        "BEGIN { exit !(g >= 11.5 && t < -0.1 && t > -0.2) }"'
+run --quiet --model control --set taper=-0.8
+check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
+
 run --quiet
 check "the table says plainly that the gait loses" grep -q 'LOSES on the first-principles model' out
 check "and puts both models' gains side by side" grep -q 'The control-oriented model itself promised' out
@@ -84,6 +56,11 @@ check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep 
 run --current 0,0.4
 check "a cross current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.4000 m/s of it run across" err'
 
+# ---- Interrupted: ends at the next iteration, says so, leaves nothing (timeout sends what Ctrl-C sends)
+timeout --preserve-status -s INT 2 "$program" --set random_starts=10000 --out interrupted >out 2>err </dev/null
+code=$?
+check "Ctrl-C is told and leaves nothing: $(cat err)" eval '[ $code -eq 130 ] && one_line && grep -q interrupted err && [ ! -s out ] && [ ! -e interrupted ]'
+
 # ---- Bad input
 printf '[robot]\nlinks = 10\nspeed = 3\n' >unknown.ini
 : >file
@@ -94,6 +71,7 @@ refuse 'm_kg = -1' --set m_kg=-1
 refuse 'c_n = nan' --set c_n=nan
 refuse 'delta_deg = 50:30' --set delta_deg=50:30
 refuse 'theta_max_deg = 95' --set theta_max_deg=95
+refuse 'taper = -2' --set taper=-2:0
 refuse 'power_W = 0' --set power_W=0
 refuse 'power_w' --set power_w=1
 refuse 'scheme = euler' --scheme euler

@@ -366,6 +366,64 @@ static void test_without_robot(void)
     CHECK(moray_app_parse(&plain, 3, bad, &s, &request).code == MORAY_INPUT, "but not those of the robot");
 }
 
+// Words without a flag, and shared options left out.
+typedef struct wordy {
+    moray_common common;
+    bool said[3];
+} wordy;
+
+static moray_status parse_words(wordy *s, const char *const arguments[4])
+{
+    static const moray_word word[] = {{"eel", "h"}, {"straight", "h"}, {"turning", "what turns"}};
+    static const moray_words words = {
+        .noun = "study", .word = word, .n = 3, .all = "all", .offset = offsetof(wordy, said)};
+    static const char *const without[] = {"scheme", "course", NULL};
+    static const moray_program wordy_program = {.name = "w", .summary = "s", .words = &words, .without = without};
+    char *argv[6] = {"w"};
+    int argc = 1;
+    moray_request request;
+    for (int i = 0; i < 4 && arguments[i]; i++)
+        argv[argc++] = (char *)arguments[i];
+    *s = (wordy){.common = moray_common_defaults()};
+    const moray_status status = moray_app_parse(&wordy_program, argc, argv, s, &request);
+    if (request == MORAY_REQUEST_HELP) {
+        char text[8192] = "";
+        FILE *file = fmemopen(text, sizeof text, "w");
+        CHECK_OK(moray_app_help(&wordy_program, s, file), "help");
+        fclose(file);
+        CHECK(strstr(text, "Usage: w [OPTION]... STUDY...\n") && strstr(text, "STUDY is one or more of:"), "usage");
+        CHECK(strstr(text, "  turning                  what turns\n") && strstr(text, "  all  "), "the words");
+        CHECK(!strstr(text, "--scheme") && !strstr(text, "--course") && strstr(text, "--links"), "what is left out");
+    }
+    return status;
+}
+#define PARSE_WORDS(s, ...) parse_words((s), (const char *const[4]){__VA_ARGS__})
+
+static void test_words(void)
+{
+    wordy s;
+    CHECK_OK(PARSE_WORDS(&s, "turning", "--links", "5", "eel"), "words between options");
+    CHECK(s.said[0] && !s.said[1] && s.said[2] && s.common.robot.links == 5, "each is marked");
+    CHECK_OK(PARSE_WORDS(&s, "eel", "eel"), "the same twice");
+    CHECK(s.said[0] && !s.said[1] && !s.said[2], "is marked once");
+    CHECK_OK(PARSE_WORDS(&s, "all"), "all");
+    CHECK(s.said[0] && s.said[1] && s.said[2], "marks every word");
+    CHECK_OK(PARSE_WORDS(&s, "--help"), "help needs no word");
+    moray_status status = PARSE_WORDS(&s, "strait");
+    CHECK(status.code == MORAY_INPUT && strcmp(status.text, "unknown study strait; did you mean straight?") == 0, "%s",
+          status.text);
+    status = PARSE_WORDS(&s, "eel", "weather");
+    CHECK(status.code == MORAY_INPUT && strcmp(status.text, "unknown study weather; --help lists them") == 0, "%s",
+          status.text);
+    status = PARSE_WORDS(&s, "--links", "5");
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "no study is named: must be all or some"), "%s",
+          status.text);
+    status = PARSE_WORDS(&s, "eel", "--scheme", "gauss3");
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "unknown option --scheme"), "%s", status.text);
+    status = PARSE_WORDS(&s, "eel", "--set", "course=3");
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "unknown key course"), "%s", status.text);
+}
+
 static void test_small_parts(void)
 {
     CHECK(moray_edit_distance("kitten", "sitting") == 3 && moray_edit_distance("", "abc") == 3 &&
@@ -395,6 +453,7 @@ int main(void)
     test_table();
     test_help();
     test_without_robot();
+    test_words();
     test_small_parts();
     rmdir(directory);
     return tap_done();

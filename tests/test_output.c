@@ -193,7 +193,7 @@ static void test_unwritable(void)
 
 static const double t[] = {0, 1, 2, 3}, x[] = {0, 1, NAN, 0.5}, y[] = {1, 2, 3, 4};
 static const moray_curve curves[] = {
-    {.label = "with 'quotes' \"and\" `ls`", .x = t, .y = x, .n = 4},
+    {.label = "with 'quotes' '' \"and\" `ls`", .x = t, .y = x, .n = 4},
     {.label = "b_1^2", .x = t, .y = y, .n = 4, .style = MORAY_CURVE_MARKED},
     {.label = "c", .x = t, .y = y, .n = 2, .stride = 2, .style = MORAY_CURVE_POINTS},
 };
@@ -213,7 +213,7 @@ static void test_figure(void)
     char *svg = content("it's $(touch pwned) \"here\"/figure.svg");
     CHECK(strstr(svg, "<svg") && strstr(svg, "</svg>"), "a whole SVG");
     CHECK(strstr(svg, "time [s]") && strstr(svg, "θ [deg]") && strstr(svg, "b_1^2"), "axes and legend as given");
-    CHECK(strstr(svg, "with 'quotes' \"and\" `ls`"), "quotes are only quotes");
+    CHECK(strstr(svg, "with 'quotes' '' \"and\" `ls`"), "quotes are only quotes");
     CHECK(strstr(svg, "touch pwned") && access("pwned", F_OK) != 0 && entries("it's $(touch pwned) \"here\"") == 1,
           "a title is no command");
     CHECK(strstr(svg, "rgb(  0, 114, 178)") && strstr(svg, "rgb(213,  94,   0)") && strstr(svg, "stroke-dasharray"),
@@ -276,6 +276,44 @@ static void test_report(void)
     free(svg);
 }
 
+// Three figures, of which two begin with the names of sections; headings, paragraphs and figures in their order.
+static void test_report_sections(void)
+{
+    static const char *const names[] = {"wave", "other", "wind_speed"};
+    const moray_table_row row = {"force", {1}, "N", NULL};
+    const moray_table table = {.title = "Forces", .n_columns = 1, .rows = &row, .n_rows = 1};
+    const moray_section sections[] = {
+        {.title = "Wind & weather", .text = "One.\nTwo < three.", .figures = "wind", .tables = &table, .n_tables = 1},
+        {.title = "Waves", .figures = "wave"}};
+    moray_output *output = open_in("sections");
+    for (int i = 0; i < 3; i++) {
+        moray_figure named = figure;
+        named.name = named.title = names[i];
+        CHECK_OK(moray_output_figure(output, &named), "figure");
+    }
+    CHECK_OK(
+        moray_output_report(output, &(moray_report){.title = "Sea", .sections = sections, .n_sections = 2, .argc = 0}),
+        "report");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *page = content("sections/report.html"), *at = page;
+    static const char *const order[] = {"<h1>Sea</h1>",
+                                        ">other<",
+                                        "<h2>Wind &amp; weather</h2>",
+                                        "<p>One.</p>\n<p>Two &lt; three.</p>",
+                                        "<caption>Forces</caption>",
+                                        ">wind_speed<",
+                                        "<h2>Waves</h2>",
+                                        ">wave<",
+                                        "<h2>Made by</h2>"};
+    for (unsigned i = 0; i < sizeof order / sizeof *order; i++) {
+        char *found = at ? strstr(at, order[i]) : NULL;
+        CHECK(found, "part %u of the page stands after the one before", i);
+        at = found;
+    }
+    free(page);
+}
+
 int main(void)
 {
     char remove[64];
@@ -289,6 +327,7 @@ int main(void)
     test_figure();
     test_failed_figure();
     test_report();
+    test_report_sections();
     snprintf(remove, sizeof remove, "rm -r %s", root);
     CHECK(system(remove) == 0, "clean up");
     return tap_done();

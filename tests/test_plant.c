@@ -3,7 +3,7 @@
 // The maps of the control-oriented model against the dense model and its derivatives.
 #include "dense_derivatives.h"
 
-static const char *const form_names[] = {"on the gait", "closed loop", "free"};
+static const char *const form_names[] = {"on the gait", "closed loop", "free", "steered"};
 
 // A map, its dense counterpart, a point, and what either says there.
 typedef struct fixture {
@@ -123,15 +123,19 @@ static void test_sizes(void)
 {
     moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_ON_GAIT};
     moray_plant_size size = moray_plant_sizes(&spec);
-    CHECK(size.nx == 6 && size.nu == 0 && size.ns == 4 && size.nc == 0 && size.nq == 1, "sizes on the gait");
+    CHECK(size.nx == 6 && size.nu == 0 && size.ns == 5 && size.nc == 0 && size.nq == 1, "sizes on the gait");
     spec.joints = MORAY_JOINTS_CLOSED_LOOP;
     spec.path_forces = true;
     size = moray_plant_sizes(&spec);
-    CHECK(size.nx == 24 && size.nu == 0 && size.ns == 4 && size.nc == 9 && size.nq == 1, "sizes in closed loop");
+    CHECK(size.nx == 24 && size.nu == 0 && size.ns == 5 && size.nc == 9 && size.nq == 1, "sizes in closed loop");
     spec.joints = MORAY_JOINTS_FREE;
     spec.path_angles = true;
     size = moray_plant_sizes(&spec);
     CHECK(size.nx == 24 && size.nu == 9 && size.ns == 0 && size.nc == 19 && size.nq == 1, "sizes of the free form");
+    spec.joints = MORAY_JOINTS_STEERED;
+    size = moray_plant_sizes(&spec);
+    CHECK(size.nx == 8 && size.nu == 1 && size.ns == 3 && size.nc == 19 && size.nq == 1, "sizes of the steered form");
+    spec.joints = MORAY_JOINTS_FREE;
     moray_map map;
     CHECK_OK(moray_control_plant(&map, &spec), "the map");
     CHECK(map.n_in == 24 + 9 + 1 && map.n_out == 24 + 19 + 1, "the map has these sizes and t");
@@ -179,7 +183,7 @@ int main(void)
 {
     test_sizes();
     test_bad_robot();
-    for (int form = 0; form < 3; form++) {
+    for (int form = 0; form <= MORAY_JOINTS_STEERED; form++) {
         for (int k = 0; k < ROBOT_SIZES; k++) {
             test_against_dense(robot_links[k], form, false, false);
             test_against_dense(robot_links[k], form, true, true);

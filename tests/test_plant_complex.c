@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The first-principles plant with its joints on the gait: against the swimmer's equations, and its derivatives against
-// differences.
+// The first-principles plant with its joints on the gait, its offset at rest or moving: against the swimmer's
+// equations, and its derivatives against differences.
 #include "tap.h"
 
 #include <stdlib.h>
@@ -9,20 +9,39 @@
 
 #include "moray/snake.h"
 
-static void random_input(unsigned long long *seed, double in[11])
+enum { MOST_INPUTS = 13 };
+
+static const char *const form_names[] = {[MORAY_JOINTS_ON_GAIT] = "on the gait", [MORAY_JOINTS_STEERED] = "steered"};
+
+static void random_input(unsigned long long *seed, bool steered, double *in)
 {
-    const double low[11] = {-3, 0, 0, -0.5, -0.3, -0.3, 0.05, 1, 0.3, -0.1, 0};
-    const double high[11] = {3, 0, 0, 0.5, 0.3, 0.3, 0.4, 4, 1.5, 0.1, 3};
-    for (int i = 0; i < 11; i++)
-        in[i] = tap_random(seed, low[i], high[i]);
+    const double low[] = {-3, 0, 0, -0.5, -0.3, -0.3, 0.05, 1, 0.3, -0.1, -0.8, 0};
+    const double high[] = {3, 0, 0, 0.5, 0.3, 0.3, 0.4, 4, 1.5, 0.1, 0.8, 3};
+    const double steered_low[] = {-3, 0, 0, -0.5, -0.3, -0.3, -0.1, -0.2, -0.5, 0.05, 1, 0.3, 0};
+    const double steered_high[] = {3, 0, 0, 0.5, 0.3, 0.3, 0.1, 0.2, 0.5, 0.4, 4, 1.5, 3};
+    for (int i = 0; i < (steered ? 13 : 12); i++)
+        in[i] = steered ? tap_random(seed, steered_low[i], steered_high[i]) : tap_random(seed, low[i], high[i]);
 }
 
-// The state of the swimmer that stands for the six states of the plant: link angles of the given mean.
-static void full_state(int N, const double *in, double *x, double *ubar)
+static moray_gait gait_of(bool steered, const double *in, double *t)
 {
-    double *phi = calloc(2 * (size_t)N, sizeof *phi), *dphi = phi + N;
-    const moray_gait gait = {.amplitude = in[6], .omega = in[7], .delta = in[8], .offset = in[9]};
-    moray_gait_reference(&gait, N - 1, in[10], phi, dphi, ubar);
+    *t = in[steered ? 12 : 11];
+    if (steered)
+        return (moray_gait){.amplitude = in[9],
+                            .omega = in[10],
+                            .delta = in[11],
+                            .offset = in[6],
+                            .offset_rate = in[7],
+                            .offset_acceleration = in[8]};
+    return (moray_gait){.amplitude = in[6], .omega = in[7], .delta = in[8], .offset = in[9], .taper = in[10]};
+}
+
+// The state of the swimmer that stands for the state of the plant: link angles of the given mean.
+static void full_state(int N, bool steered, const double *in, double *x, double *ubar)
+{
+    double *phi = calloc(2 * (size_t)N, sizeof *phi), *dphi = phi + N, t;
+    const moray_gait gait = gait_of(steered, in, &t);
+    moray_gait_reference(&gait, N - 1, t, phi, dphi, ubar);
     for (int rate = 0; rate < 2; rate++) {
         double *angle = x + rate * (N + 2), *joint = rate ? dphi : phi, sum = 0;
         angle[0] = 0;
@@ -37,14 +56,15 @@ static void full_state(int N, const double *in, double *x, double *ubar)
 
 static void test_against_swimmer(const moray_plant_spec *spec, const moray_map *map, unsigned long long *seed)
 {
-    const int N = spec->robot.links;
+    const int N = spec->robot.links, nx = moray_plant_sizes(spec).nx;
+    const bool steered = spec->joints == MORAY_JOINTS_STEERED;
     moray_swimmer *swimmer;
     CHECK_OK(moray_swimmer_new(&swimmer, &spec->robot, MORAY_FIRST_PRINCIPLES), "swimmer");
     moray_swimmer_set_current(swimmer, spec->current[0], spec->current[1]);
     double *x = calloc(8 * (size_t)N + 16, sizeof *x), *dx = x + 2 * N + 4, *ubar = dx + 2 * N + 4, *u = ubar + N;
-    double *out = calloc((size_t)map->n_out, sizeof *out), *phi = u + N, *v_phi = phi + N, in[11], worst = 0;
-    random_input(seed, in);
-    full_state(N, in, x, ubar);
+    double *out = calloc((size_t)map->n_out, sizeof *out), *phi = u + N, *v_phi = phi + N, in[MOST_INPUTS], worst = 0;
+    random_input(seed, steered, in);
+    full_state(N, steered, in, x, ubar);
     map->value(map->self, in, out);
     CHECK(moray_swimmer_rates(swimmer, x, ubar, dx, u), "N = %d: swimmer's rates", N);
     double mean = 0, power = 0, mean_rate = 0;
@@ -52,33 +72,35 @@ static void test_against_swimmer(const moray_plant_spec *spec, const moray_map *
     for (int i = 0; i < N; i++) {
         mean += dx[N + 2 + i] / N;
         mean_rate += dx[i] / N;
-        worst = fmax(worst, fabs(out[6 + N - 1 + i] - (x[i] - in[0])));
+        worst = fmax(worst, fabs(out[nx + N - 1 + i] - (x[i] - in[0])));
     }
     for (int i = 0; i < N - 1; i++) {
         power += u[i] * v_phi[i];
-        worst = fmax(worst, fabs(out[6 + i] - u[i]) / (1 + fabs(u[i])));
+        worst = fmax(worst, fabs(out[nx + i] - u[i]) / (1 + fabs(u[i])));
     }
-    const double expected[] = {mean_rate, dx[N], dx[N + 1], mean, dx[2 * N + 2], dx[2 * N + 3]};
-    for (int r = 0; r < 6; r++)
+    const double expected[] = {mean_rate, dx[N], dx[N + 1], mean, dx[2 * N + 2], dx[2 * N + 3], in[7], in[8]};
+    for (int r = 0; r < nx; r++)
         worst = fmax(worst, fabs(out[r] - expected[r]) / (1 + fabs(expected[r])));
     worst = fmax(worst, fabs(out[map->n_out - 1] - power) / (1 + fabs(power)));
-    CHECK(worst < 1e-12, "N = %d: rates, torques, link angles and power as the swimmer has them: %.1e", N, worst);
+    CHECK(worst < 1e-12, "N = %d, %s: rates, torques, link angles and power as the swimmer has them: %.1e", N,
+          form_names[spec->joints], worst);
     free(out);
     free(x);
     moray_swimmer_free(swimmer);
 }
 
-static void test_derivatives(const moray_map *map, int N, unsigned long long *seed)
+static void test_derivatives(const moray_plant_spec *spec, const moray_map *map, unsigned long long *seed)
 {
-    double in[11], *weight = calloc((size_t)map->n_out, sizeof *weight);
-    random_input(seed, in);
+    double in[MOST_INPUTS], *weight = calloc((size_t)map->n_out, sizeof *weight);
+    random_input(seed, spec->joints == MORAY_JOINTS_STEERED, in);
     for (int i = 0; i < map->n_out; i++)
         weight[i] = tap_random(seed, -1, 1);
     moray_derivative_report report;
     CHECK_OK(moray_check_derivatives(map, in, weight, &report), "checked");
-    CHECK(report.jacobian_error < 1e-9 && report.hessian_error < 1e-7,
-          "N = %d: Jacobian %.1e, Hessian %.1e (row %d, column %d) from differences", N, report.jacobian_error,
-          report.hessian_error, report.hessian_row, report.hessian_col);
+    CHECK(report.jacobian_error < 1e-9 && report.hessian_error < 1e-9,
+          "N = %d, %s: Jacobian %.1e, Hessian %.1e (row %d, column %d) from differences", spec->robot.links,
+          form_names[spec->joints], report.jacobian_error, report.hessian_error, report.hessian_row,
+          report.hessian_col);
     free(weight);
 }
 
@@ -89,12 +111,13 @@ int main(void)
     moray_map map;
     moray_plant_spec spec = {
         .robot = moray_robot_paper(), .current = {0.1, -0.05}, .path_forces = true, .path_angles = true};
-    for (unsigned k = 0; k < sizeof links / sizeof *links; k++) {
-        spec.robot.links = links[k];
+    for (unsigned k = 0; k < 2 * sizeof links / sizeof *links; k++) {
+        spec.robot.links = links[k / 2];
+        spec.joints = k % 2 ? MORAY_JOINTS_STEERED : MORAY_JOINTS_ON_GAIT;
         CHECK_OK(moray_complex_plant(&map, &spec), "plant");
         for (int trial = 0; trial < 3; trial++) {
             test_against_swimmer(&spec, &map, &seed);
-            test_derivatives(&map, links[k], &seed);
+            test_derivatives(&spec, &map, &seed);
         }
         moray_map_release(&map);
     }

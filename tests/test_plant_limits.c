@@ -29,19 +29,20 @@ static moray_plant_spec paper_plant(moray_joints joints)
 // On the gait itself the joints need no correction: both forms say the same of the body, the forces and the power.
 static void test_closed_loop_on_gait(void)
 {
-    const moray_gait gait = {.amplitude = 0.045, .omega = 2.1, .delta = 0.7, .offset = 0.011};
+    const moray_gait gait = {.amplitude = 0.045, .omega = 2.1, .delta = 0.7, .offset = 0.011, .taper = 0.3};
     const double t = 1.3, body[6] = {0.4, 2, -3, 0.2, 0.3, -0.05};
     moray_plant_spec spec = paper_plant(MORAY_JOINTS_ON_GAIT);
     spec.path_forces = spec.path_angles = true;
-    double short_in[11], in[STATES + 5], ddphi[JOINTS], short_out[OUTPUTS], out[OUTPUTS];
+    double short_in[12], in[STATES + 6], ddphi[JOINTS], short_out[OUTPUTS], out[OUTPUTS];
     memcpy(short_in, body, sizeof body);
-    memcpy(short_in + 6, (double[]){gait.amplitude, gait.omega, gait.delta, gait.offset, t}, 5 * sizeof(double));
+    memcpy(short_in + 6, (double[]){gait.amplitude, gait.omega, gait.delta, gait.offset, gait.taper, t},
+           6 * sizeof(double));
     evaluate(&spec, short_in, short_out);
 
     moray_gait_reference(&gait, JOINTS, t, in + PHI, in + V_PHI, ddphi);
     memcpy(in + THETA, body, 3 * sizeof *body);
     memcpy(in + V_THETA, body + 3, 3 * sizeof *body);
-    memcpy(in + STATES, short_in + 6, 5 * sizeof *in);
+    memcpy(in + STATES, short_in + 6, 6 * sizeof *in);
     spec.joints = MORAY_JOINTS_CLOSED_LOOP;
     evaluate(&spec, in, out);
     for (int i = 0; i < JOINTS; i++)
@@ -57,15 +58,16 @@ static void test_closed_loop_on_gait(void)
 // The free form with the ubar of (34) is the closed loop.
 static void test_free_follows_control(void)
 {
-    const moray_gait gait = {.amplitude = 0.04, .omega = 1.9, .delta = 0.6, .offset = -0.01};
+    const moray_gait gait = {.amplitude = 0.04, .omega = 1.9, .delta = 0.6, .offset = -0.01, .taper = -0.4};
     const double t = 0.8;
     unsigned long long seed = 3;
-    double closed[STATES + 5], free_in[STATES + JOINTS + 1] = {0}, phi[JOINTS], dphi[JOINTS], ddphi[JOINTS];
+    double closed[STATES + 6], free_in[STATES + JOINTS + 1] = {0}, phi[JOINTS], dphi[JOINTS], ddphi[JOINTS];
     double closed_out[OUTPUTS], out[OUTPUTS];
     moray_plant_spec spec = paper_plant(MORAY_JOINTS_CLOSED_LOOP);
     for (int k = 0; k < STATES; k++)
         closed[k] = free_in[k] = tap_random(&seed, -0.05, 0.05);
-    memcpy(closed + STATES, (double[]){gait.amplitude, gait.omega, gait.delta, gait.offset, t}, 5 * sizeof(double));
+    memcpy(closed + STATES, (double[]){gait.amplitude, gait.omega, gait.delta, gait.offset, gait.taper, t},
+           6 * sizeof(double));
     moray_gait_reference(&gait, JOINTS, t, phi, dphi, ddphi);
     for (int i = 0; i < JOINTS; i++)
         free_in[STATES + i] = ddphi[i] + 50 * (dphi[i] - closed[V_PHI + i]) + 200 * (phi[i] - closed[PHI + i]); // (34)
@@ -169,15 +171,15 @@ static void test_frames(void)
 
 typedef struct swim {
     const moray_map *map;
-    double gait[4];
+    double gait[5];
 } swim;
 
 static void swim_out(const swim *self, double t, const double *x, double *out)
 {
-    double in[11];
+    double in[12];
     memcpy(in, x, 6 * sizeof *x);
     memcpy(in + 6, self->gait, sizeof self->gait);
-    in[10] = t;
+    in[11] = t;
     self->map->value(self->map->self, in, out);
 }
 

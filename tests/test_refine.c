@@ -268,6 +268,11 @@ static void test_interrupted(void)
           "stopped on the second mesh");
     CHECK(moray_solution_info(solution)->outcome == MORAY_NLP_INTERRUPTED, "which the outcome says");
     CHECK(moray_solution_size(solution).variables == history[0].variables, "the solution is of the first");
+    CHECK(strstr(moray_solution_diagnosis(solution), "A finer mesh of ") &&
+              strstr(moray_solution_diagnosis(solution),
+                     "intervals was not solved (interrupted); this is the last that "
+                     "was."),
+          "which the diagnosis says");
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }

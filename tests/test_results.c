@@ -106,6 +106,20 @@ static void test_json(void)
     moray_json_free(json);
 }
 
+static void test_json_depth(void)
+{
+    moray_json *json = moray_json_new();
+    CHECK(moray_json_depth(json) == 0, "nothing is open inside");
+    moray_json_open(json, "object");
+    moray_json_open_list(json, "list");
+    moray_json_numbers(json, NULL, (const double[]){1, 2}, 2);
+    CHECK(moray_json_depth(json) == 2, "an object and a list in it: %d", moray_json_depth(json));
+    moray_json_close(json);
+    CHECK(moray_json_depth(json) == 1, "the list is closed: %d", moray_json_depth(json));
+    moray_json_free(json);
+    CHECK(moray_json_depth(NULL) == 0, "no builder, no depth");
+}
+
 static void test_json_errors(void)
 {
     moray_status status;
@@ -248,6 +262,7 @@ int main(void)
 {
     test_numbers();
     test_json();
+    test_json_depth();
     test_json_errors();
     test_json_memory();
     test_csv();

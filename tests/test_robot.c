@@ -79,6 +79,37 @@ static void test_gait(void)
     CHECK_NEAR(back.offset, gait.offset, 1e-15, "mapping and back, offset");
 }
 
+// A gait whose offset is phi_0(t) = 0.01 + 0.02 t - 0.03 t^2, at t.
+static moray_gait steered_at(double t)
+{
+    return (moray_gait){.amplitude = 0.04,
+                        .omega = 2,
+                        .delta = 0.7,
+                        .offset = 0.01 + 0.02 * t - 0.03 * t * t,
+                        .offset_rate = 0.02 - 0.06 * t,
+                        .offset_acceleration = -0.06};
+}
+
+static void test_moving_offset(void)
+{
+    enum { n = 5 };
+    double phi[n], dphi[n], ddphi[n], later[n], earlier[n], unused[n], fast[n], slow[n];
+    const double t = 0.3, h = 1e-4;
+    const moray_gait now = steered_at(t), ahead = steered_at(t + h), behind = steered_at(t - h);
+    moray_gait_reference(&now, n, t, phi, dphi, ddphi);
+    moray_gait_reference(&ahead, n, t + h, later, fast, unused);
+    moray_gait_reference(&behind, n, t - h, earlier, slow, unused);
+    for (int i = 0; i < n; i++) {
+        CHECK_NEAR(dphi[i], (later[i] - earlier[i]) / (2 * h), 1e-9, "first derivative with a moving offset");
+        CHECK_NEAR(ddphi[i], (fast[i] - slow[i]) / (2 * h), 1e-8, "second derivative with a moving offset");
+    }
+    const moray_robot robot = moray_robot_paper();
+    const moray_gait there = moray_gait_map(&robot, &now, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    CHECK_NEAR(there.offset_rate / there.offset, now.offset_rate / now.offset, 1e-15, "the rate is mapped alike");
+    CHECK_NEAR(there.offset_acceleration / there.offset, now.offset_acceleration / now.offset, 1e-13,
+               "and the acceleration");
+}
+
 // The joints of a tapered wave as phasors of sin(omega t).
 static double complex joint_phasor(const moray_gait *gait, int n, int i)
 {
@@ -90,33 +121,41 @@ static double complex joint_phasor(const moray_gait *gait, int n, int i)
 
 // What moray/snake.h says of the link angles of a tapered gait: for the revolute joints (1) is solved for angles whose
 // amplitudes in the travelling frame are linear along the body, for the prismatic ones (12) is evaluated.
+// Phasors of links whose differences (sign 1) or sums (-1) of neighbours are the joints', of all those the wave: of
+// phase delta from link to link, of amplitude linear in it.
+static void links_of(int N, const double complex *joint, int sign, double delta, double complex *link)
+{
+    const double complex back = sign * cexp(-I * delta);
+    double flip = 1;
+    link[0] = 0;
+    for (int i = 0; i < N - 1; i++, flip *= sign)
+        link[i + 1] = link[i] - flip * joint[i]; // sign^i times the link's
+    const double complex common = -(link[0] - 2 * link[1] * back + link[2] * back * back) / ((1 - back) * (1 - back));
+    for (int i = 0; i < N; i++) // without second difference
+        link[i] += common;
+}
+
 static void test_taper(void)
 {
     enum { N = 9, n = N - 1 };
-    const double l = 0.07, tau = -0.4, delta = 0.7;
+    const double tau = -0.4, delta = 0.7;
     const moray_gait gait = {.amplitude = 0.04, .omega = 2, .delta = delta, .taper = tau};
-    double complex joint[n], link[N] = {0};
-    for (int i = 0; i < n; i++) {
+    double complex joint[n], link[N], both[N];
+    for (int i = 0; i < n; i++)
         joint[i] = joint_phasor(&gait, n, i);
-        link[i + 1] = link[i] - joint[i];
-    }
+    links_of(N, joint, 1, delta, link);  // theta_i - theta_{i+1} = phi_i
+    links_of(N, joint, -1, delta, both); // l sin theta_i + l sin theta_{i+1} = phi_i
     CHECK_NEAR(cabs(joint[0]), 0.04 * 1.4, 1e-15, "first joint");
     CHECK_NEAR(cabs(joint[n - 1]), 0.04 * 0.6, 1e-15, "last joint");
-    const double complex back = cexp(-I * delta);
-    const double complex common =
-        -(link[0] - 2 * link[1] * back + link[2] * back * back) / ((1 - back) * (1 - back)); // no second difference
+    moray_robot robot = moray_robot_paper();
+    robot.links = N;
     for (int i = 0; i < N; i++) {
-        const double s = 2 * (i - 0.5) / (N - 2) - 1, by_cot = tau / tan(delta / 2) / (N - 2);
-        const double by_tan = tau * tan(delta / 2) / (N - 2);
-        CHECK_NEAR(cabs(link[i] + common), 0.04 / (2 * sin(delta / 2)) * hypot(1 + tau * s, by_cot), 1e-14,
+        CHECK_NEAR(moray_theta_max_of_link(&robot, MORAY_FIRST_PRINCIPLES, &gait, i + 1), cabs(link[i]), 1e-14,
                    "link angle of revolute joints");
-        if (i > 0 && i < N - 1)
-            CHECK_NEAR(cabs(joint[i - 1] + joint[i]) / (4 * l),
-                       0.04 / (2 * l) * cos(delta / 2) * hypot(1 + tau * s, by_tan), 1e-14,
-                       "link angle of prismatic joints");
+        CHECK_NEAR(sin(moray_theta_max_of_link(&robot, MORAY_CONTROL_ORIENTED, &gait, i + 1)), cabs(both[i]) / robot.l,
+                   1e-14, "link angle of prismatic joints");
     }
     CHECK_NEAR(cabs(joint_phasor(&gait, 1, 0)), 0.04, 1e-17, "a single joint is the middle of its body");
-    const moray_robot robot = moray_robot_paper();
     CHECK_NEAR(moray_gait_map(&robot, &gait, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES).taper, tau, 0,
                "the taper is the same in both models");
 }
@@ -127,6 +166,7 @@ int main(void)
     test_bad_robots();
     test_amplitude_table();
     test_gait();
+    test_moving_offset();
     test_taper();
     return tap_done();
 }

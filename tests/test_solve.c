@@ -28,6 +28,24 @@ static moray_solution *solve(moray_ocp *ocp, const char *scheme, int intervals, 
     return solution;
 }
 
+// The Hamiltonian is the same at every collocated node; those are most of all.
+static void check_hamiltonian(const moray_solution *solution, const char *what, double value, double tolerance)
+{
+    double hamiltonian[64], worst = 0;
+    const int nodes = moray_solution_hamiltonian(solution, 0, hamiltonian);
+    int missing = 0;
+    for (int n = 0; n < nodes; n++) {
+        missing += isnan(hamiltonian[n]);
+        worst = fmax(worst, fabs(hamiltonian[n] - value)); // which passes over NaN
+    }
+    CHECK(2 * missing < nodes, "%s: at %d of %d nodes there is none", what, missing, nodes);
+    CHECK(worst < tolerance, "%s: Hamiltonian %g at %d nodes: %.1e", what, value, nodes, worst);
+    moray_certificate certificate;
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK(certificate.hamiltonian <= 2 * worst / (1 + fabs(value)) + 1e-15, "%s: its spread: %.1e", what,
+          certificate.hamiltonian);
+}
+
 // ---- Brachistochrone (Bryson & Ho 2.7): (0, 10) to (10, 5), g = 9.80665, 1.80160312 s ----
 
 static void slide(const moray_node *at, moray_rates *out, const void *data)
@@ -68,6 +86,7 @@ static void test_brachistochrone(void)
     CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
     CHECK(certificate.pass, "passes: KKT %.1e, mesh %.1e, between nodes %.1e, re-simulation %.1e", certificate.kkt,
           certificate.mesh_error, certificate.between_nodes, certificate.resimulation);
+    check_hamiltonian(solution, "brachistochrone", -1, 1e-5); // of the least time
     moray_solution_free(solution);
     solution = solve(ocp, "trapezoid", 10, NULL);
     CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate of a coarse mesh");
@@ -118,6 +137,7 @@ static void test_costates(void)
         for (int n = 0; n < nodes; n++)
             worst = fmax(worst, fmax(fabs(costate[n][0] + 12), fabs(costate[n][1] - 12 * time[n] + 6)));
         CHECK(worst < 1e-7, "%s: costates at all %d nodes against the closed form: %.1e", schemes[k], nodes, worst);
+        check_hamiltonian(solution, schemes[k], -18, 1e-7); // u^2/2 + lambda_x v + lambda_v u
         moray_solution_at(solution, 0, 0.37, x, &u);
         CHECK_NEAR(u, 6 - 12 * 0.37, 1e-7, "control between nodes");
         if (strcmp(schemes[k], "gauss2") != 0) // its interpolant is a parabola, the solution a cubic
@@ -174,6 +194,11 @@ static void test_order(void)
         CHECK(fabs(order - cases[k].order) < 0.2, "%s: measured order %.2f, theory %g (errors %.1e, %.1e)",
               cases[k].scheme, order, cases[k].order, coarse, fine);
     }
+    moray_certificate certificate;
+    moray_solution *solution = solve(ocp, "gauss2", 10, NULL);
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK(isnan(certificate.hamiltonian), "dynamics that depend on time have no constant Hamiltonian");
+    moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
 

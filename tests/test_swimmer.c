@@ -192,6 +192,26 @@ static double turning(moray_model model, double phi_0)
     return model == MORAY_FIRST_PRINCIPLES ? dx[N + 2] : dx[2 * N + 1];
 }
 
+// The state on the gait has the joints of (25) and the body asked for.
+static void check_on_gait(random_seed *seed, moray_model model, int N)
+{
+    const moray_robot robot = random_robot(seed, N);
+    const moray_gait gait = {
+        .amplitude = 0.2, .omega = 1.7, .delta = 0.6, .offset = 0.05, .offset_rate = 0.03, .offset_acceleration = 0.1};
+    moray_swimmer *swimmer = make(&robot, model);
+    double x[MAX_STATES], body[6], back[6], phi[MAX_LINKS], v_phi[MAX_LINKS], want[3][MAX_LINKS];
+    random_vector(seed, 1, 6, body);
+    moray_swimmer_on_gait(swimmer, &gait, 0.8, body, x);
+    moray_state_body(model, N, x, back);
+    CHECK(relative_distance(6, back, body) < 1e-14, "N = %d: the body's six states there and back", N);
+    moray_swimmer_joints(swimmer, x, phi, v_phi);
+    moray_gait_reference(&gait, N - 1, 0.8, want[0], want[1], want[2]);
+    CHECK(relative_distance(N - 1, phi, want[0]) < 1e-13 && relative_distance(N - 1, v_phi, want[1]) < 1e-13,
+          "N = %d: joints and their rates on the gait", N);
+    CHECK_NEAR(moray_swimmer_pose(swimmer, x).heading, body[0], 1e-14, "heading");
+    moray_swimmer_free(swimmer);
+}
+
 int main(void)
 {
     random_seed seed = 34;
@@ -202,6 +222,7 @@ int main(void)
             check_rest(&seed, models[m], robot_links[k]);
             check_control(&seed, models[m], robot_links[k]);
             check_pose(&seed, models[m], robot_links[k]);
+            check_on_gait(&seed, models[m], robot_links[k]);
         }
     }
     for (int k = 0; k < ROBOT_SIZES; k++) {

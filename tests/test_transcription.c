@@ -8,6 +8,7 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "ocp/names.h"
 #include "ocp/transcription.h"
 
 static void first_leg(const moray_node *at, moray_rates *out, const void *data)

@@ -95,8 +95,18 @@ moray_status moray_app_parse(const moray_program *program, int argc, char **argv
 // Writes the --help text, with the settings' present values as defaults. Error: MORAY_MEMORY, MORAY_IO.
 moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file);
 
-// ---- Start and end of a program
-// --------------------------------------------------------------------------------------
+// A key of an INI file and what to write after its "=".
+typedef struct moray_ini_entry {
+    const char *key, *value;
+} moray_ini_entry;
+
+// Sets keys of one section of an INI file and keeps all other lines as they are: the line of a key is written anew, a
+// key that has none follows the section's last, a section that is not there ends the file, a file that is not there is
+// made. A new file takes the old one's place at once, by renaming. Error: MORAY_IO naming the file, MORAY_MEMORY; the
+// file is then as before.
+moray_status moray_ini_set(const char *path, const char *section, const moray_ini_entry *entries, int n);
+
+// ---- Start and end of a program ------------------------------------------------------------------------------------
 
 typedef enum {
     MORAY_EXIT_SOLVED = 0, // and certified

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The optimal-gait problem: the periodic orbit of a swimming robot and the gait (25) that makes it the fastest along a
-// course.
+// course, or the thriftiest.
 #ifndef MORAY_GAIT_PROBLEM_H
 #define MORAY_GAIT_PROBLEM_H
 
@@ -11,19 +11,29 @@
 
 // Bounds of the gait parameters and of what the gait may ask of the joints; moray_free() and MORAY_INFINITY: no limit.
 typedef struct moray_gait_limits {
-    moray_bounds theta_max; // [rad] amplitude of (24), through (33) or (27). Control-oriented model: where the offset
-                            // is free, its upper bound holds for every link angle (12) too, at the nodes of the mesh
+    moray_bounds theta_max; // [rad] amplitude of (24), through (33) or (27); with a taper that of every link may be
+                            // no larger (moray_theta_max_of_link), that in the middle no smaller. Control-oriented
+                            // model: where the offset is free, the upper bound holds for every link angle (12) too, at
+                            // the nodes of the mesh
     moray_bounds omega;     // [rad/s]
     moray_bounds delta;     // [rad]
     moray_bounds offset;    // phi_0 of the model [m or rad]
+    moray_bounds taper;     // of the amplitude along the body, within -1:1; 0 for all links alike
     double power;           // mean joint power [W]
-    double joint_rate;      // amplitude of phi' [m/s or rad/s]
+    double joint_rate;      // amplitude of every phi_i' [m/s or rad/s]
     double joint_effort;    // |u_i| [N or N m], at the nodes of the mesh
+    double course_speed;    // least speed along the course [m/s]; 0: none
 } moray_gait_limits;
+
+typedef enum {
+    MORAY_GAIT_FASTEST,   // largest speed along the course
+    MORAY_GAIT_THRIFTIEST // least joint work per distance along the course
+} moray_gait_goal;
 
 typedef struct moray_gait_problem_spec {
     moray_robot robot;
     moray_model model;
+    moray_gait_goal goal;
     moray_joints joints; // MORAY_JOINTS_ON_GAIT; or MORAY_JOINTS_CLOSED_LOOP, control-oriented model only
     double current[2];   // [m/s]
     double course;       // [rad]
@@ -33,15 +43,16 @@ typedef struct moray_gait_problem_spec {
 typedef struct moray_gait_problem moray_gait_problem;
 
 // Builds the problem: one phase over one period, from p = 0; states periodic but for the position; no net motion across
-// the course; maximise the speed along it. All derivatives analytic. Error: MORAY_INPUT naming what is wrong,
+// the course; the goal. All derivatives analytic. Error: MORAY_INPUT naming what is wrong,
 // MORAY_MEMORY.
 moray_status moray_gait_problem_new(moray_gait_problem **problem, const moray_gait_problem_spec *spec);
 void moray_gait_problem_free(moray_gait_problem *problem);
 const moray_ocp *moray_gait_problem_ocp(const moray_gait_problem *problem);
 
-// The gait as parameters s = (a, omega, delta, phi_0), and back.
-moray_gait moray_gait_from_parameters(const double s[4]);
-void moray_gait_to_parameters(const moray_gait *gait, double s[4]);
+// The gait as parameters s = (a, omega, delta, phi_0, taper), and back.
+enum { MORAY_GAIT_PARAMETERS = 5 };
+moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAMETERS]);
+void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAMETERS]);
 
 // Solves from the orbit of `gait` (parameters of the problem's model): a track over one period, from t = 0, p = 0, as
 // moray_swim_steady leaves it. Errors and result: those of moray_solve.

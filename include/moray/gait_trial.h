@@ -62,7 +62,7 @@ void moray_steady_to_json(moray_json *json, const char *key, moray_model model, 
 
 // Rows of a table of trials, in columns: (trial 0, trial 1, ...) of the gait, or of one model's results. Fills
 // rows[0..], returns how many (at most MORAY_TRIAL_ROWS).
-enum { MORAY_TRIAL_ROWS = 8 };
+enum { MORAY_TRIAL_ROWS = 10 };
 int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *trials, int n, moray_table_row *rows);
 int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, int n, double course,
                       moray_table_row *rows);

@@ -44,6 +44,17 @@ typedef void moray_complex_fn(void *self, const double complex *in, double compl
 moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *self,
                                     void (*release)(void *self), const double *probe);
 
+// Joins two maps into one with the inputs of `extra`, of which place[k], ascending in k, is input k of `base`, and with
+// the outputs of `base`, those of `extra` inserted before output `at`. Takes over both, and leaves them zeroed, whether
+// it succeeds or not. Error: MORAY_MEMORY.
+moray_status moray_map_join(moray_map *map, moray_map *base, const int *place, moray_map *extra, int at);
+// The same for a function that knows only real numbers (tables, other people's code): Jacobians by central differences
+// of fourth order (about 1e-10 where the function is smooth), Hessians by second differences (about 1e-7). A second
+// derivative that is zero at and around the probe is taken to be zero everywhere.
+typedef void moray_real_fn(void *self, const double *in, double *out);
+moray_status moray_map_from_real(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *self,
+                                 void (*release)(void *self), const double *probe);
+
 // The worst disagreement between a map's derivatives and an independent route, relative to 1 + |reference|.
 typedef struct moray_derivative_report {
     double jacobian_error, hessian_error;

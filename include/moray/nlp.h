@@ -46,6 +46,7 @@ typedef struct moray_nlp_settings {
     double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
     bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
     int print_level;    // 0: Ipopt's own log on standard output, 0..12
+    bool timing;        // false: true has the linear solver timed, which goes through a temporary file
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;
@@ -66,9 +67,12 @@ const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
 typedef struct moray_nlp_info {
     moray_nlp_outcome outcome;
     int iterations;
-    double seconds;            // whole solve
-    double evaluation_seconds; // of it in the callbacks
+    double seconds;            // whole solve, by the clock on the wall
+    double cpu_seconds;        // whole solve, of the processor
+    double evaluation_seconds; // of cpu_seconds, in the callbacks
+    double linear_seconds;     // of cpu_seconds, in the linear solver, to 1e-3; NaN unless asked for
     int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
+    double evaluation_by[5];   // evaluation_seconds of each
 } moray_nlp_info;
 
 // Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there. Returns MORAY_OK

@@ -8,10 +8,9 @@
 #ifndef MORAY_OCP_H
 #define MORAY_OCP_H
 
-#include <complex.h>
-
 #include "moray/map.h"
 #include "moray/nlp.h"
+#include "moray/num.h"
 #include "moray/ode.h"
 #include "moray/scheme.h"
 
@@ -56,9 +55,8 @@ typedef struct moray_bounds_list {
 // ---- Problem form
 // ------------------------------------------------------------------------------------------------------
 
-typedef double complex moray_num; // user functions are plain C99 on this type; their derivatives come by complex step
-
-// Where the functions of a phase are evaluated, and what they give.
+// User functions are plain C99 on moray_num, see num.h; their derivatives come by complex step. Where the functions of
+// a phase are evaluated, and what they give:
 typedef struct moray_node {
     const moray_num *x, *u, *s; // [nx], [nu], [ns]
     moray_num t;
@@ -83,25 +81,52 @@ typedef struct moray_verdict {
 } moray_verdict;
 typedef void moray_endpoint_fn(const moray_ends *at, moray_verdict *out, const void *data);
 
+// The same for code that knows only double: derivatives by sparse differences, see moray_map_from_real.
+typedef struct moray_real_node {
+    const double *x, *u, *s;
+    double t;
+} moray_real_node;
+typedef struct moray_real_rates {
+    double *f, *c, *g;
+} moray_real_rates;
+typedef void moray_continuous_real_fn(const moray_real_node *at, moray_real_rates *out, const void *data);
+
+typedef struct moray_real_phase_ends {
+    const double *x0, *xf, *q;
+    double t0, tf;
+} moray_real_phase_ends;
+typedef struct moray_real_ends {
+    const moray_real_phase_ends *phase;
+    const double *s;
+} moray_real_ends;
+typedef struct moray_real_verdict {
+    double objective, *e;
+} moray_real_verdict;
+typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_verdict *out, const void *data);
+
+// Of continuous, continuous_real and map, exactly one.
 typedef struct moray_phase_spec {
     const char *name;
     int nx, nu, nc, nq;
-    moray_continuous_fn *continuous; // complex step; or
+    moray_continuous_fn *continuous; // complex step
     const moray_map *map;            // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
     moray_bounds t0, tf;
     moray_bounds_list x, x0, xf, u, c, q;                         // x0 and xf narrow x at the ends
     const char *const *x_names, *const *u_names, *const *c_names; // NULL: x[0], ...
+    moray_continuous_real_fn *continuous_real;                    // differences
 } moray_phase_spec;
 
+// Of endpoint, endpoint_real and endpoint_map, exactly one.
 typedef struct moray_ocp_spec {
     const char *name;
     int phases, ns, ne;
     const moray_phase_spec *phase; // [phases]
-    moray_endpoint_fn *endpoint;   // complex step; or
+    moray_endpoint_fn *endpoint;   // complex step
     const moray_map *endpoint_map; // analytic: in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
     moray_bounds_list s, e;
     const char *const *s_names, *const *e_names;
-    const void *data; // handed to the functions
+    const void *data;                      // handed to the functions
+    moray_endpoint_real_fn *endpoint_real; // differences
 } moray_ocp_spec;
 
 typedef struct moray_ocp moray_ocp;
@@ -110,6 +135,17 @@ typedef struct moray_ocp moray_ocp;
 // contradictory or not a number; MORAY_MEMORY.
 moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
 void moray_ocp_free(moray_ocp *ocp);
+
+// The worst disagreement, relative to 1 + |difference|, between the derivatives in use and differences of the functions
+// at several points within the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u) is 0.2, by
+// differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
+typedef struct moray_ocp_derivative_report {
+    double jacobian_error, hessian_error;
+    char jacobian[300], hessian[300];
+} moray_ocp_derivative_report;
+
+// Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at any of the points.
+moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report);
 
 // Number of phases; states and controls of one of them.
 int moray_ocp_phases(const moray_ocp *ocp);
@@ -151,6 +187,7 @@ typedef struct moray_settings {
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log
+    bool timing;           // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
     moray_progress_fn *progress;
     void *observer;
 } moray_settings;
@@ -180,6 +217,12 @@ void moray_solution_at(const moray_solution *solution, int phase, double t, doub
 // The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the
 // Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL.
 int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
+
+// The Hamiltonian g + lambda f, with the integrands weighted by what they cost, at the nodes: hamiltonian[count], NaN
+// where the dynamics are not collocated (start of a phase with Radau, ends of the intervals with Gauss). Returns the
+// count. It is constant where the functions of the phase do not depend on time, 0 at a free final time that nothing
+// else depends on.
+int moray_solution_hamiltonian(const moray_solution *solution, int phase, double *hamiltonian);
 
 // Sizes of the programme that was solved.
 typedef struct moray_nlp_size {
@@ -218,6 +261,8 @@ typedef struct moray_certificate {
     double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
                           // when each phase is integrated again from its start with the found controls; limit 100 x
                           // mesh_tolerance
+    double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
+                          // functions do not depend on time, where theory has it constant; NaN without such a phase
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.

@@ -42,25 +42,32 @@ moray_status moray_robot_check(const moray_robot *robot);
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
 // Gait (25): phi_ref,i(t) = A_i sin(omega t + (i-1) delta) + offset, i = 1..N-1. A_i and offset are a and phi_0 in m
-// for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Eel-like motion, beyond the
-// paper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail, to 1 at the
-// last (0 where N = 2). The plants for the transcription, below, know no taper.
+// for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Where the offset moves,
+// offset_rate and offset_acceleration are phi_0' and phi_0'' at t, fed forward. Eel-like motion, beyond the paper, with
+// a negative taper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail,
+// to 1 at the last (0 where N = 2).
 typedef struct moray_gait {
-    double amplitude, omega, delta, offset, taper;
+    double amplitude, omega, delta, offset, taper, offset_rate, offset_acceleration;
 } moray_gait;
 
 // phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
 void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi);
 
 // Amplitude from the link-angle amplitude theta_max of (24), and back: (27) alpha = 2 sin(delta/2) theta_max;
-// (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body: by (1), link i then swings
-// with alpha/(2 sin(delta/2)) sqrt((1 + taper s)^2 + (taper cot(delta/2)/(N-2))^2), by (12) with
-// a/(2l) cos(delta/2) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2), s being s_i halfway between its two joints.
+// (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body. The wave of link angles
+// whose differences (1) are a tapered gait has in link i
+//     theta_max,i = alpha/(2 sin(delta/2)) sqrt((1 + taper s)^2 + (taper cot(delta/2)/(N-2))^2),
+// and that which gives one by (29), phi_i = l sin theta_i + l sin theta_{i+1},
+//     sin theta_max,i = a/(2l cos(delta/2)) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2),
+// where s is s_i halfway between its two joints: -+ (N-1)/(N-2) for the first and the last link.
 double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta);
 double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude, double delta);
 
-// The same gait for the other model: equal theta_max, omega, delta, taper; offset in the same ratio to the amplitude,
-// with the opposite sign (erratum E3).
+// That of link i = 1..N of a gait with a taper; the largest is that of link N, the head, or link 1, the tail.
+double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
+
+// The same gait for the other model: equal theta_max, omega, delta, taper; offset and its derivatives in the same ratio
+// to the amplitude, with the opposite sign (erratum E3).
 moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
 
 // ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------
@@ -80,12 +87,30 @@ int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
 
 void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
 
+// How a swimmer of the control-oriented model reads the paper. Misprints can be swum as printed, to see what they do;
+// the plants below have no such choice.
+typedef enum {
+    MORAY_READ_CORRECTED = 0,
+    MORAY_READ_23H_PRINTED = 1, // (23h) with h_4 and h_5 as printed (erratum E1)
+    MORAY_READ_L_PRINTED = 2,   // l of (8), (12), (13) half a link, as everywhere else (erratum E2)
+    MORAY_READ_PRINTED = 3      // both
+} moray_reading;
+
+// Corrected unless set; without effect on the first-principles model.
+void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
+
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].
 void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
 
 // Joint coordinates and rates (N-1 each) of the state.
 void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
+
+// The six states of the plants with the joints on the gait, see below: of a full state of the model; and the full state
+// whose joints are on the gait at t.
+void moray_state_body(moray_model model, int links, const double *x, double body[6]);
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
+                           double *x);
 
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
@@ -114,9 +139,11 @@ void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *
 // (N).
 
 typedef enum {
-    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0); no u
-    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0), ubar from (34); no u
-    MORAY_JOINTS_FREE         // x of (21), u = ubar (N-1); no s
+    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0, taper); no u
+    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0, taper), ubar from (34); no u
+    MORAY_JOINTS_FREE,        // x of (21), u = ubar (N-1); no s
+    MORAY_JOINTS_STEERED // on a gait without taper, with a moving offset, fed forward: x = (theta, p_x, p_y, v_theta,
+                         // v_t, v_n, phi_0, phi_0'), u = phi_0'', s = (a, omega, delta)
 } moray_joints;
 
 typedef struct moray_plant_spec {
@@ -135,9 +162,15 @@ moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
 // Error: MORAY_INPUT (robot), MORAY_MEMORY. The map owns all it needs; release with moray_map_release.
 moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 
-// The first-principles model in the same form, for MORAY_JOINTS_ON_GAIT only: x = (mean link angle, p_x, p_y, and their
-// rates), s = (alpha, omega, delta, phi_0); c: joint torques [N m], then theta_i minus their mean. Exact Jacobians by
-// complex step, Hessians differenced from them. Errors and ownership as above.
+// The first-principles model in the same form, for MORAY_JOINTS_ON_GAIT and MORAY_JOINTS_STEERED only, with alpha in
+// place of a: x = (mean link angle, p_x, p_y, and their rates), steered phi_0 and phi_0' too; c: joint torques [N m],
+// then theta_i minus their mean. Exact Jacobians and Hessians by complex step. Errors and ownership
+// as above.
 moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec);
+
+// The control-oriented model averaged over a period of the gait, to second order in a, in the form of
+// MORAY_JOINTS_STEERED without path outputs: the undulation is gone, so that a mesh need only resolve the turning.
+// Derivatives, errors and ownership as of moray_complex_plant.
+moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec);
 
 #endif

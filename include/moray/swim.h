@@ -28,11 +28,26 @@ typedef struct moray_swim_sample {
 // Returns false to stop the simulation. What the sample points at lives until the return.
 typedef bool moray_swim_observer(const moray_swim_sample *sample, void *self);
 
+// phi_0 and its first two time derivatives.
+typedef struct moray_offset {
+    double value, rate, acceleration;
+} moray_offset;
+
+// Who steers: the offset as a function of time, decided anew at t0 and every `period` after it from what is then
+// measured. `offset` is asked for any t from the last look on, up to the next, and for t0 before the first.
+typedef struct moray_helm {
+    moray_offset (*offset)(double t, const void *self);
+    void (*look)(const moray_swim_sample *sample, void *self); // NULL: sees nothing
+    double period;
+    void *self;
+} moray_helm;
+
 typedef struct moray_swim_plan {
     double t0, t1;
     const moray_gait_change *schedule; // ascending in t, the first not after t0
     int n_changes;
-    const double *times; // of the samples: ascending, within [t0, t1]; may be NULL with n_times 0
+    const moray_helm *helm; // steers in place of the gait's own offset; NULL: nobody does
+    const double *times;    // of the samples: ascending, within [t0, t1]; may be NULL with n_times 0
     int n_times;
     moray_swim_observer *observe;
     void *observer;
@@ -40,7 +55,8 @@ typedef struct moray_swim_plan {
 } moray_swim_plan;
 
 // Simulates from t0 to t1 in the swimmer's current; x[2N+4] is start and end state, *energy the joint work [J] (may be
-// NULL). Changes of gait and samples are exact stops, and the integrator starts anew at every change. When the observer
+// NULL). Changes of gait, looks of the helm and samples are exact stops; the integrator starts anew at every change and
+// look. When the observer
 // stops the run, the status is ok and x the state last observed; after an error x is the state last reached.
 // Error: MORAY_INPUT (plan, settings), MORAY_MEMORY, MORAY_NUMERIC.
 moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings, const moray_swim_plan *plan,

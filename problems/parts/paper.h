@@ -16,6 +16,9 @@ enum { PAPER_STUDIES = 32, PAPER_TABLES = 12 };
 typedef struct paper_settings {
     moray_common common;            // robot, current, output
     double theta_max, omega, delta; // of the gait that studies take where they do not vary it
+    moray_reading reading;          // of the control-oriented model
+    bool as_printed;                // reading = printed
+    char write_ini[MORAY_PATH_SIZE]; // empty: none
     bool chosen[PAPER_STUDIES];
 } paper_settings;
 
@@ -43,7 +46,8 @@ typedef struct paper {
 // Does the study and tells what it finds. An error ends this study only: its text says why.
 typedef moray_status paper_run(paper *p);
 
-paper_run paper_mapping;
+paper_run paper_straight, paper_turning, paper_linearising, paper_ground, paper_eel, paper_fit;
+paper_run paper_mapping, paper_forces, paper_links, paper_offset, paper_errata;
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------
 // What these give is freed after the last study.
@@ -51,9 +55,16 @@ paper_run paper_mapping;
 // Takes over a thing; frees it at once when out of memory. Error: MORAY_MEMORY.
 moray_status paper_own(paper *p, void *thing, void (*release)(void *));
 
-// n zeros; an empty track; a text as printf makes it ("" when out of memory). Error: MORAY_MEMORY.
+// n zeros; an empty track. Error: MORAY_MEMORY.
 moray_status paper_numbers(paper *p, size_t n, double **numbers);
 moray_status paper_track(paper *p, const moray_swimmer *swimmer, int capacity, moray_swim_track **track);
+
+// A swimmer of the robot, or of another, in the settings' current, with its own reading. Error: those of
+// moray_swimmer_new.
+moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model, moray_reading reading,
+                           moray_swimmer **swimmer);
+
+// A text as printf makes it, "" when out of memory.
 const char *paper_label(paper *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // ---- Swimming ------------------------------------------------------------------------------------------------------
@@ -65,6 +76,15 @@ moray_gait paper_gait(const paper *p, moray_model model, double theta_max);
 // (see moray_swim_steady). steady may be NULL. Error: those of moray_swim_steady.
 moray_status paper_orbit(paper *p, moray_model model, const moray_gait *gait, int points, moray_steady *steady,
                          moray_swim_track **orbit);
+
+// Half of largest less least of n values a stride apart: the amplitude of an oscillation.
+double paper_half_range(const double *values, int stride, int n);
+
+// The same for any swimmer, and for that of the settings in another current.
+moray_status paper_orbit_of(paper *p, const moray_swim_setup *setup, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit);
+moray_status paper_orbit_in(paper *p, const double current[2], moray_model model, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit);
 
 // ---- Telling -------------------------------------------------------------------------------------------------------
 

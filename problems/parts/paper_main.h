@@ -20,6 +20,8 @@ typedef struct paper_chapter {
     moray_status status;
 } paper_chapter;
 
+extern const char *const paper_reading_names[]; // by moray_reading, NULL-terminated
+
 void paper_release(paper *p); // all that p owns
 
 void paper_print_wrapped(const char *text, FILE *file); // a paragraph in lines of at most 100 columns

@@ -31,6 +31,7 @@ void paper_json_head(moray_json *json, const paper_settings *settings)
     moray_json_number(json, "links", settings->common.robot.links);
     moray_json_close(json);
     moray_json_numbers(json, "current_m_s", settings->common.current, 2);
+    moray_json_text(json, "reading", paper_reading_names[settings->reading]);
     moray_json_open(json, "gait");
     moray_json_number(json, "theta_max_deg", settings->theta_max / DEG);
     moray_json_number(json, "omega_deg_s", settings->omega / DEG);

@@ -5,6 +5,7 @@
 
 #include "paper_main.h"
 
+const char *const paper_reading_names[] = {"corrected", "23h", "l", "printed", NULL};
 const char *const paper_model_names[2] = {"control-oriented", "first-principles"};
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------
@@ -69,18 +70,32 @@ moray_status paper_track(paper *p, const moray_swimmer *swimmer, int capacity, m
     return moray_swim_track_new(*track, swimmer, capacity);
 }
 
+static void release_swimmer(void *swimmer)
+{
+    moray_swimmer_free(swimmer);
+}
+
+moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model, moray_reading reading,
+                           moray_swimmer **swimmer)
+{
+    MORAY_TRY(moray_swimmer_new(swimmer, robot, model));
+    MORAY_TRY(paper_own(p, *swimmer, release_swimmer));
+    moray_swimmer_set_current(*swimmer, p->basin.current[0], p->basin.current[1]);
+    moray_swimmer_set_reading(*swimmer, reading);
+    return moray_ok();
+}
+
 // printf into memory that is p's own; NULL when there is none.
 static char *print_text(paper *p, const char *format, va_list arguments)
 {
-    va_list again;
-    va_copy(again, arguments);
-    const size_t size = (size_t)vsnprintf(NULL, 0, format, again) + 1;
-    va_end(again);
-    char *text = malloc(size);
-    if (moray_failed(paper_own(p, text, free)))
-        return NULL;
-    vsnprintf(text, size, format, arguments);
-    return text;
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    const bool printed = stream && vfprintf(stream, format, arguments) >= 0;
+    if (stream && fclose(stream) == 0 && printed)
+        return moray_failed(paper_own(p, text, free)) ? NULL : text;
+    free(text);
+    return NULL;
 }
 
 const char *paper_label(paper *p, const char *format, ...)
@@ -104,10 +119,36 @@ moray_gait paper_gait(const paper *p, moray_model model, double theta_max)
 moray_status paper_orbit(paper *p, moray_model model, const moray_gait *gait, int points, moray_steady *steady,
                          moray_swim_track **orbit)
 {
-    const moray_swim_setup setup = moray_basin_setup(&p->basin, model);
+    return paper_orbit_in(p, p->basin.current, model, gait, points, steady, orbit);
+}
+
+moray_status paper_orbit_in(paper *p, const double current[2], moray_model model, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit)
+{
+    moray_swim_setup setup = moray_basin_setup(&p->basin, model);
+    setup.current[0] = current[0];
+    setup.current[1] = current[1];
+    const moray_status status = paper_orbit_of(p, &setup, gait, points, steady, orbit);
+    moray_swimmer_set_current(setup.swimmer, p->basin.current[0], p->basin.current[1]);
+    return status;
+}
+
+moray_status paper_orbit_of(paper *p, const moray_swim_setup *setup, const moray_gait *gait, int points,
+                            moray_steady *steady, moray_swim_track **orbit)
+{
     moray_steady unused;
     MORAY_TRY(own_track(p, orbit));
-    return moray_swim_steady(&setup, gait, 0, steady ? steady : &unused, *orbit, points);
+    return moray_swim_steady(setup, gait, 0, steady ? steady : &unused, *orbit, points);
+}
+
+double paper_half_range(const double *values, int stride, int n)
+{
+    double low = values[0], high = values[0];
+    for (int k = 1; k < n; k++) {
+        low = fmin(low, values[k * stride]);
+        high = fmax(high, values[k * stride]);
+    }
+    return (high - low) / 2;
 }
 
 // ---- Telling -------------------------------------------------------------------------------------------------------

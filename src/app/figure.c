@@ -21,13 +21,14 @@ static const struct {
 };
 enum { N_LOOKS = sizeof looks / sizeof *looks };
 
-// A text in gnuplot's single quotes, where only the quote itself and a line's end mean something.
+// A text in gnuplot's single quotes, where only the quote itself and a line's end mean something; quotes are appended
+// in double ones, for gnuplot cannot read two of them doubled.
 static void quote(FILE *script, const char *text)
 {
     fputc('\'', script);
     for (const char *c = text ? text : ""; *c; c++)
         if (*c == '\'')
-            fputs("''", script);
+            fputs("'.\"'\".'", script);
         else
             fputc((unsigned char)*c < ' ' ? ' ' : *c, script);
     fputc('\'', script);
@@ -75,14 +76,44 @@ static void write_curve(FILE *script, const moray_curve *curve, int number)
     quote(script, curve->label);
 }
 
+static void widen_to(double value, double range[2])
+{
+    range[0] = fmin(range[0], value); // NaN stays out
+    range[1] = fmax(range[1], value);
+}
+
+// The same scale on both axes, and a picture no flatter or slimmer than 4:1 around whatever is drawn.
+static void write_equal_axes(FILE *script, const moray_figure *figure)
+{
+    double range[2][2] = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
+    for (int k = 0; k < figure->n_curves; k++) {
+        const moray_curve *curve = &figure->curves[k];
+        const size_t stride = curve->stride ? (size_t)curve->stride : 1;
+        for (size_t i = 0; i < (size_t)curve->n; i++) {
+            widen_to(curve->x[i * stride], range[0]);
+            widen_to(curve->y[i * stride], range[1]);
+        }
+    }
+    const double width = range[0][1] - range[0][0], height = range[1][1] - range[1][0];
+    fputs("set size ratio -1\n", script);
+    if (!(isfinite(width) && isfinite(height)))
+        return;
+    for (int axis = 0; axis < 2; axis++) {
+        const double middle = (range[axis][0] + range[axis][1]) / 2, own = axis ? height : width;
+        const double half = fmax(0.53 * own, 0.125 * (axis ? width : height));
+        if (half > 0)
+            fprintf(script, "set %crange [%.17g:%.17g]\n", axis ? 'y' : 'x', middle - half, middle + half);
+    }
+}
+
 static void write_script(FILE *script, const moray_figure *figure)
 {
     fputs("set terminal svg noenhanced size 720,440 font 'Helvetica,13' background '#ffffff'\n"
-          "set grid lc rgb '#d0d0d0' lt 1 lw 0.5\nset border 3\nset tics nomirror\nset key outside below\n"
+          "set grid lc rgb '#d0d0d0' lt 1 lw 0.5\nset border 3\nset tics nomirror\nset key outside below height 1\n"
           "set offsets graph 0, graph 0, graph 0.03, graph 0.03\n",
           script);
     if (figure->equal_axes)
-        fputs("set size ratio -1\n", script);
+        write_equal_axes(script, figure);
     set_text(script, "title", figure->title);
     set_text(script, "xlabel", figure->x_label);
     set_text(script, "ylabel", figure->y_label);

@@ -5,15 +5,20 @@
 #include "base/triplets.h"
 #include "moray/gait_problem.h"
 
-// The ends of the optimal-gait problem as a map with analytic derivatives. Objective: minus the speed along the course.
-// Events: periodicity of every state but the position, displacement across the course [m], omega T [rad], amplitude as
-// bounded by gait_amplitude_bounds, then mean power [W] and rate amplitude where limited.
+// The ends of the optimal-gait problem as a map with analytic derivatives. Objective: minus the speed along the course,
+// or the joint work per distance along it. Events: periodicity of every state but the position, displacement across the
+// course [m], omega T [rad], amplitude in the middle of the body as bounded by gait_amplitude_bounds, its square for
+// the last and the first link where the taper may be positive and negative; then where limited mean power [W], largest
+// rate amplitude (of the last joint, of the first), speed along the course [m/s].
 struct gait_endpoint {
     int nx, position; // states; first of p_x, p_y
     double course[2]; // unit vector
     bool revolute;    // amplitude by (27), else by (33) with links of length L
     double L;
-    bool power, rate;
+    int links;
+    bool head, tail; // a taper above and below 0 is allowed
+    moray_gait_goal goal;
+    bool power, rate, speed;
     int events;
     triplets jac, hess;
 };

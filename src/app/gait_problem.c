@@ -16,14 +16,15 @@ struct moray_gait_problem {
     moray_ocp *ocp;
 };
 
-moray_gait moray_gait_from_parameters(const double s[4])
+moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAMETERS])
 {
-    return (moray_gait){.amplitude = s[0], .omega = s[1], .delta = s[2], .offset = s[3]};
+    return (moray_gait){.amplitude = s[0], .omega = s[1], .delta = s[2], .offset = s[3], .taper = s[4]};
 }
 
-void moray_gait_to_parameters(const moray_gait *gait, double s[4])
+void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAMETERS])
 {
-    memcpy(s, (double[]){gait->amplitude, gait->omega, gait->delta, gait->offset}, 4 * sizeof *s);
+    const double parameters[] = {gait->amplitude, gait->omega, gait->delta, gait->offset, gait->taper};
+    memcpy(s, parameters, sizeof parameters);
 }
 
 static moray_status check_range(const char *name, moray_bounds range, double least, double most, double unit)
@@ -58,9 +59,13 @@ static moray_status check_spec(const moray_gait_problem_spec *spec)
         MORAY_TRY(check_range("phi0_m", limits->offset, -spec->robot.l, spec->robot.l, 1));
     else
         MORAY_TRY(check_range("phi0_deg", limits->offset, -90 * degree, 90 * degree, degree));
+    const double most = spec->robot.links > 2 ? 1 : 0; // a joint alone has no taper
+    MORAY_TRY(check_range("taper", limits->taper, 0 - most, most, 1));
     MORAY_TRY(check_limit("power_W", limits->power));
     MORAY_TRY(check_limit("joint_rate", limits->joint_rate));
     MORAY_TRY(check_limit("joint_effort", limits->joint_effort));
+    if (!(limits->course_speed >= 0 && isfinite(limits->course_speed)))
+        return moray_error(MORAY_INPUT, "speed_m_s = %g: must be finite and above 0, or none", limits->course_speed);
     if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]) || !isfinite(spec->course))
         return moray_error(MORAY_INPUT, "current = %g,%g, course = %g: must be finite", spec->current[0],
                            spec->current[1], spec->course);
@@ -70,6 +75,13 @@ static moray_status check_spec(const moray_gait_problem_spec *spec)
 static bool limited(double value)
 {
     return value < MORAY_INFINITY;
+}
+
+// The least speed to ask for; work per distance means nothing where the robot makes no way.
+static double least_speed(const moray_gait_problem_spec *spec)
+{
+    const double some_way = 1e-3;
+    return spec->goal == MORAY_GAIT_THRIFTIEST ? fmax(spec->limits.course_speed, some_way) : spec->limits.course_speed;
 }
 
 static moray_status make_plant(moray_gait_problem *problem)
@@ -90,13 +102,16 @@ static moray_status make_endpoint(moray_gait_problem *problem)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
     const int joints = spec->joints == MORAY_JOINTS_ON_GAIT ? 0 : spec->robot.links - 1;
-    problem->endpoint = (struct gait_endpoint){.nx = problem->size.nx,
-                                               .position = joints + 1,
-                                               .revolute = spec->model == MORAY_FIRST_PRINCIPLES,
-                                               .L = 2 * spec->robot.l,
-                                               .course = {cos(spec->course), sin(spec->course)},
-                                               .power = limited(spec->limits.power),
-                                               .rate = limited(spec->limits.joint_rate)};
+    problem->endpoint = (struct gait_endpoint){
+        .nx = problem->size.nx,
+        .position = joints + 1,
+        .revolute = spec->model == MORAY_FIRST_PRINCIPLES,
+        .L = 2 * spec->robot.l,
+        .links = spec->robot.links,
+        .head = spec->limits.taper.upper > 0,
+        .tail = spec->limits.taper
+                    .lower<0, .course = {cos(spec->course), sin(spec->course)}, .power = limited(spec->limits.power),
+                           .goal = spec->goal, .rate = limited(spec->limits.joint_rate), .speed = least_speed(spec)> 0};
     return gait_endpoint_map(&problem->ends, &problem->endpoint);
 }
 
@@ -115,14 +130,22 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
     for (int i = 0; i < problem->size.nx - 2 + 1; i++)
         *e++ = moray_fixed(0);
     *e++ = moray_fixed(2 * M_PI);
-    *e++ = gait_amplitude_bounds(&problem->endpoint, limits->theta_max);
-    if (problem->endpoint.power)
+    const struct gait_endpoint *endpoint = &problem->endpoint;
+    const moray_bounds amplitude = gait_amplitude_bounds(endpoint, limits->theta_max);
+    *e++ = amplitude;
+    for (int k = 0; k < endpoint->head + endpoint->tail; k++)
+        *e++ = moray_at_most(amplitude.upper * amplitude.upper);
+    if (endpoint->power)
         *e++ = moray_at_most(limits->power);
-    if (problem->endpoint.rate)
+    for (int k = 0; k < (endpoint->head && endpoint->tail ? 2 : 1) && endpoint->rate; k++)
         *e++ = moray_at_most(limits->joint_rate);
+    if (endpoint->speed)
+        *e++ = moray_at_least(least_speed(&problem->spec));
 }
 
-static const char *const s_names[][4] = {{"a", "omega", "delta", "phi_0"}, {"alpha", "omega", "delta", "phi_0"}};
+static const char *const goals[] = {"fastest gait", "thriftiest gait"};
+static const char *const s_names[][MORAY_GAIT_PARAMETERS] = {{"a", "omega", "delta", "phi_0", "taper"},
+                                                             {"alpha", "omega", "delta", "phi_0", "taper"}};
 static const char *const gait_states[][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
                                              {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
 
@@ -142,7 +165,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
     const bool control = problem->spec.model == MORAY_CONTROL_ORIENTED;
     const double largest = control ? 2 * problem->spec.robot.l * sin(limits->theta_max.upper) // of a, by (33)
                                    : 2 * limits->theta_max.upper;                             // of alpha, by (27)
-    const moray_bounds s[] = {moray_between(0, largest), limits->omega, limits->delta, limits->offset};
+    const moray_bounds s[] = {moray_between(0, largest), limits->omega, limits->delta, limits->offset, limits->taper};
     const moray_phase_spec phase = {
         .name = "period",
         .nx = nx,
@@ -155,11 +178,11 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .c = {c, nc},
         .x_names = problem->spec.joints == MORAY_JOINTS_ON_GAIT ? gait_states[problem->spec.model] : NULL,
     };
-    return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = "max_speed",
+    return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = goals[problem->spec.goal],
                                                           .phases = 1,
                                                           .phase = &phase,
-                                                          .ns = 4,
-                                                          .s = {s, 4},
+                                                          .ns = MORAY_GAIT_PARAMETERS,
+                                                          .s = {s, MORAY_GAIT_PARAMETERS},
                                                           .s_names = s_names[problem->spec.model],
                                                           .ne = ne,
                                                           .e = {e, ne},
@@ -221,29 +244,18 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
 // The plant's state from the swimmer's.
 static void plant_state(const moray_gait_problem *problem, const double *full, double *x)
 {
-    const int N = problem->spec.robot.links;
     if (problem->spec.joints != MORAY_JOINTS_ON_GAIT) {
         memcpy(x, full, (size_t)problem->size.nx * sizeof *x);
         return;
     }
-    for (int half = 0; half < 2; half++, full += N + 2, x += 3) {
-        if (problem->spec.model == MORAY_CONTROL_ORIENTED) {
-            memcpy(x, full + N - 1, 3 * sizeof *x);
-            continue;
-        }
-        x[0] = 0;
-        for (int i = 0; i < N; i++)
-            x[0] += full[i] / N;
-        x[1] = full[N];
-        x[2] = full[N + 1];
-    }
+    moray_state_body(problem->spec.model, problem->spec.robot.links, full, x);
 }
 
 moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
                                       const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution)
 {
     const int nx = problem->size.nx;
-    double s[4], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
+    double s[MORAY_GAIT_PARAMETERS], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
     if (!x)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", orbit->n);
     for (int k = 0; k < orbit->n; k++)

@@ -10,6 +10,11 @@ static double theta_max_of(const moray_robot *robot, const moray_gait *gait)
     return moray_theta_max_from_amplitude(robot, MORAY_CONTROL_ORIENTED, gait->amplitude, gait->delta);
 }
 
+static double end_angle(const moray_robot *robot, const moray_gait *gait, int link)
+{
+    return moray_theta_max_of_link(robot, MORAY_FIRST_PRINCIPLES, gait, link) / degree;
+}
+
 void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *robot, const moray_gait gait[2])
 {
     const moray_gait *control = &gait[MORAY_CONTROL_ORIENTED], *revolute = &gait[MORAY_FIRST_PRINCIPLES];
@@ -21,7 +26,14 @@ void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *ro
     moray_json_number(json, "delta_deg", control->delta / degree);
     moray_json_number(json, "phi0_m", control->offset);
     moray_json_number(json, "phi0_deg", revolute->offset / degree);
+    moray_json_number(json, "taper", control->taper);
     moray_json_close(json);
+}
+
+// Joint work per distance along the course.
+static double course_cost(const moray_steady *steady, bool held, double course)
+{
+    return held ? steady->power / moray_course_speed(steady, course) : NAN;
 }
 
 void moray_steady_to_json(moray_json *json, const char *key, moray_model model, const moray_gait_trial *trial,
@@ -35,6 +47,7 @@ void moray_steady_to_json(moray_json *json, const char *key, moray_model model, 
     moray_json_number(json, "course_speed_m_s", trial->held[model] ? moray_course_speed(steady, course) : NAN);
     moray_json_number(json, "power_W", steady->power);
     moray_json_number(json, "cost_of_transport_J_m", steady->cost_of_transport);
+    moray_json_number(json, "course_cost_J_m", course_cost(&trial->steady[model], trial->held[model], course));
     moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", steady->peak_effort);
     moray_json_number(json, "max_link_angle_deg", steady->peak_link_angle / degree);
     if (!trial->held[model])
@@ -42,6 +55,7 @@ void moray_steady_to_json(moray_json *json, const char *key, moray_model model, 
     moray_json_close(json);
 }
 
+// The last three rows only for gaits with a taper.
 int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *trials, int n, moray_table_row *rows)
 {
     static const char *const labels[][2] = {{"theta_max, amplitude of (24)", "deg"},
@@ -50,8 +64,12 @@ int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *tri
                                             {"a, by (33)", "cm"},
                                             {"alpha, by (27)", "deg"},
                                             {"phi_0, control-oriented", "cm"},
-                                            {"phi_0, first-principles", "deg"}};
+                                            {"phi_0, first-principles", "deg"},
+                                            {"taper of the amplitude", ""},
+                                            {"theta_max of the head, by (27)", "deg"},
+                                            {"theta_max of the tail, by (27)", "deg"}};
     enum { count = sizeof labels / sizeof *labels };
+    bool tapers = false;
     for (int i = 0; i < count; i++)
         rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
     for (int k = 0; k < n; k++) {
@@ -63,13 +81,18 @@ int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *tri
                                       100 * control->amplitude,
                                       revolute->amplitude / degree,
                                       fabs(control->offset) < 1e-9 ? 0 : 100 * control->offset,
-                                      fabs(revolute->offset) < 1e-9 ? 0 : revolute->offset / degree};
+                                      fabs(revolute->offset) < 1e-9 ? 0 : revolute->offset / degree,
+                                      fabs(control->taper) < 1e-6 ? 0 : control->taper,
+                                      end_angle(robot, revolute, robot->links),
+                                      end_angle(robot, revolute, 1)};
+        tapers = tapers || fabs(control->taper) >= 1e-6;
         for (int i = 0; i < count; i++)
             rows[i].value[k] = values[i];
     }
-    return count;
+    return tapers ? count : count - 3;
 }
 
+// The last row only where a current makes a difference.
 int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, int n, double course,
                       moray_table_row *rows)
 {
@@ -79,18 +102,25 @@ int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, 
                                      {"mean joint power", "W"},
                                      {"cost of transport", "J/m"},
                                      {control ? "peak joint force" : "peak joint torque", control ? "N" : "N m"},
-                                     {"largest link angle from heading", "deg"}};
-    enum { count = 6 };
+                                     {"largest link angle from heading", "deg"},
+                                     {"joint work along the course", "J/m"}};
+    enum { count = sizeof labels / sizeof *labels };
+    bool drifts = false;
     for (int i = 0; i < count; i++)
         rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
     for (int k = 0; k < n; k++) {
         const moray_steady *steady = &trials[k]->steady[model];
-        const double values[count] = {
-            steady->speed,       trials[k]->held[model] ? moray_course_speed(steady, course) : NAN,
-            steady->power,       steady->cost_of_transport,
-            steady->peak_effort, steady->peak_link_angle / degree};
+        const bool held = trials[k]->held[model];
+        const double values[count] = {steady->speed,
+                                      held ? moray_course_speed(steady, course) : NAN,
+                                      steady->power,
+                                      steady->cost_of_transport,
+                                      steady->peak_effort,
+                                      steady->peak_link_angle / degree,
+                                      course_cost(steady, held, course)};
         for (int i = 0; i < count; i++)
             rows[i].value[k] = values[i];
+        drifts = drifts || (held && fabs(values[1] - values[0]) > 1e-6);
     }
-    return count;
+    return drifts ? count : count - 1;
 }

@@ -83,10 +83,11 @@ static bool is_first_of_section(const moray_options *options, int at)
     return true;
 }
 
-static void print_section(FILE *file, const moray_options *options, const void *settings, const char *section)
+static void print_section(FILE *file, const moray_options *options, const void *settings, const char *section,
+                          bool in_files)
 {
     char name[80], text[80];
-    fprintf(file, "\nKeys for --set, in INI files under [%s]:\n", section);
+    fprintf(file, in_files ? "\nKeys for --set, in INI files under [%s]:\n" : "\nKeys of the %s for --set:\n", section);
     for (int i = 0; i < options->n; i++) {
         const moray_option *row = &options->row[i];
         if (!row->key || strcmp(row->section, section) != 0)
@@ -131,11 +132,13 @@ moray_status moray_app_help(const moray_program *program, const void *settings, 
     print_flags(file, &options, settings);
     for (int i = 0; i < options.n; i++)
         if (options.row[i].key && is_first_of_section(&options, i))
-            print_section(file, &options, settings, options.row[i].section);
+            print_section(file, &options, settings, options.row[i].section, !program->no_robot);
     fputc('\n', file);
+    if (!program->no_robot)
+        print_wrapped(file, "The INI file overrides the defaults, the command line overrides both.", 0, 0);
     print_wrapped(file,
-                  "The INI file overrides the defaults, the command line overrides both. Exit status: 0 solved and "
-                  "certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 interrupted.",
+                  "Exit status: 0 solved and certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 "
+                  "interrupted.",
                   0, 0);
     free(options.row);
     if (fflush(file) || ferror(file))

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_FILES = 64, NAME_SIZE = 128 };
+enum { MOST_FILES = 128, NAME_SIZE = 128 };
 
 typedef struct staged_file {
     char name[NAME_SIZE];

@@ -6,10 +6,8 @@
 
 #include "app/swim_plant.h"
 
-enum { FINEST = 360 };              // samples of a period, at least
-static const double TURNING = 1e-3; // heading drift of a turning gait [rad a period]
-static const double TREND = 1e-5;   // largest relative change of speed and power a period that counts as steady
-static const double SLOW = 1e-3;    // speeds [m/s] and powers [W] below agree absolutely
+static const double TREND = 1e-5; // largest relative change of speed and power a period that counts as steady
+static const double SLOW = 1e-3;  // speeds [m/s] and powers [W] below agree absolutely
 
 moray_swim_settings moray_swim_settings_default(void)
 {

@@ -30,6 +30,12 @@ void swim_plant_free(swim_plant *plant)
 
 static bool rates(swim_plant *plant, double t, const double *x, double *dx)
 {
+    if (plant->helm) {
+        const moray_offset offset = plant->helm->offset(t, plant->helm->self);
+        plant->gait.offset = offset.value;
+        plant->gait.offset_rate = offset.rate;
+        plant->gait.offset_acceleration = offset.acceleration;
+    }
     moray_swimmer_control(plant->swimmer, &plant->gait, t, x, plant->ubar);
     return moray_swimmer_rates(plant->swimmer, x, plant->ubar, dx, plant->u);
 }

@@ -9,6 +9,7 @@
 typedef struct swim_plant {
     moray_swimmer *swimmer; // the caller's
     moray_gait gait;        // followed now
+    const moray_helm *helm; // NULL: nobody steers
     int n_states, n_joints;
     double *x;                           // n_states + 1: room for a start or end state
     double *ubar, *u, *phi, *v_phi, *dx; // scratch

@@ -3,10 +3,12 @@
 // The one file that knows Ipopt. Written for 3.11 (char * options) and kept valid for 3.14.
 #include "moray/nlp.h"
 
-#include <coin/IpStdCInterface.h>
+#include <IpStdCInterface.h> // the folder (coin or coin-or) is the package's business
 #include <math.h>
 #include <string.h>
 #include <time.h>
+
+#include "nlp/ipopt_timing.h"
 
 struct session {
     const moray_nlp *nlp;
@@ -16,16 +18,23 @@ struct session {
 
 enum { eval_objective, eval_gradient, eval_constraints, eval_jacobian, eval_hessian };
 
-static double now(void)
+static double now(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static double cpu(void)
+{
+    return now(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 static Bool account(struct session *session, int which, double start, bool ok)
 {
-    session->info->evaluation_seconds += now() - start;
+    const double spent = cpu() - start;
+    session->info->evaluation_seconds += spent;
+    session->info->evaluation_by[which] += spent;
     session->info->evaluations[which]++;
     return ok;
 }
@@ -34,7 +43,7 @@ static Bool on_objective(Index n, Number *x, Bool fresh, Number *f, UserDataPtr 
 {
     (void)n;
     struct session *session = data;
-    const double start = now();
+    const double start = cpu();
     return account(session, eval_objective, start, session->nlp->objective(session->nlp->self, x, fresh, f));
 }
 
@@ -42,7 +51,7 @@ static Bool on_gradient(Index n, Number *x, Bool fresh, Number *gradient, UserDa
 {
     (void)n;
     struct session *session = data;
-    const double start = now();
+    const double start = cpu();
     return account(session, eval_gradient, start, session->nlp->gradient(session->nlp->self, x, fresh, gradient));
 }
 
@@ -51,7 +60,7 @@ static Bool on_constraints(Index n, Number *x, Bool fresh, Index m, Number *g, U
     (void)n;
     (void)m;
     struct session *session = data;
-    const double start = now();
+    const double start = cpu();
     return account(session, eval_constraints, start, session->nlp->constraints(session->nlp->self, x, fresh, g));
 }
 
@@ -67,7 +76,7 @@ static Bool on_jacobian(Index n, Number *x, Bool fresh, Index m, Index nnz, Inde
         memcpy(col, nlp->jac_col, (size_t)nnz * sizeof *col);
         return TRUE;
     }
-    const double start = now();
+    const double start = cpu();
     return account(session, eval_jacobian, start, nlp->jacobian(nlp->self, x, fresh, values));
 }
 
@@ -84,7 +93,7 @@ static Bool on_hessian(Index n, Number *x, Bool fresh, Number sigma, Index m, Nu
         memcpy(col, nlp->hess_col, (size_t)nnz * sizeof *col);
         return TRUE;
     }
-    const double start = now();
+    const double start = cpu();
     return account(session, eval_hessian, start, nlp->hessian(nlp->self, x, fresh, sigma, lambda, values));
 }
 
@@ -159,13 +168,27 @@ static moray_nlp_outcome outcome_of(enum ApplicationReturnStatus code)
     }
 }
 
+static moray_status run(IpoptProblem problem, struct session *session, moray_iterate *iterate,
+                        struct ipopt_timing *timing)
+{
+    const moray_nlp_settings *settings = session->settings;
+    if (!set_options(problem, session->nlp, settings))
+        return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
+                           settings->tolerance, settings->max_iterations, settings->print_level);
+    if (settings->timing && ipopt_timing_open(timing) && OpenIpoptOutputFile(problem, timing->path, ipopt_timing_level))
+        AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
+    session->info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective,
+                                                   iterate->lambda, iterate->z_lower, iterate->z_upper, session));
+    return moray_ok();
+}
+
 moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
                                moray_nlp_info *info)
 {
     *info = (moray_nlp_info){0};
     if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
         return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
-    const double start = now();
+    const double start = now(CLOCK_MONOTONIC), cpu_start = cpu();
     // Ipopt copies the bounds.
     IpoptProblem problem = CreateIpoptProblem(
         nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
@@ -173,15 +196,12 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     if (!problem)
         return moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
     struct session session = {nlp, settings, info};
-    moray_status status = moray_ok();
-    if (set_options(problem, nlp, settings))
-        info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective, iterate->lambda,
-                                              iterate->z_lower, iterate->z_upper, &session));
-    else
-        status = moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
-                             settings->tolerance, settings->max_iterations, settings->print_level);
-    FreeIpoptProblem(problem);
-    info->seconds = now() - start;
+    struct ipopt_timing timing = {0};
+    moray_status status = run(problem, &session, iterate, &timing);
+    FreeIpoptProblem(problem); // writes the rest of the log
+    info->seconds = now(CLOCK_MONOTONIC) - start;
+    info->cpu_seconds = cpu() - cpu_start;
+    info->linear_seconds = ipopt_timing_close(&timing);
     return status;
 }
 

@@ -55,6 +55,32 @@ static moray_status resimulate(struct examiner *e, const moray_integrator *integ
     return status;
 }
 
+// ---- Hamiltonian ----
+
+static bool is_autonomous(const moray_map *map)
+{
+    for (int k = 0; k < map->jac.nnz; k++)
+        if (map->jac.col[k] == map->n_in - 1)
+            return false;
+    return true;
+}
+
+static moray_status spread_of_hamiltonian(const moray_solution *solution, int p, double *spread)
+{
+    double *values = calloc((size_t)solution->transcription->layout.phase[p].nodes, sizeof *values);
+    if (!values)
+        return moray_error(MORAY_MEMORY, "no memory for the certificate");
+    double least = INFINITY, most = -INFINITY;
+    const int nodes = moray_solution_hamiltonian(solution, p, values);
+    for (int n = 0; n < nodes; n++) {
+        least = fmin(least, values[n]); // which pass over NaN
+        most = fmax(most, values[n]);
+    }
+    *spread = fmax(*spread, (most - least) / (1 + fmax(fabs(least), fabs(most))));
+    free(values);
+    return moray_ok();
+}
+
 static moray_status examine_phase(const moray_solution *solution, int p, const moray_integrator *integrator,
                                   moray_certificate *certificate)
 {
@@ -66,13 +92,15 @@ static moray_status examine_phase(const moray_solution *solution, int p, const m
             fmax(certificate->mesh_error, examiner_interval(&e, &layout->interval[k], &certificate->between_nodes));
     moray_status status = resimulate(&e, integrator, certificate);
     examiner_free(&e);
+    if (!moray_failed(status) && is_autonomous(solution->transcription->ocp->phase[p].map))
+        status = spread_of_hamiltonian(solution, p, &certificate->hamiltonian);
     return status;
 }
 
 moray_status moray_certify(const moray_solution *solution, const moray_integrator *integrator,
                            moray_certificate *certificate)
 {
-    *certificate = (moray_certificate){0};
+    *certificate = (moray_certificate){.hamiltonian = NAN};
     moray_kkt kkt;
     MORAY_TRY(moray_kkt_error(&solution->transcription->nlp, &solution->iterate, &kkt));
     certificate->kkt = kkt.error;

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
+//
+// What a solution shows, in words.
+#include "ocp/diagnosis.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "ocp/solution.h"
+#include "ocp/names.h"
 
-enum { named_size = 160, listed = 6 };
+enum { most_lines = 12 };
 
-__attribute__((format(printf, 2, 3))) static void say(moray_solution *solution, const char *format, ...)
+void say(moray_solution *solution, const char *format, ...)
 {
     const size_t used = strlen(solution->diagnosis);
     va_list arguments;
@@ -17,21 +21,19 @@ __attribute__((format(printf, 2, 3))) static void say(moray_solution *solution, 
     va_end(arguments);
 }
 
-static double distance_outside(double value, double lower, double upper)
+double scaled_violation(const moray_solution *solution, int i)
 {
-    return fmax(fmax(lower - value, value - upper), 0);
+    const struct standing s = standing_of(solution, true, i);
+    return s.scale * (s.value < s.lower ? s.value - s.lower : s.value > s.upper ? s.value - s.upper : 0);
 }
 
 static void say_worst_violation(moray_solution *solution)
 {
     const struct transcription *t = solution->transcription;
-    const moray_nlp *nlp = &t->nlp;
-    const moray_iterate *it = &solution->iterate;
     double worst = 0;
     int where = -1;
-    for (int i = 0; i < nlp->m; i++) {
-        const double scale = nlp->g_scale ? nlp->g_scale[i] : 1;
-        const double violation = scale * distance_outside(it->g[i], nlp->g_lower[i], nlp->g_upper[i]);
+    for (int i = 0; i < t->nlp.m; i++) {
+        const double violation = fabs(scaled_violation(solution, i));
         if (violation > worst) {
             worst = violation;
             where = i;
@@ -41,47 +43,100 @@ static void say_worst_violation(moray_solution *solution)
         say(solution, "No constraint is violated by more than %.1e (scaled).\n", solution->settings.tolerance);
         return;
     }
-    char name[named_size];
-    layout_row_name(&t->layout, t->ocp, it->x, where, name, named_size);
-    say(solution, "Largest violation: %s, %.3g where [%.6g, %.6g] is allowed (scaled %.1e).\n", name, it->g[where],
-        nlp->g_lower[where], nlp->g_upper[where], worst);
+    char name[name_size];
+    layout_row_name(&t->layout, t->ocp, solution->iterate.x, where, name, name_size);
+    say(solution, "Largest violation: %s, %.3g where [%.6g, %.6g] is allowed (scaled %.1e).\n", name,
+        solution->iterate.g[where], t->nlp.g_lower[where], t->nlp.g_upper[where], worst);
 }
 
-// Parameters, times and events that sit on a bound with a multiplier: what holds the solution back.
-static void say_active(moray_solution *solution)
+static void say_furthest(moray_solution *solution)
 {
     const struct transcription *t = solution->transcription;
-    const moray_nlp *nlp = &t->nlp;
-    const moray_iterate *it = &solution->iterate;
-    char name[named_size];
-    int said = 0;
-    for (int j = 0; j < nlp->n && said < listed; j++) {
-        const double multiplier = it->z_upper[j] - it->z_lower[j],
-                     bound = multiplier > 0 ? nlp->x_upper[j] : nlp->x_lower[j];
-        if (nlp->x_lower[j] == nlp->x_upper[j] || fabs(multiplier) < 1e-4 ||
-            fabs(it->x[j] - bound) > 1e-5 * (1 + fabs(bound)))
-            continue;
-        layout_column_name(&t->layout, t->ocp, it->x, j, name, named_size);
-        say(solution, "%s%s at its %s bound %.6g", said++ ? "; " : "Active: ", name, multiplier > 0 ? "upper" : "lower",
-            bound);
+    double furthest = 0;
+    int where = 0;
+    for (int j = 0; j < t->nlp.n; j++) {
+        const double distance =
+            standing_of(solution, false, j).scale * fabs(solution->iterate.x[j] - solution->guess[j]);
+        if (distance > furthest) {
+            furthest = distance;
+            where = j;
+        }
     }
-    for (int i = 0; i < nlp->m && said < listed; i++) {
-        const double bound = it->lambda[i] > 0 ? nlp->g_upper[i] : nlp->g_lower[i];
-        if (nlp->g_lower[i] == nlp->g_upper[i] || fabs(it->lambda[i]) < 1e-4)
+    char name[name_size];
+    layout_column_name(&t->layout, t->ocp, solution->iterate.x, where, name, name_size);
+    say(solution, "Furthest from the guess: %s, %.4g instead of %.4g (scaled distance %.1e).\n", name,
+        solution->iterate.x[where], solution->guess[where], furthest);
+}
+
+// ---- Active bounds ----
+
+struct listing {
+    moray_solution *solution;
+    int lines;
+};
+
+static void say_band(const struct band *band, bool upper, struct listing *list)
+{
+    moray_solution *solution = list->solution;
+    const struct transcription *t = solution->transcription;
+    int active = 0, all = 0, first = 0, last = 0;
+    double bound = 0;
+    for (int n = 0; n < band_members(t, band); n++) {
+        const int i = band_member(t, band, n);
+        const struct standing s = i < 0 ? (struct standing){.fixed = true} : standing_of(solution, band->rows, i);
+        all += i >= 0;
+        if (s.fixed || !(upper ? s.at_upper : s.at_lower))
             continue;
-        layout_row_name(&t->layout, t->ocp, it->x, i, name, named_size);
-        say(solution, "%s%s at its %s bound %.6g", said++ ? "; " : "Active: ", name,
-            it->lambda[i] > 0 ? "upper" : "lower", bound);
+        if (active++ == 0) {
+            first = n;
+            bound = upper ? s.upper : s.lower;
+        }
+        last = n;
     }
-    say(solution, said ? ".\n" : "No bound is active.\n");
+    if (active == 0 || list->lines++ >= most_lines)
+        return;
+    char name[name_size];
+    band_name(solution, band, name, name_size);
+    say(solution, "Active: %s at its %s bound %.6g", name, upper ? "upper" : "lower", bound);
+    if (band->kind != band_single) {
+        const struct phase_layout *layout = &t->layout.phase[band->p];
+        say(solution, " on %d of %d nodes, t = %.6g .. %.6g", active, all,
+            layout_time(&t->layout, t->ocp, solution->iterate.x, band->p, layout->node[first].tau),
+            layout_time(&t->layout, t->ocp, solution->iterate.x, band->p, layout->node[last].tau));
+    }
+    say(solution, ".\n");
+}
+
+static void list_band(const struct band *band, void *self)
+{
+    say_band(band, false, self);
+    say_band(band, true, self);
+}
+
+static void say_active(moray_solution *solution)
+{
+    struct listing list = {solution, 0};
+    visit_bands(solution->transcription, list_band, &list);
+    if (list.lines == 0)
+        say(solution, "No bound is active.\n");
+    else if (list.lines > most_lines)
+        say(solution, "And %d more at their bounds.\n", list.lines - most_lines);
 }
 
 void diagnose(moray_solution *solution)
 {
+    const moray_mesh_record *tried = &solution->history[solution->meshes - 1];
     solution->diagnosis[0] = 0;
     say(solution, "%s after %d iterations.\n", moray_nlp_outcome_text(solution->info.outcome),
         solution->info.iterations);
+    if (tried->variables != solution->transcription->layout.columns)
+        say(solution, "A finer mesh of %d intervals was not solved (%s); this is the last that was.\n",
+            tried->intervals, moray_nlp_outcome_text(tried->outcome));
     assemble_constraints(solution->transcription, solution->iterate.g);
     say_worst_violation(solution);
     say_active(solution);
+    if (solution->info.outcome == MORAY_NLP_SOLVED)
+        return;
+    say_furthest(solution);
+    say_suggestion(solution);
 }

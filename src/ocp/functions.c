@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// User functions on complex numbers become maps on packed vectors.
-#include "ocp/problem.h"
-
+// User functions, on complex numbers or on real ones, become maps on packed vectors.
 #include <math.h>
 #include <stdlib.h>
+
+#include "base/numeric_map.h"
+#include "ocp/probe.h"
 
 struct wrapped_phase {
     const struct phase *phase;
     moray_continuous_fn *function;
+    moray_continuous_real_fn *real;
     const void *data;
 };
 
@@ -19,6 +21,15 @@ static void call_continuous(void *self, const double complex *in, double complex
     const moray_node node = {.x = in, .u = in + p->nx, .s = in + p->nx + p->nu, .t = in[p->nx + p->nu + p->ns]};
     moray_rates rates = {.f = out, .c = out + p->nx, .g = out + p->nx + p->nc};
     wrapped->function(&node, &rates, wrapped->data);
+}
+
+static void call_continuous_real(void *self, const double *in, double *out)
+{
+    const struct wrapped_phase *wrapped = self;
+    const struct phase *p = wrapped->phase;
+    const moray_real_node node = {.x = in, .u = in + p->nx, .s = in + p->nx + p->nu, .t = in[p->nx + p->nu + p->ns]};
+    moray_real_rates rates = {.f = out, .c = out + p->nx, .g = out + p->nx + p->nc};
+    wrapped->real(&node, &rates, wrapped->data);
 }
 
 static void call_endpoint(void *self, const double complex *in, double complex *out)
@@ -36,70 +47,55 @@ static void call_endpoint(void *self, const double complex *in, double complex *
     out[0] = verdict.objective;
 }
 
-// A point of a vector with these bounds to look at patterns from: off the middle, so that nothing vanishes by symmetry;
-// a further trial moves it.
-static double probe_value(moray_bounds bounds, int i, int trial)
+static void call_endpoint_real(void *self, const double *in, double *out)
 {
-    const double shift = 0.2 * (fmod(0.618033988749895 * (i + 1) + 0.37 * trial, 1) - 0.5);
-    const bool boxed = bounds.lower > -MORAY_INFINITY && bounds.upper < MORAY_INFINITY;
-    const double width = boxed ? bounds.upper - bounds.lower : 1 + fabs(bounds_middle(bounds));
-    const double value = bounds_middle(bounds) + width * (shift + (boxed ? 0 : 0.3));
-    return fmin(fmax(value, bounds.lower), bounds.upper);
-}
-
-static void probe_list(const moray_bounds *bounds, int n, int trial, double **out)
-{
-    for (int i = 0; i < n; i++)
-        *(*out)++ = probe_value(bounds[i], i, trial);
-}
-
-// The middle between the ends says most about where a state lives.
-static void probe_states(const struct phase *p, int trial, double **out)
-{
-    for (int i = 0; i < p->nx; i++) {
-        const double x0 = probe_value(p->x0[i], i, trial), xf = probe_value(p->xf[i], i + 7, trial);
-        *(*out)++ = 0.55 * x0 + 0.45 * xf;
+    const moray_ocp *ocp = self;
+    for (int p = 0; p < ocp->phases; p++) {
+        const int nx = ocp->phase[p].nx;
+        ocp->real_ends[p] = (moray_real_phase_ends){
+            .x0 = in, .t0 = in[nx], .xf = in + nx + 1, .tf = in[2 * nx + 1], .q = in + 2 * nx + 2};
+        in += 2 * nx + 2 + ocp->phase[p].nq;
     }
-}
-
-static void phase_probe(const moray_ocp *ocp, const struct phase *p, int trial, double *out)
-{
-    probe_states(p, trial, &out);
-    probe_list(p->u, p->nu, trial, &out);
-    probe_list(ocp->s, ocp->ns, trial, &out);
-    *out = 0.6 * probe_value(p->t0, 0, trial) + 0.4 * probe_value(p->tf, 1, trial);
-}
-
-static void endpoint_probe(const moray_ocp *ocp, int trial, double *out)
-{
-    for (int i = 0; i < ocp->phases; i++) {
-        const struct phase *p = &ocp->phase[i];
-        probe_list(p->x0, p->nx, trial, &out);
-        probe_list(&p->t0, 1, trial, &out);
-        probe_list(p->xf, p->nx, trial, &out);
-        probe_list(&p->tf, 1, trial + 1, &out);
-        probe_list(p->q, p->nq, trial, &out);
-    }
-    probe_list(ocp->s, ocp->ns, trial, &out);
+    const moray_real_ends ends = {.phase = ocp->real_ends, .s = in};
+    moray_real_verdict verdict = {.e = out + 1};
+    ocp->endpoint_real_fn(&ends, &verdict, ocp->data);
+    out[0] = verdict.objective;
 }
 
 enum { trials = 8 }; // probe points tried before a function is said not to be finite anywhere
 
-static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, moray_continuous_fn *function)
+static moray_status phase_map(const moray_ocp *ocp, struct phase *p, int trial, double *probe, double *size)
 {
-    const int n_in = p->nx + p->nu + p->ns + 1, n_out = p->nx + p->nc + p->nq;
-    double *probe = calloc((size_t)n_in, sizeof *probe);
+    const int n_in = phase_inputs(p), n_out = p->nx + p->nc + p->nq;
+    phase_probe(ocp, p, trial, probe);
+    phase_sizes(ocp, p, size);
+    if (p->wrapped->real)
+        return real_map_new(&p->own_map, n_in, n_out, call_continuous_real, p->wrapped, NULL, probe, size);
+    return complex_map_new(&p->own_map, n_in, n_out, call_continuous, p->wrapped, NULL, probe, size);
+}
+
+static moray_status endpoint_map(moray_ocp *ocp, int trial, double *probe, double *size)
+{
+    const int n_in = endpoint_inputs(ocp), n_out = 1 + ocp->ne;
+    endpoint_probe(ocp, trial, probe);
+    endpoint_sizes(ocp, size);
+    if (ocp->endpoint_real_fn)
+        return real_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint_real, ocp, NULL, probe, size);
+    return complex_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint, ocp, NULL, probe, size);
+}
+
+static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phase_spec *spec)
+{
+    const size_t n = (size_t)phase_inputs(p);
+    double *work = calloc(2 * n, sizeof *work);
     p->wrapped = calloc(1, sizeof *p->wrapped);
-    moray_status status = moray_error(MORAY_MEMORY, "no memory for phase %s", p->name);
-    if (p->wrapped && probe) {
-        *p->wrapped = (struct wrapped_phase){p, function, ocp->data};
-        for (int trial = 0; trial < trials && moray_failed(status); trial++) {
-            phase_probe(ocp, p, trial, probe);
-            status = moray_map_from_complex(&p->own_map, n_in, n_out, call_continuous, p->wrapped, NULL, probe);
-        }
-    }
+    moray_status status = moray_error(MORAY_MEMORY, "no memory for its functions");
+    if (p->wrapped && work)
+        *p->wrapped = (struct wrapped_phase){p, spec->continuous, spec->continuous_real, ocp->data};
+    for (int trial = 0; p->wrapped && work && trial < trials && moray_failed(status); trial++)
+        status = phase_map(ocp, p, trial, work, work + n);
     p->map = &p->own_map;
-    free(probe);
+    free(work);
     if (moray_failed(status))
         return moray_error(status.code, "phase %s: %s", p->name, status.text);
     return status;
@@ -107,17 +103,13 @@ static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, moray_continuous
 
 static moray_status wrap_endpoint(moray_ocp *ocp)
 {
-    int n_in = ocp->ns;
-    for (int i = 0; i < ocp->phases; i++)
-        n_in += 2 * ocp->phase[i].nx + 2 + ocp->phase[i].nq;
-    double *probe = calloc((size_t)n_in, sizeof *probe);
-    moray_status status = moray_error(MORAY_MEMORY, "no memory for the endpoint of %s", ocp->name);
-    for (int trial = 0; probe && trial < trials && moray_failed(status); trial++) {
-        endpoint_probe(ocp, trial, probe);
-        status = moray_map_from_complex(&ocp->own_endpoint, n_in, 1 + ocp->ne, call_endpoint, ocp, NULL, probe);
-    }
+    const size_t n = (size_t)endpoint_inputs(ocp) + 1;
+    double *work = calloc(2 * n, sizeof *work);
+    moray_status status = moray_error(MORAY_MEMORY, "no memory for its function");
+    for (int trial = 0; work && trial < trials && moray_failed(status); trial++)
+        status = endpoint_map(ocp, trial, work, work + n);
     ocp->endpoint = &ocp->own_endpoint;
-    free(probe);
+    free(work);
     if (moray_failed(status))
         return moray_error(status.code, "endpoint of %s: %s", ocp->name, status.text);
     return status;
@@ -126,9 +118,14 @@ static moray_status wrap_endpoint(moray_ocp *ocp)
 moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec)
 {
     for (int i = 0; i < ocp->phases; i++)
-        if (spec->phase[i].continuous)
-            MORAY_TRY(wrap_phase(ocp, &ocp->phase[i], spec->phase[i].continuous));
+        if (!spec->phase[i].map)
+            MORAY_TRY(wrap_phase(ocp, &ocp->phase[i], &spec->phase[i]));
     return ocp->endpoint ? moray_ok() : wrap_endpoint(ocp);
+}
+
+bool phase_is_differenced(const struct phase *p)
+{
+    return p->wrapped && p->wrapped->real;
 }
 
 void unwrap_functions(moray_ocp *ocp)

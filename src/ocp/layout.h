@@ -46,11 +46,6 @@ struct layout {
 moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family, const struct mesh *meshes);
 void layout_free(struct layout *layout);
 
-// "phase wire, t = 1.25: state v", "parameter omega", ...: what a column or row of the programme is. text[size].
-void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int column, char *text,
-                        int size);
-void layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text, int size);
-
 // Time of tau in phase p at the decision vector x.
 double layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau);
 void layout_span(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double *t0, double *tf);

@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <stdio.h>
 
-#include "ocp/layout.h"
-
-// "state v" or "state x[2]"
-static void entry_name(const char *kind, const char *letter, const char *const *names, int i, char *text, int size)
-{
-    if (names)
-        snprintf(text, (size_t)size, "%s %s", kind, names[i]);
-    else
-        snprintf(text, (size_t)size, "%s %s[%d]", kind, letter, i);
-}
+#include "ocp/names.h"
 
 enum { name_size = 100 };
 
@@ -34,9 +25,9 @@ void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const
         p++;
     const struct phase_layout *phase = &layout->phase[p];
     if (column >= phase->q) {
-        const bool time = column - phase->q >= ocp->phase[p].nq;
-        snprintf(text, (size_t)size, time ? "%s time of phase %s" : "integral %s of phase %s",
-                 time ? (column == phase->t0 ? "initial" : "final") : "q", ocp->phase[p].name);
+        const int nx = ocp->phase[p].nx, m = column - phase->q;
+        const int input = column == phase->t0 ? nx : column == phase->tf ? 2 * nx + 1 : 2 * nx + 2 + m;
+        phase_end_name(&ocp->phase[p], input, text, size);
         return;
     }
     int n = 0;

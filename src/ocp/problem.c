@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "ocp/problem.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "ocp/probe.h"
 
 double bounds_middle(moray_bounds bounds)
 {
@@ -105,9 +105,9 @@ static moray_status check_phase(const struct phase *phase, const moray_phase_spe
     if (spec->nx < 1 || spec->nu < 0 || spec->nc < 0 || spec->nq < 0)
         return moray_error(MORAY_INPUT, "phase %s: nx %d, nu %d, nc %d, nq %d; nx must be positive, none negative",
                            phase->name, spec->nx, spec->nu, spec->nc, spec->nq);
-    if (!spec->continuous == !spec->map)
-        return moray_error(MORAY_INPUT, "phase %s: needs a continuous function or a map, and not both", phase->name);
-    const int in = spec->nx + spec->nu + phase->ns + 1, out = spec->nx + spec->nc + spec->nq;
+    if (!!spec->continuous + !!spec->continuous_real + !!spec->map != 1)
+        return moray_error(MORAY_INPUT, "phase %s: needs a continuous function or a map, and only one", phase->name);
+    const int in = phase_inputs(phase), out = spec->nx + spec->nc + spec->nq;
     if (spec->map && (spec->map->n_in != in || spec->map->n_out != out))
         return moray_error(MORAY_INPUT, "phase %s: the map has %d inputs and %d outputs, the phase %d and %d",
                            phase->name, spec->map->n_in, spec->map->n_out, in, out);
@@ -151,33 +151,27 @@ static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, str
     return narrow((struct place){"xf", phase->name}, phase, phase->xf);
 }
 
-static int endpoint_inputs(const moray_ocp *ocp)
-{
-    int n = ocp->ns;
-    for (int p = 0; p < ocp->phases; p++)
-        n += 2 * ocp->phase[p].nx + 2 + ocp->phase[p].nq;
-    return n;
-}
-
 static moray_status copy_spec(moray_ocp *ocp, const moray_ocp_spec *spec)
 {
     ocp->name = copy_text(ocp, spec->name ? spec->name : "problem");
     ocp->phases = spec->phases, ocp->ns = spec->ns, ocp->ne = spec->ne, ocp->data = spec->data;
     ocp->endpoint = spec->endpoint_map, ocp->endpoint_fn = spec->endpoint;
+    ocp->endpoint_real_fn = spec->endpoint_real;
     if (!ocp->name)
         return no_memory();
     if (spec->phases < 1 || spec->ns < 0 || spec->ne < 0)
         return moray_error(MORAY_INPUT, "problem %s: %d phases, ns %d, ne %d; there must be a phase, none negative",
                            ocp->name, spec->phases, spec->ns, spec->ne);
-    if (!spec->endpoint == !spec->endpoint_map)
-        return moray_error(MORAY_INPUT, "problem %s: needs an endpoint function or a map, and not both", ocp->name);
+    if (!!spec->endpoint + !!spec->endpoint_real + !!spec->endpoint_map != 1)
+        return moray_error(MORAY_INPUT, "problem %s: needs an endpoint function or a map, and only one", ocp->name);
     MORAY_TRY(copy_names(ocp, spec->s_names, spec->ns, &ocp->s_names));
     MORAY_TRY(copy_names(ocp, spec->e_names, spec->ne, &ocp->e_names));
     MORAY_TRY(copy_bounds(ocp, (struct place){"s", ocp->name}, spec->s, spec->ns, ocp->s_names, false, &ocp->s));
     MORAY_TRY(copy_bounds(ocp, (struct place){"e", ocp->name}, spec->e, spec->ne, ocp->e_names, true, &ocp->e));
     ocp->phase = own(ocp, (size_t)spec->phases * sizeof *ocp->phase);
     ocp->ends = own(ocp, (size_t)spec->phases * sizeof *ocp->ends);
-    if (!ocp->phase || !ocp->ends)
+    ocp->real_ends = own(ocp, (size_t)spec->phases * sizeof *ocp->real_ends);
+    if (!ocp->phase || !ocp->ends || !ocp->real_ends)
         return no_memory();
     for (int p = 0; p < spec->phases; p++)
         MORAY_TRY(copy_phase(ocp, &spec->phase[p], &ocp->phase[p]));

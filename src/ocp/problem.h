@@ -12,7 +12,7 @@ struct phase {
     const char *name;
     int nx, nu, nc, nq, ns;
     const moray_map *map; // in = [x, u, s, t], out = [f, c, g]
-    moray_map own_map;    // where it comes from a complex function
+    moray_map own_map;    // where it comes from a user function
     struct wrapped_phase *wrapped;
     moray_bounds t0, tf;
     moray_bounds *x, *x0, *xf, *u, *c, *q;
@@ -26,7 +26,9 @@ struct moray_ocp {
     const moray_map *endpoint; // in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
     moray_map own_endpoint;
     moray_endpoint_fn *endpoint_fn;
+    moray_endpoint_real_fn *endpoint_real_fn;
     moray_phase_ends *ends; // scratch for endpoint_fn
+    moray_real_phase_ends *real_ends;
     moray_bounds *s, *e;
     const char **s_names, **e_names;
     const void *data;
@@ -38,8 +40,9 @@ struct moray_ocp {
 double bounds_middle(moray_bounds bounds);
 bool bounds_are_fixed(moray_bounds bounds);
 
-// Turns the complex functions of the spec into maps. Error: MORAY_MEMORY, MORAY_INPUT.
+// Turns the user functions of the spec into maps. Error: MORAY_MEMORY, MORAY_INPUT.
 moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec);
 void unwrap_functions(moray_ocp *ocp);
+bool phase_is_differenced(const struct phase *p); // of a function that knows only double
 
 #endif

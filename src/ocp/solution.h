@@ -4,13 +4,14 @@
 
 #include "ocp/transcription.h"
 
-enum { diagnosis_size = 2000 };
+enum { diagnosis_size = 4000 };
 
 struct moray_solution {
     struct transcription *transcription;
     moray_settings settings;
     moray_nlp_info info;
-    moray_iterate iterate;      // all in one block, owned
+    moray_iterate iterate;      // all in one block, owned, with
+    double *guess;              // [columns] where the solver started
     moray_mesh_record *history; // [settings.max_refinements + 1], owned
     int meshes;
     char diagnosis[diagnosis_size];
@@ -30,7 +31,7 @@ moray_status carry_multipliers(const moray_solution *from, moray_solution *to);
 void solution_on_interval(const moray_solution *solution, int p, const struct interval *interval, double time,
                           double *x, double *u);
 
-// Writes the diagnosis text.
+// Writes the diagnosis text; the history ends with the last mesh that was tried.
 void diagnose(moray_solution *solution);
 
 #endif

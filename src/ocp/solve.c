@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "ocp/refine.h"
 
@@ -71,11 +72,12 @@ static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
 static moray_status allocate_iterate(moray_solution *solution)
 {
     const int n = solution->transcription->nlp.n, m = solution->transcription->nlp.m;
-    double *block = calloc((size_t)(3 * n + 2 * m), sizeof *block);
+    double *block = calloc((size_t)(4 * n + 2 * m), sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for %d variables", n);
     solution->iterate = (moray_iterate){
-        .x = block, .z_lower = block + n, .z_upper = block + 2 * n, .g = block + 3 * n, .lambda = block + 3 * n + m};
+        .x = block, .z_lower = block + n, .z_upper = block + 2 * n, .g = block + 4 * n, .lambda = block + 4 * n + m};
+    solution->guess = block + 3 * n;
     return moray_ok();
 }
 
@@ -86,6 +88,7 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
                                 .barrier = warm ? settings->tolerance : settings->barrier,
                                 .warm = warm,
                                 .print_level = settings->print_level,
+                                .timing = settings->timing,
                                 .progress = settings->progress,
                                 .observer = settings->observer};
 }
@@ -110,6 +113,7 @@ static moray_status run_solver(moray_solution *solution, const moray_guess *gues
     MORAY_TRY(fill_guess(t, guess, solution->iterate.x));
     if (solution->settings.own_scaling)
         MORAY_TRY(choose_scales(t, solution->iterate.x));
+    memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (warm)
         MORAY_TRY(carry_multipliers(guess->from, solution));
     return moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
@@ -124,7 +128,6 @@ static moray_status run(moray_solution *solution, const moray_guess *guess)
         MORAY_TRY(run_solver(solution, guess, false));
     if (!transcription_jacobians(t, solution->iterate.x)) // accessors read the caches
         return moray_error(MORAY_NUMERIC, "at the solver's last point, %.200s", t->failure.text);
-    diagnose(solution);
     return moray_ok();
 }
 
@@ -204,6 +207,7 @@ static moray_status run_campaign(struct campaign *c, const moray_guess *guess, m
     MORAY_TRY(record_and_refine(c, *solution, &again));
     while (again)
         MORAY_TRY(solve_finer(c, solution, &again));
+    diagnose(*solution);
     return moray_ok();
 }
 

@@ -5,6 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ocp/names.h"
+
+enum { name_size = 100 };
+
 static int end_inputs(const struct phase *p)
 {
     return 2 * p->nx + 2 + p->nq;
@@ -35,13 +39,11 @@ static bool all_finite(const double *values, int n, int *bad)
 
 static bool fail_at_node(struct transcription *t, int p, int n, int bad)
 {
-    const struct phase *phase = &t->ocp->phase[p];
     const struct phase_cache *cache = &t->phase[p];
-    const char *kind = bad < phase->nx               ? "dynamics f"
-                       : bad < phase->nx + phase->nc ? "path constraint c"
-                                                     : "integrand g";
-    const int i = bad < phase->nx ? bad : bad < phase->nx + phase->nc ? bad - phase->nx : bad - phase->nx - phase->nc;
-    t->failure = moray_error(MORAY_NUMERIC, "%s[%d] of phase %s is not finite at t = %.6g", kind, i, phase->name,
+    char name[name_size];
+    phase_output_name(t->ocp, p, bad, name, name_size);
+    t->failures++;
+    t->failure = moray_error(MORAY_NUMERIC, "%s of phase %s is not finite at t = %.6g", name, t->ocp->phase[p].name,
                              cache->t0 + (cache->tf - cache->t0) * t->layout.phase[p].node[n].tau);
     return false;
 }
@@ -85,9 +87,10 @@ static bool end_values(struct transcription *t)
     map->value(map->self, t->end_in, t->end_out);
     if (all_finite(t->end_out, map->n_out, &bad))
         return true;
-    t->failure =
-        moray_error(MORAY_NUMERIC, bad ? "event e[%d] of %s is not finite" : "objective (%d) of %s is not finite",
-                    bad ? bad - 1 : 0, t->ocp->name);
+    char name[name_size];
+    endpoint_output_name(t->ocp, bad, name, name_size);
+    t->failures++;
+    t->failure = moray_error(MORAY_NUMERIC, "%s of %s is not finite", name, t->ocp->name);
     return false;
 }
 

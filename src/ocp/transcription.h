@@ -31,7 +31,8 @@ struct transcription {
     double *end_in, *end_out, *end_jac;
     int *end_column;           // column of each endpoint input, -1 for fixed times
     double *weight, *map_hess; // scratch for one call of a map's Hessian
-    moray_status failure;      // of the last evaluation: the function that is not finite, and where
+    moray_status failure;      // the last function that was not finite, and where
+    int failures;              // how often
 };
 
 // Error: MORAY_MEMORY, MORAY_INPUT.

@@ -30,6 +30,10 @@ void TYPED(complex_angles)(int N, REAL mean, const REAL *joints, REAL *angles);
 bool TYPED(complex_accelerations)(const moray_robot *robot, const double V[2], const TYPED(complex_motion) * motion,
                                   TYPED(complex_link) * links, REAL *ddtheta, REAL *ddp);
 
+// Solves the three balances of the chain for other loads h: moment about (p_x, p_y) and forces, overwritten with the
+// mean theta'' and p_x'', p_y''. Needs c, s, r of the links. False where they are singular.
+bool TYPED(complex_balances)(const moray_robot *robot, const TYPED(complex_link) * links, REAL h[3]);
+
 // Joint torques u[N-1] of (5a) by inverse dynamics, after complex_accelerations; returns the joint power
 // sum u_i phi_i'.
 REAL TYPED(complex_torques)(const moray_robot *robot, const TYPED(complex_motion) * motion,

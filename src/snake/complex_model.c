@@ -42,6 +42,27 @@ static void joints(int N, const double *x, double *phi, double *v_phi)
     }
 }
 
+// Mean link angle, p_x, p_y, and their rates.
+static void body(int N, const double *x, double out[6])
+{
+    for (int half = 0; half < 2; half++, x += N + 2, out += 3) {
+        out[0] = 0;
+        for (int i = 0; i < N; i++)
+            out[0] += x[i] / N;
+        out[1] = x[N];
+        out[2] = x[N + 1];
+    }
+}
+
+static void assemble(int N, const double *phi, const double *v_phi, const double in[6], double *x)
+{
+    for (int half = 0; half < 2; half++, x += N + 2, in += 3) {
+        complex_angles_d(N, in[0], half ? v_phi : phi, x);
+        x[N] = in[1];
+        x[N + 1] = in[2];
+    }
+}
+
 static bool rates(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
                   double *u, void *scratch)
 {
@@ -89,4 +110,4 @@ static void links(const moray_robot *robot, const double *x, double *x_i, double
     }
 }
 
-const snake_model complex_model = {scratch_bytes, rest, joints, rates, pose, links};
+const snake_model complex_model = {scratch_bytes, rest, joints, body, assemble, rates, pose, links};

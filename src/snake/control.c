@@ -64,6 +64,27 @@ static bool rates(const moray_robot *robot, const double current[2], const doubl
     return control_rates(robot, current, x, ubar, dx, u, scratch);
 }
 
+// theta, p_x, p_y, and v_theta, v_t, v_n
+static void body(int N, const double *x, double out[6])
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = x[N - 1 + i];
+        out[3 + i] = x[2 * N + 1 + i];
+    }
+}
+
+static void assemble(int N, const double *phi, const double *v_phi, const double in[6], double *x)
+{
+    for (int i = 0; i < N - 1; i++) {
+        x[i] = phi[i];
+        x[N + 2 + i] = v_phi[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        x[N - 1 + i] = in[i];
+        x[2 * N + 1 + i] = in[3 + i];
+    }
+}
+
 // (12) for link i = 0..N-1, with L = 2l.
 static double link_angle(const moray_robot *robot, const double *phi, int i)
 {
@@ -100,4 +121,4 @@ static void links(const moray_robot *robot, const double *x, double *x_i, double
     }
 }
 
-const snake_model control_model = {scratch_bytes, rest, joints, rates, pose, links};
+const snake_model control_model = {scratch_bytes, rest, joints, body, assemble, rates, pose, links};

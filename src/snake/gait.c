@@ -3,16 +3,18 @@
 
 #include <math.h>
 
+#include "taper.h"
+
 void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi)
 {
     const double omega = gait->omega;
     for (int i = 0; i < n_joints; i++) {
-        const double s = n_joints > 1 ? 2.0 * i / (n_joints - 1) - 1 : 0, a = gait->amplitude * (1 + gait->taper * s);
+        const double a = gait->amplitude * (1 + gait->taper * taper_place(i, n_joints));
         const double argument = omega * t + i * gait->delta;
         const double sine = sin(argument), cosine = cos(argument);
         phi[i] = a * sine + gait->offset; // (25)
-        dphi[i] = a * omega * cosine;
-        ddphi[i] = -a * omega * omega * sine;
+        dphi[i] = a * omega * cosine + gait->offset_rate;
+        ddphi[i] = -a * omega * omega * sine + gait->offset_acceleration;
     }
 }
 
@@ -30,6 +32,18 @@ double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model mode
     return asin(amplitude / (2 * robot->l * cos(delta / 2)));
 }
 
+double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link)
+{
+    const int N = robot->links;
+    const double middle = moray_theta_max_from_amplitude(robot, model, gait->amplitude, gait->delta);
+    if (N == 2)
+        return middle;
+    const double tangent = tan(gait->delta / 2), across = model == MORAY_FIRST_PRINCIPLES ? 1 / tangent : tangent;
+    const double s = (2.0 * link - N - 1) / (N - 2);
+    const double factor = hypot(1 + gait->taper * s, gait->taper * across / (N - 2));
+    return model == MORAY_FIRST_PRINCIPLES ? middle * factor : asin(sin(middle) * factor);
+}
+
 moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to)
 {
     if (from == to)
@@ -37,6 +51,9 @@ moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, mora
     const double theta_max = moray_theta_max_from_amplitude(robot, from, gait->amplitude, gait->delta);
     moray_gait mapped = *gait;
     mapped.amplitude = moray_amplitude_from_theta_max(robot, to, theta_max, gait->delta);
-    mapped.offset = gait->amplitude == 0 ? 0 : -gait->offset * mapped.amplitude / gait->amplitude; // erratum E3
+    const double ratio = gait->amplitude == 0 ? 0 : -mapped.amplitude / gait->amplitude; // erratum E3
+    mapped.offset *= ratio;
+    mapped.offset_rate *= ratio;
+    mapped.offset_acceleration *= ratio;
     return mapped;
 }

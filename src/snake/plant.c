@@ -2,20 +2,21 @@
 #include "plant.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "shape.h"
 
 moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
 {
     const int N = spec->robot.links;
-    const bool free = spec->joints == MORAY_JOINTS_FREE;
-    return (moray_plant_size){
-        .nx = spec->joints == MORAY_JOINTS_ON_GAIT ? 6 : 2 * N + 4,
-        .nu = free ? N - 1 : 0,
-        .ns = free ? 0 : GAIT_INPUTS - 1,
-        .nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0),
-        .nq = 1,
-    };
+    const moray_plant_size forms[] = {[MORAY_JOINTS_ON_GAIT] = {.nx = 6, .ns = 5},
+                                      [MORAY_JOINTS_CLOSED_LOOP] = {.nx = 2 * N + 4, .ns = 5},
+                                      [MORAY_JOINTS_FREE] = {.nx = 2 * N + 4, .nu = N - 1},
+                                      [MORAY_JOINTS_STEERED] = {.nx = 8, .nu = 1, .ns = 3}};
+    moray_plant_size size = forms[spec->joints];
+    size.nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0);
+    size.nq = 1;
+    return size;
 }
 
 static void place_outputs(plant *self, const moray_plant_spec *spec)
@@ -32,11 +33,20 @@ static void place_outputs(plant *self, const moray_plant_spec *spec)
 
 static void place_inputs(plant *self, moray_joints joints)
 {
+    static const int on_gait[] = {GAIT_A, GAIT_OMEGA, GAIT_DELTA, GAIT_PHI_0, GAIT_TAPER, GAIT_T};
+    static const int steered_kinds[] = {GAIT_A, GAIT_OMEGA, GAIT_DELTA, GAIT_PHI_0, GAIT_T, GAIT_DPHI_0, GAIT_DDPHI_0};
     const int n = self->n;
-    if (joints == MORAY_JOINTS_ON_GAIT) {
-        self->form = &plant_on_gait;
-        self->n_shape = self->n_s = self->n_curved = GAIT_INPUTS;
+    self->gait.n = n;
+    self->joint_states = joints == MORAY_JOINTS_CLOSED_LOOP || joints == MORAY_JOINTS_FREE;
+    if (!self->joint_states) {
+        const bool steered = joints == MORAY_JOINTS_STEERED;
+        self->form = steered ? &plant_steered : &plant_on_gait;
+        self->kind = steered ? steered_kinds : on_gait;
+        self->n_s = steered ? 5 : 6; // all but phi_0', phi_0''
+        self->n_curved = 6;          // all but phi_0''
+        self->n_shape = steered ? 7 : 6;
         self->v_theta = 3;
+        self->offset = 6;
         return;
     }
     const bool free = joints == MORAY_JOINTS_FREE;
@@ -75,10 +85,11 @@ static double *take(arena *from, int count)
 
 static void take_vectors(plant *self, arena *from)
 {
-    double **const on_joints[] = {&self->phi,      &self->v_phi,    &self->ubar,      &self->zeros,      &self->ones,
-                                  &self->bt_phi,   &self->aa_phi,   &self->g_load,    &self->u,          &self->b_v,
-                                  &self->b_ubar,   &self->g_v,      &self->on_phi,    &self->on_v,       &self->on_ubar,
-                                  &self->b_lambda, &self->g_lambda, &self->gait.sine, &self->gait.cosine};
+    double **const on_joints[] = {
+        &self->phi,         &self->v_phi,      &self->ubar,       &self->zeros,    &self->ones,     &self->bt_phi,
+        &self->aa_phi,      &self->g_load,     &self->u,          &self->b_v,      &self->b_ubar,   &self->g_v,
+        &self->on_phi,      &self->on_v,       &self->on_ubar,    &self->b_lambda, &self->g_lambda, &self->gait.sine,
+        &self->gait.cosine, &self->gait.place, &self->gait.growth};
     double **const on_inputs[] = {&self->y_x[0], &self->y_x[1], &self->y_x[2],  &self->y_x[3], &self->load_x,
                                   &self->dv_t_x, &self->dv_n_x, &self->kappa_x, &self->a_x,    &self->bend_x};
     for (size_t k = 0; k < sizeof on_joints / sizeof *on_joints; k++)
@@ -93,7 +104,7 @@ static void take_vectors(plant *self, arena *from)
 static void take_matrices(plant *self, arena *from)
 {
     const int n = self->n;
-    if (self->form == &plant_on_gait)
+    if (!self->joint_states)
         return;
     self->b_tangent = self->b_columns = take(from, n * n);
     self->g_tangent = self->g = take(from, n * n);
@@ -125,13 +136,16 @@ static void fill_joint_tables(plant *self)
 
 static void fill_tables(plant *self)
 {
-    const int n_joint_inputs = self->form == &plant_on_gait ? 0 : 2 * self->n;
+    const int n_joint_inputs = self->joint_states ? 2 * self->n : 0;
     for (int k = n_joint_inputs; k < self->n_shape; k++)
         self->col[k] = self->rest + k - n_joint_inputs;
+    if (self->form == &plant_steered) {
+        const int steered[] = {9, 10, 11, 6, 12, 7, 8}; // a, omega, delta, phi_0, t, phi_0', phi_0''
+        memcpy(self->col, steered, sizeof steered);
+    }
     for (int i = 0; i < self->n; i++)
         self->ones[i] = 1;
-    self->gait.n = self->n;
-    if (self->form != &plant_on_gait)
+    if (self->joint_states)
         fill_joint_tables(self);
     entries last = {0};
     if (self->form->last_hessian_pattern)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // The control-oriented model as a map. Its outputs depend on the shape vectors phi, v_phi, ubar only through the
-// features of control_body.h and through forms linear or quadratic in them, so all three joint forms share everything
-// but the shape vectors as functions of the inputs: a plant_form. "Shape inputs" are the inputs these vectors depend
-// on: phi, v_phi and (closed loop) the gait parameters and t or (free) ubar; on the gait only the parameters and t. B =
-// A Dbar and G = (D D^T)^{-1} throughout.
+// features of control_body.h and through forms linear or quadratic in them, so all joint forms share everything but the
+// shape vectors as functions of the inputs: a plant_form. "Shape inputs" are the inputs these vectors depend on: phi,
+// v_phi and (closed loop) the gait parameters and t or (free) ubar; on the gait only the parameters and t, steered
+// phi_0' and phi_0'' too. B = A Dbar and G = (D D^T)^{-1} throughout.
 #ifndef MORAY_SNAKE_PLANT_H
 #define MORAY_SNAKE_PLANT_H
 
@@ -40,7 +40,7 @@ typedef struct plant_form {
     // Gradient by the shape inputs of a scalar with gradient on_phi, on_v, on_ubar by the shape vectors.
     void (*pull_back)(const plant *self, const double *on_phi, const double *on_v, const double *on_ubar, double *out);
 
-    // State derivatives of the joints, their Jacobian rows.
+    // State derivatives of the joints or their offset, their Jacobian rows.
     void (*joint_rates)(const plant *self, double *out);
     double *(*joint_rates_jacobian)(const plant *self, double *values);
     void (*joint_rates_pattern)(const plant *self, entries *list);
@@ -61,7 +61,7 @@ typedef struct plant_form {
     void (*last_hessian_pattern)(const plant *self, entries *list);
 } plant_form;
 
-extern const plant_form plant_on_gait, plant_closed_loop, plant_free;
+extern const plant_form plant_on_gait, plant_steered, plant_closed_loop, plant_free;
 
 typedef enum { AT_NOTHING, AT_VALUES, AT_GRADIENTS } plant_level;
 
@@ -70,12 +70,14 @@ enum { WORK_VECTORS = 8 };
 struct plant {
     const plant_form *form;
     control_body body;
-    int n; // joints, N-1
+    int n;             // joints, N-1
+    bool joint_states; // the joints are states
     int n_in, n_out;
     int n_shape, n_s, n_curved; // shape inputs; how many first ones move s, and phi or v_phi
     int n_last;                 // second derivatives among the shape inputs behind n_curved
     int theta, v_theta;         // places in the state; p_x, p_y and v_t, v_n follow
     int rest;                   // place of the first input behind the state
+    int offset;                 // place of phi_0 in the steered state; phi_0' and, the control, phi_0'' follow
     int forces, angles, power;  // places of the outputs; forces, angles -1 where not wanted
     double half_inverse_L;      // 1 / (2 L) of (12)
     double k_p, k_d;            // of (34); zero where ubar is an input
@@ -88,6 +90,7 @@ struct plant {
     double *in;
     double *phi, *v_phi, *ubar; // n each
     reference gait;
+    const int *kind;            // of the shape inputs, on the gait
     double *bt_phi, *aa_phi;    // B^T phi, A A^T phi
     double *g_load, *u;         // G (mt ubar + c_n v_phi), joint forces (22)
     double *b_v, *b_ubar, *g_v; // B v_phi, B ubar, G v_phi

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "shape.h"
+#include "taper.h"
 
 static int steering_inputs(const plant *self)
 {
@@ -109,8 +110,9 @@ static double *hessian_of_steering(const plant *self, const double g[FEATURES], 
 static void closed_loop_shape(plant *self)
 {
     const int n = self->n;
-    double *phi_ref = self->work, *v_ref = phi_ref + n;
-    reference_set(&self->gait, self->in + self->rest);
+    double *phi_ref = self->work, *v_ref = phi_ref + n, p[GAIT_KINDS] = {0};
+    memcpy(p, self->in + self->rest, GAIT_INPUTS * sizeof *p);
+    reference_set(&self->gait, p);
     reference_values(&self->gait, phi_ref, v_ref, self->ubar);
     for (int i = 0; i < n; i++) // (34)
         self->ubar[i] += self->k_d * (v_ref[i] - self->v_phi[i]) + self->k_p * (phi_ref[i] - self->phi[i]);
@@ -140,10 +142,10 @@ static void closed_loop_pull_back(const plant *self, const double *on_phi, const
         out[2 * n + k] = dot(n, self->tangent + k * n, on_ubar);
 }
 
-// delta does not move the first joint.
-static bool moves_joint(int input, int joint)
+// delta does not move the first joint, taper not one in the middle.
+static bool moves_joint(const plant *self, int input, int joint)
 {
-    return input != GAIT_DELTA || joint > 0;
+    return input == GAIT_DELTA ? joint > 0 : input != GAIT_TAPER || taper_place(joint, self->n) != 0;
 }
 
 static double *closed_loop_rates_jacobian(const plant *self, double *values)
@@ -154,7 +156,7 @@ static double *closed_loop_rates_jacobian(const plant *self, double *values)
         *values++ = -self->k_p;
         *values++ = -self->k_d;
         for (int k = 0; k < GAIT_INPUTS; k++)
-            if (moves_joint(k, i))
+            if (moves_joint(self, k, i))
                 *values++ = self->tangent[k * n + i];
     }
     return values;
@@ -169,7 +171,7 @@ static void closed_loop_rates_pattern(const plant *self, entries *list)
         add_entry(list, row, self->col[i]);
         add_entry(list, row, self->col[n + i]);
         for (int k = 0; k < GAIT_INPUTS; k++)
-            if (moves_joint(k, i))
+            if (moves_joint(self, k, i))
                 add_entry(list, row, self->col[2 * n + k]);
     }
 }
@@ -189,10 +191,10 @@ static void closed_loop_force_jacobian(const plant *self, double *values, int st
     force_jacobian(self, values, stride);
 }
 
-// R is linear in phi_0, and in a for itself.
+// R is linear in phi_0, and in a and in taper for themselves.
 static bool curves(int input, int other)
 {
-    return input != GAIT_PHI_0 && other != GAIT_PHI_0 && (input != GAIT_A || other != GAIT_A);
+    return input != GAIT_PHI_0 && other != GAIT_PHI_0 && (input != other || (input != GAIT_A && input != GAIT_TAPER));
 }
 
 static void closed_loop_hessian(const plant *self, const double g[FEATURES], const double *weight, double *values)

@@ -56,7 +56,7 @@ void plant_hessian_pattern(const plant *self, entries *list)
     const int *col = self->col;
     for (int i = 0; i < self->n_shape; i++)
         for (int j = 0; j < self->n_curved && j <= i; j++)
-            add_entry(list, col[i], col[j]);
+            add_lower(list, col[i], col[j]);
     if (self->form->last_hessian_pattern)
         self->form->last_hessian_pattern(self, list);
     for (int b = 0; b < BODY_INPUTS; b++)

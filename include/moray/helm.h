@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+//
+// Steering laws: helms for moray_swim_run that carry out a plan, feed back the heading, or both; and where swimmers
+// start from. Offsets are those of the swimmer's model; by erratum E3 a gain that turns the one towards its target
+// turns the other away.
+#ifndef MORAY_HELM_H
+#define MORAY_HELM_H
+
+#include "moray/steering.h"
+#include "moray/swim.h"
+
+// ---- Straight swimming
+// ------------------------------------------------------------------------------------------------
+
+// Steady swimming of a gait without offset, in still water, at mean heading 0.
+typedef struct moray_cruise {
+    moray_model model;
+    moray_gait gait;      // offset 0
+    double speed, power;  // [m/s], [W]
+    double undulation[2]; // of the heading: factors of cos and sin of omega t [rad]
+    double body[6];       // state of moray_state_body where omega t is a multiple of 2 pi, at p = 0
+} moray_cruise;
+
+// Error: those of moray_orbit_new and moray_orbit_solve.
+moray_status moray_cruise_find(moray_cruise *cruise, const moray_robot *robot, moray_model model,
+                               const moray_gait *gait);
+
+// By how much a gait turns whose offset stays what it is, in still water [rad/s]. Error: as above.
+moray_status moray_turn_rate(const moray_robot *robot, moray_model model, const moray_gait *gait, double *rate);
+
+// The state of a steering problem that swims so at t = 0, with this mean heading, in the current, from p = 0.
+void moray_cruise_start(const moray_cruise *cruise, double heading, const double current[2],
+                        double state[MORAY_STEERING_STATES]);
+
+// Heading at t without the undulation.
+double moray_cruise_heading(const moray_cruise *cruise, double t, double heading);
+
+// ---- Plans carried out
+// ------------------------------------------------------------------------------------------------
+
+// The offset of a plan, times `scale`: 1, or from one model to the other alpha/a with the sign of erratum E3.
+typedef struct moray_plan {
+    const moray_solution *solution;
+    double scale;
+} moray_plan;
+
+moray_offset moray_plan_offset(const moray_plan *plan, double t);
+
+// Blindly. The plan must outlive the helm.
+moray_helm moray_plan_helm(const moray_plan *plan);
+
+// ---- Feedback
+// ---------------------------------------------------------------------------------------------------------
+
+// phi_0 = plan + gain (target - heading), the heading without its undulation, limited in range and rate. Decided every
+// `period`, between straight lines.
+typedef struct moray_pilot {
+    double (*target)(const moray_swim_sample *sample, void *self); // heading to steer for [rad]
+    void *self;
+    double gain;                // [m/rad or rad/rad]
+    const moray_plan *plan;     // NULL: none
+    const moray_cruise *cruise; // of the swimmer's model: what undulation there is
+    double offset, offset_rate; // limits
+    double period;              // [s]
+    double from, slope, value;  // now: since when, how fast, from what
+} moray_pilot;
+
+// The pilot must outlive the helm.
+moray_helm moray_pilot_helm(moray_pilot *pilot);
+
+#endif

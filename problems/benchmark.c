@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+//
+// What the solver costs: where the time of a solve goes, how it grows with the mesh and the robot, and how near it is
+// to the floor that evaluations free of charge would leave. Times are the processor's, medians of several measurements
+// in this run.
+#include "parts/benchmark.h"
+
+enum part { ALL, S1, PROBLEMS, INTERVALS, LINKS, SIMULATION };
+static const char *const parts[] = {"all", "s1", "problems", "intervals", "links", "simulation", NULL};
+static const char *const unused[] = {"scheme", "intervals", "tol", "out", NULL};
+
+static const moray_option options[] = {
+    {.section = "benchmark",
+     .key = "part",
+     .flag = "part",
+     .argument = "NAME",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(benchmark, part),
+     .choices = parts,
+     .help = "what to measure: a programme that other tools can be given, the shipped problems, growth over intervals "
+             "and over links, simulation"},
+    {.section = "benchmark",
+     .key = "repeats",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(benchmark, repeats),
+     .min = 1,
+     .max = 1000,
+     .help = "measurements of each, of which the median counts"},
+    {.section = "benchmark",
+     .key = "most_intervals",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(benchmark, most_intervals),
+     .min = 10,
+     .max = 1000,
+     .help = "where growth over intervals ends"},
+    {.section = "benchmark",
+     .key = "most_links",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(benchmark, most_links),
+     .min = 5,
+     .max = 100,
+     .help = "where growth over links ends"},
+};
+
+static const moray_program program = {
+    .name = "benchmark",
+    .summary = "Measures what solving and simulating cost, where the time goes and how it grows.",
+    .options = options,
+    .n_options = sizeof options / sizeof *options,
+    .without = unused,
+    .no_robot = true,
+};
+
+#define ON_GAIT(plant) .model = plant, .joints = MORAY_JOINTS_ON_GAIT, .scheme = "lobatto5", .intervals = 12
+#define CLOSED_LOOP                                                                                                    \
+    .model = MORAY_CONTROL_ORIENTED, .joints = MORAY_JOINTS_CLOSED_LOOP, .scheme = "lobatto5", .intervals = 12
+
+static bool wanted(const benchmark *run, enum part part)
+{
+    return run->part == ALL || run->part == (int)part;
+}
+
+static moray_status add_case(benchmark *run, const char *name, const subject *of)
+{
+    named_cost *to = &run->cases[run->n_cases];
+    moray_ticker_show(&run->ticker, "benchmark: %s", name);
+    to->name = name;
+    MORAY_TRY(measure(of, run->repeats, &to->cost));
+    run->n_cases++;
+    return moray_ok();
+}
+
+static moray_status measure_s1(benchmark *run)
+{
+    s1_case s1 = {0};
+    moray_status status = s1_begin(&s1);
+    const subject it = s1_subject(&s1);
+    if (!moray_failed(status))
+        status = add_case(run, "S1", &it);
+    s1_end(&s1);
+    return status;
+}
+
+static moray_status measure_problems(benchmark *run)
+{
+    static const gait_case cases[] = {
+        {.name = "max_speed, control-oriented", .links = 10, ON_GAIT(MORAY_CONTROL_ORIENTED)},
+        {.name = "max_speed, control-oriented, closed loop", .links = 10, CLOSED_LOOP},
+        {.name = "max_speed, first-principles", .links = 10, ON_GAIT(MORAY_FIRST_PRINCIPLES)},
+        {.name = "min_energy, control-oriented",
+         .links = 10,
+         ON_GAIT(MORAY_CONTROL_ORIENTED),
+         .goal = MORAY_GAIT_THRIFTIEST},
+        {.name = "min_energy, first-principles",
+         .links = 10,
+         ON_GAIT(MORAY_FIRST_PRINCIPLES),
+         .goal = MORAY_GAIT_THRIFTIEST},
+    };
+    moray_status status = moray_ok();
+    for (unsigned k = 0; k < sizeof cases / sizeof *cases && !moray_failed(status); k++) {
+        gait_case one = cases[k];
+        status = gait_case_begin(&one);
+        const subject it = gait_case_subject(&one);
+        if (!moray_failed(status))
+            status = add_case(run, one.name, &it);
+        gait_case_end(&one);
+    }
+    return status;
+}
+
+// Sizes up to `most`; `pick` tells the case which.
+static moray_status measure_growth(benchmark *run, const gait_case *of, const char *over, const int *sizes, int most)
+{
+    growth *g = &run->growths[run->n_growths];
+    const bool links = over[0] == 'l';
+    moray_status status = moray_ok();
+    *g = (growth){.name = of->name, .over = over};
+    for (; *sizes && *sizes <= most && !moray_failed(status); sizes++) {
+        gait_case one = *of;
+        *(links ? &one.links : &one.intervals) = *sizes;
+        moray_ticker_show(&run->ticker, "benchmark: %s, %d %s", of->name, *sizes, over);
+        status = gait_case_begin(&one);
+        const subject it = gait_case_subject(&one);
+        if (!moray_failed(status))
+            status = measure(&it, run->repeats, &g->cost[g->n]);
+        gait_case_end(&one);
+        g->size[g->n++] = *sizes;
+    }
+    run->n_growths++;
+    return status;
+}
+
+static const int interval_sizes[] = {10, 20, 50, 100, 200, 500, 1000, 0};
+static const int link_sizes[] = {5, 10, 20, 50, 100, 0};
+static const int most_in_loop = 20; // links; 2N+4 states of which every one is coupled to all others
+
+static moray_status measure_intervals(benchmark *run)
+{
+    const gait_case on_gait = {.name = "max_speed, control-oriented",
+                               .links = 10,
+                               .model = MORAY_CONTROL_ORIENTED,
+                               .joints = MORAY_JOINTS_ON_GAIT,
+                               .scheme = "hermite-simpson"};
+    gait_case closed_loop = on_gait;
+    closed_loop.name = "max_speed, control-oriented, closed loop";
+    closed_loop.joints = MORAY_JOINTS_CLOSED_LOOP;
+    MORAY_TRY(measure_growth(run, &on_gait, "intervals", interval_sizes, run->most_intervals));
+    return measure_growth(run, &closed_loop, "intervals", interval_sizes, run->most_intervals / 5);
+}
+
+static moray_status measure_links(benchmark *run)
+{
+    const gait_case on_gait = {.name = "max_speed, control-oriented", ON_GAIT(MORAY_CONTROL_ORIENTED)};
+    const gait_case closed_loop = {.name = "max_speed, control-oriented, closed loop", CLOSED_LOOP};
+    const int most = run->most_links < most_in_loop ? run->most_links : most_in_loop;
+    MORAY_TRY(measure_growth(run, &on_gait, "links", link_sizes, run->most_links));
+    return measure_growth(run, &closed_loop, "links", link_sizes, most);
+}
+
+static moray_status measure_simulation(benchmark *run)
+{
+    simulated *s = &run->simulation;
+    for (const int *links = link_sizes; *links && *links <= run->most_links; links++) {
+        moray_ticker_show(&run->ticker, "benchmark: simulation, %d links", *links);
+        for (int model = 0; model < 2; model++)
+            MORAY_TRY(simulation_rate((moray_model)model, *links, run->repeats, &s->rate[model][s->n]));
+        s->links[s->n++] = *links;
+    }
+    return moray_ok();
+}
+
+static moray_status work(benchmark *run)
+{
+    static const struct {
+        enum part part;
+        moray_status (*measure)(benchmark *);
+    } all[] = {{S1, measure_s1},
+               {PROBLEMS, measure_problems},
+               {INTERVALS, measure_intervals},
+               {LINKS, measure_links},
+               {SIMULATION, measure_simulation}};
+    moray_status status = moray_ok();
+    run->ticker = moray_ticker_start(stderr, run->common.quiet);
+    for (unsigned k = 0; k < sizeof all / sizeof *all && !moray_failed(status); k++)
+        if (wanted(run, all[k].part))
+            status = all[k].measure(run);
+    moray_ticker_end(&run->ticker);
+    return moray_failed(status) ? status : benchmark_report(run);
+}
+
+int main(int argc, char **argv)
+{
+    static benchmark run;
+    int exit_code;
+    run = (benchmark){.common = moray_common_defaults(), .repeats = 5, .most_intervals = 1000, .most_links = 100};
+    if (!moray_app_start(&program, argc, argv, &run, &exit_code))
+        return exit_code;
+    return moray_app_end(&program, &run, work(&run));
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// The gait of least joint work per distance along a course, at or above a speed: optimised on the control-oriented
+// model, from there on the first-principles model, and proved by simulating both.
+#include "parts/gait_job.h"
+
+static const moray_option options[] = {
+    GAIT_LIMIT("speed_m_s", speed, "m/s",
+               "least speed along the course; by default what the paper's gait makes in the same model and current"),
+    GAIT_LIMIT("power_W", power, "W", "mean joint power"),
+};
+
+int main(int argc, char **argv)
+{
+    return gait_job_main(
+        &(gait_program){.name = "min_energy",
+                        .summary = "Optimises the gait of an underwater snake robot for the least joint work per "
+                                   "distance along a course, at or above a speed, and proves it on the "
+                                   "first-principles model.",
+                        .goal = MORAY_GAIT_THRIFTIEST,
+                        .options = options,
+                        .n_options = sizeof options / sizeof *options,
+                        .power = INFINITY,
+                        .speed = NAN},
+        argc, argv);
+}

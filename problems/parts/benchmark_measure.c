@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include <stdlib.h>
+#include <time.h>
+
+#include "benchmark.h"
+
+static double clock_seconds(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+double cost_evaluation(const cost *c)
+{
+    return c->piece[FUNCTION] + c->piece[JACOBIAN] + c->piece[HESSIAN];
+}
+
+double cost_over_floor(const cost *c)
+{
+    return c->total / (c->total - cost_evaluation(c));
+}
+
+moray_settings benchmark_settings(const char *scheme, int intervals)
+{
+    moray_settings settings = moray_settings_default();
+    settings.scheme = scheme;
+    settings.intervals = intervals;
+    settings.barrier = 1e-4; // every start is an orbit
+    settings.timing = true;
+    return settings;
+}
+
+static cost read_account(const moray_solution *solution, double total, double wall)
+{
+    const moray_nlp_info *info = moray_solution_info(solution);
+    const double *by = info->evaluation_by;
+    return (cost){.piece = {[SETUP] = total - info->cpu_seconds,
+                            [FUNCTION] = by[0] + by[2],
+                            [JACOBIAN] = by[1] + by[3],
+                            [HESSIAN] = by[4],
+                            [IPOPT] = info->cpu_seconds - info->evaluation_seconds - info->linear_seconds,
+                            [LINEAR] = info->linear_seconds},
+                  .total = total,
+                  .wall = wall,
+                  .solved = info->outcome == MORAY_NLP_SOLVED,
+                  .iterations = info->iterations,
+                  .objective = moray_solution_objective(solution),
+                  .size = moray_solution_size(solution)};
+}
+
+static moray_status measure_once(const subject *of, cost *found)
+{
+    moray_solution *solution = NULL;
+    const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID), wall = clock_seconds(CLOCK_MONOTONIC);
+    moray_status status = of->solve(of->self, &solution);
+    const double total = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+    if (!moray_failed(status))
+        *found = read_account(solution, total, clock_seconds(CLOCK_MONOTONIC) - wall);
+    moray_solution_free(solution);
+    of->forget(of->self);
+    return status;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double median(double *values, int n)
+{
+    qsort(values, (size_t)n, sizeof *values, ascending);
+    return (values[(n - 1) / 2] + values[n / 2]) / 2;
+}
+
+// Of the numbers at `offset` in n costs; work[n].
+static double median_cost(const cost *costs, size_t offset, int n, double *work)
+{
+    for (int k = 0; k < n; k++)
+        work[k] = *(const double *)((const char *)&costs[k] + offset);
+    return median(work, n);
+}
+
+moray_status measure(const subject *of, int repeats, cost *found)
+{
+    cost *costs = calloc((size_t)repeats, sizeof *costs);
+    double *work = calloc((size_t)repeats, sizeof *work);
+    moray_status status = costs && work ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d costs", repeats);
+    for (int k = 0; k < repeats && !moray_failed(status); k++)
+        status = measure_once(of, &costs[k]);
+    if (!moray_failed(status)) {
+        *found = costs[0];
+        for (size_t k = 0; k < PIECES; k++)
+            found->piece[k] = median_cost(costs, offsetof(cost, piece) + k * sizeof(double), repeats, work);
+        found->total = median_cost(costs, offsetof(cost, total), repeats, work);
+        found->wall = median_cost(costs, offsetof(cost, wall), repeats, work);
+    }
+    free(costs);
+    free(work);
+    return status;
+}
+
+double fitted_exponent(const double *x, const double *y, int n)
+{
+    double count = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (int k = 0; k < n; k++) {
+        if (!(x[k] > 0 && y[k] > 0))
+            continue;
+        const double u = log(x[k]), v = log(y[k]);
+        count++;
+        sx += u;
+        sy += v;
+        sxx += u * u;
+        sxy += u * v;
+    }
+    return count < 2 ? NAN : (count * sxy - sx * sy) / (count * sxx - sx * sx);
+}
+
+const char *const exponent_names[EXPONENTS] = {"setup", "evaluation", "solver", "iteration"};
+
+void growth_exponents(const growth *g, double exponent[EXPONENTS])
+{
+    double size[MOST_POINTS], value[EXPONENTS][MOST_POINTS];
+    for (int k = 0; k < g->n; k++) {
+        const cost *c = &g->cost[k];
+        const double iterations = c->iterations;
+        size[k] = g->size[k];
+        value[0][k] = c->piece[SETUP];
+        value[1][k] = cost_evaluation(c) / iterations;
+        value[2][k] = (c->piece[IPOPT] + c->piece[LINEAR]) / iterations;
+        value[3][k] = value[1][k] + value[2][k];
+    }
+    for (int i = 0; i < EXPONENTS; i++)
+        exponent[i] = fitted_exponent(size, value[i], g->n);
+}

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "gait_job.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const joint_forms[] = {"on-gait", "closed-loop", NULL};
+
+static const moray_option shared[] = {
+    GAIT_RANGE("theta_max_deg", theta_max, 0, 89, "deg", "link-angle amplitude of (24)"),
+    GAIT_RANGE("omega_deg_s", omega, 1, 3600, "deg/s", "gait frequency"),
+    GAIT_RANGE("delta_deg", delta, 1, 179, "deg", "phase shift between joints"),
+    GAIT_RANGE("phi0_m", offset, -1, 1, "m", "joint offset of the control-oriented model"),
+    GAIT_RANGE("phi0_deg", offset_angle, -90, 90, "deg", "joint offset of the first-principles model"),
+    GAIT_RANGE("taper", taper, -1, 1, NULL,
+               "growth of the joint amplitude: 1 - taper times that of the middle in the first joint, at the tail, to "
+               "1 + taper times in the last; an eel's is negative. No link may exceed theta_max_deg"),
+    GAIT_LIMIT("joint_rate", joint_rate, NULL, "rate amplitude of the joints (m/s; deg/s with the complex model)"),
+    GAIT_LIMIT("joint_effort", joint_effort, NULL,
+               "peak joint force at the nodes of the mesh, which then has 60 intervals (N; torque in N m with the "
+               "complex model)"),
+    {.section = "problem",
+     .key = "joints",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(gait_job, joints),
+     .choices = joint_forms,
+     .help = "six states with the joints on the gait, or all states with the joint controller (34)"},
+    {.section = "solver",
+     .key = "random_starts",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(gait_job, random_starts),
+     .min = 0,
+     .max = 10000,
+     .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"},
+};
+
+enum { n_shared = sizeof shared / sizeof *shared, most_options = n_shared + 10 };
+
+// A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
+enum { usual_intervals = 12, effort_intervals = 60 };
+
+static gait_job defaults(const gait_program *program)
+{
+    gait_job job = {.common = moray_common_defaults(),
+                    .name = program->name,
+                    .goal = program->goal,
+                    .theta_max = {1 * DEG, 20 * DEG},
+                    .omega = {30 * DEG, 360 * DEG},
+                    .delta = {15 * DEG, 90 * DEG},
+                    .offset = {-0.02, 0.02},
+                    .offset_angle = {-10 * DEG, 10 * DEG},
+                    .power = program->power,
+                    .speed = program->speed,
+                    .joint_rate = INFINITY,
+                    .joint_effort = INFINITY};
+    job.common.model = MORAY_FIRST_PRINCIPLES;
+    strcpy(job.common.scheme, "lobatto5");
+    job.common.intervals = usual_intervals;
+    return job;
+}
+
+// The speed asked for, which the paper's gait may not make at all.
+static moray_status speed_demand(const gait_job *job, stage *at)
+{
+    at->speed = isinf(job->speed) ? 0 : job->speed;
+    if (!isnan(job->speed))
+        return moray_ok();
+    if (!job->paper.held[at->model])
+        return moray_error(MORAY_NOT_SOLVED,
+                           "speed_m_s: the paper's gait, whose speed is the default, fails: %.250s; give a speed",
+                           job->paper.why[at->model].text);
+    at->speed = moray_course_speed(&job->paper.steady[at->model], job->common.course);
+    return moray_ok();
+}
+
+static moray_status optimise_and_prove(gait_job *job, moray_model model, const gait_starts *known)
+{
+    stage *at = &job->stage[model];
+    at->model = model;
+    at->power = isnan(job->power) ? job->paper.steady[model].power : job->power;
+    MORAY_TRY(speed_demand(job, at));
+    MORAY_TRY(gait_job_optimise(job, at, known));
+    moray_ticker_show(&job->ticker, "%s: the optimised gait on both models", job->name);
+    MORAY_TRY(moray_gait_trial_run(&job->basin, &at->promise.gait, model, &at->trial));
+    at->gain = moray_gait_gain_over(&job->basin, &at->trial, &job->paper);
+    return moray_ok();
+}
+
+static moray_status work(gait_job *job)
+{
+    const moray_gait paper = moray_gait_paper(&job->common.robot);
+    moray_family family;
+    int stages;
+    if (isfinite(job->joint_effort) && job->common.intervals == usual_intervals)
+        job->common.intervals = effort_intervals;
+    MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
+    MORAY_TRY(moray_basin_new(&job->basin, &job->common.robot, job->common.current, job->common.course));
+    moray_ticker_show(&job->ticker, "%s: the paper's gait on both models", job->name);
+    MORAY_TRY(moray_gait_trial_run(&job->basin, &paper, MORAY_CONTROL_ORIENTED, &job->paper));
+    const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
+    MORAY_TRY(optimise_and_prove(job, MORAY_CONTROL_ORIENTED, &one));
+    if (job->common.model == MORAY_CONTROL_ORIENTED)
+        return moray_ok();
+    const gait_starts two = {{job->stage[MORAY_CONTROL_ORIENTED].trial.gait[MORAY_FIRST_PRINCIPLES],
+                              job->paper.gait[MORAY_FIRST_PRINCIPLES]},
+                             2};
+    return optimise_and_prove(job, MORAY_FIRST_PRINCIPLES, &two);
+}
+
+static bool certified(const gait_job *job)
+{
+    bool pass = true;
+    for (int model = 0; model <= (int)job->common.model; model++)
+        pass = pass && job->stage[model].certificate.pass;
+    return pass;
+}
+
+static void release(gait_job *job)
+{
+    for (int model = 0; model < 2; model++) {
+        moray_solution_free(job->stage[model].solution);
+        moray_gait_problem_free(job->stage[model].problem);
+    }
+    moray_basin_free(&job->basin);
+}
+
+int gait_job_main(const gait_program *program, int argc, char **argv)
+{
+    moray_option options[most_options];
+    memcpy(options, shared, sizeof shared);
+    memcpy(options + n_shared, program->options, (size_t)program->n_options * sizeof *options);
+    const moray_program app = {.name = program->name,
+                               .summary = program->summary,
+                               .options = options,
+                               .n_options = n_shared + program->n_options};
+    gait_job job = defaults(program);
+    int exit_code;
+    if (!moray_app_start(&app, argc, argv, &job, &exit_code))
+        return exit_code;
+    job.ticker = moray_ticker_start(stderr, job.common.quiet);
+    moray_interrupt_begin();
+    moray_status status = work(&job);
+    moray_interrupt_end();
+    moray_ticker_end(&job.ticker);
+    if (!moray_failed(status))
+        status = gait_job_report(&job);
+    exit_code = moray_app_end(&app, &job, status);
+    if (exit_code == MORAY_EXIT_SOLVED && !certified(&job))
+        exit_code = MORAY_EXIT_CERTIFICATE;
+    release(&job);
+    return exit_code;
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+
+#include "simulate.h"
+
+static moray_status no_memory(void)
+{
+    return moray_error(MORAY_MEMORY, "no memory for the figures");
+}
+
+static moray_status draw(const simulate *run, const moray_figure *figure)
+{
+    const moray_status status = moray_output_figure(run->common.output, figure);
+    if (status.code != MORAY_IO)
+        return status;
+    if (!run->common.quiet)
+        fprintf(stderr, "simulate: %s\n", status.text);
+    return moray_ok();
+}
+
+// ---- Path ----------------------------------------------------------------------------------------------------------
+
+static double path_length(const moray_swim_track *track)
+{
+    double length = 0;
+    for (int k = 1; k < track->n; k++)
+        length += hypot(track->pose[k].p_x - track->pose[k - 1].p_x, track->pose[k].p_y - track->pose[k - 1].p_y);
+    return length;
+}
+
+// As many robots as fit on the path with room between them.
+static int count_robots(const moray_swim_track *track, const moray_robot *robot)
+{
+    const double fit = path_length(track) / (1.5 * 2 * robot->l * robot->links);
+    return fit < 2 ? 2 : fit > 12 ? 12 : (int)fit;
+}
+
+// The links of sample k as strokes, each interrupted by a NaN: the prismatic joints leave gaps between them.
+static void trace_links(const simulate_results *results, int k, double *scratch, double *x, double *y)
+{
+    const moray_robot *robot = moray_swimmer_robot(results->swimmer);
+    const int N = robot->links;
+    double *x_i = scratch, *y_i = scratch + N, *angle = scratch + 2 * N;
+    moray_swimmer_links(results->swimmer, results->track.x + (size_t)k * results->track.n_states, x_i, y_i, angle);
+    for (int i = 0; i < N; i++)
+        for (int point = 0; point < 3; point++) {
+            const double along = point == 0 ? -robot->l : point == 1 ? robot->l : NAN;
+            x[3 * i + point] = x_i[i] + along * cos(angle[i]);
+            y[3 * i + point] = y_i[i] + along * sin(angle[i]);
+        }
+}
+
+static moray_status draw_path(const simulate *run, const simulate_results *results)
+{
+    const moray_swim_track *track = &results->track;
+    const int N = run->common.robot.links, robots = count_robots(track, &run->common.robot), n = 3 * N * robots;
+    double *x = malloc((size_t)(2 * n + 3 * N) * sizeof *x), *y = x + n;
+    if (!x)
+        return no_memory();
+    for (int i = 0; i < robots; i++)
+        trace_links(results, (int)((double)(track->n - 1) * i / (robots - 1)), y + n, x + 3 * N * i, y + 3 * N * i);
+    const moray_curve curves[] = {{.label = "robot, at equal intervals of time", .x = x, .y = y, .n = n},
+                                  {.label = "centre of mass",
+                                   .x = &track->pose->p_x,
+                                   .y = &track->pose->p_y,
+                                   .n = track->n,
+                                   .stride = sizeof *track->pose / sizeof(double)}};
+    const moray_status status = draw(run, &(moray_figure){.name = "path",
+                                                          .title = "Path of the robot",
+                                                          .x_label = "x [m]",
+                                                          .y_label = "y [m]",
+                                                          .equal_axes = true,
+                                                          .curves = curves,
+                                                          .n_curves = 2});
+    free(x);
+    return status;
+}
+
+// ---- Over time -----------------------------------------------------------------------------------------------------
+
+static moray_status draw_velocity(const simulate *run, const double *t, const double *v_x, const double *v_y, int n)
+{
+    const moray_curve curves[] = {{.label = "v_x", .x = t, .y = v_x, .n = n},
+                                  {.label = "v_y", .x = t, .y = v_y, .n = n}};
+    return draw(run, &(moray_figure){.name = "velocity",
+                                     .title = "Velocity over ground of the centre of mass",
+                                     .x_label = "time [s]",
+                                     .y_label = "velocity [m/s]",
+                                     .curves = curves,
+                                     .n_curves = 2});
+}
+
+static moray_status draw_heading(const simulate *run, const double *t, const double *heading, int n)
+{
+    const bool control = run->common.model == MORAY_CONTROL_ORIENTED;
+    const moray_curve curve = {.label = control ? "theta" : "mean link angle", .x = t, .y = heading, .n = n};
+    return draw(run, &(moray_figure){.name = "heading",
+                                     .title = "Heading",
+                                     .x_label = "time [s]",
+                                     .y_label = "heading [deg]",
+                                     .curves = &curve,
+                                     .n_curves = 1});
+}
+
+// Of the joints at the tail, in the middle and at the head: more curves than that nobody reads.
+static moray_status draw_efforts(const simulate *run, const simulate_results *results, const double *t, double *u)
+{
+    const moray_swim_track *track = &results->track;
+    const bool control = run->common.model == MORAY_CONTROL_ORIENTED;
+    const int joint[] = {0, (track->n_joints - 1) / 2, track->n_joints - 1}, shown = track->n_joints < 3 ? 1 : 3;
+    int from = 0;
+    char label[3][32], title[80];
+    moray_curve curves[3];
+    while (from < track->n - 2 && track->t[from] < results->window.from)
+        from++;
+    const int n = track->n - from;
+    for (int j = 0; j < shown; j++) {
+        for (int k = 0; k < n; k++)
+            u[j * n + k] = track->u[(size_t)(from + k) * track->n_joints + joint[j]];
+        snprintf(label[j], sizeof label[j], "joint %d%s", joint[j] + 1, j == 0 ? " (tail)" : j == 2 ? " (head)" : "");
+        curves[j] = (moray_curve){.label = label[j], .x = t + from, .y = u + j * n, .n = n};
+    }
+    snprintf(title, sizeof title, "Joint %s, %.4g s to %.4g s", control ? "forces" : "torques", results->window.from,
+             results->window.to);
+    return draw(run, &(moray_figure){.name = "effort",
+                                     .title = title,
+                                     .x_label = "time [s]",
+                                     .y_label = control ? "joint force [N]" : "joint torque [N m]",
+                                     .curves = curves,
+                                     .n_curves = shown});
+}
+
+moray_status simulate_figures(const simulate *run, const simulate_results *results)
+{
+    const moray_swim_track *track = &results->track;
+    const int n = track->n;
+    double *v_x = malloc(3 * (size_t)n * sizeof *v_x), *v_y = v_x + n, *heading = v_y + n;
+    if (!v_x)
+        return no_memory();
+    for (int k = 0; k < n; k++) {
+        v_x[k] = track->pose[k].v_x;
+        v_y[k] = track->pose[k].v_y;
+        heading[k] = track->pose[k].heading / DEG;
+    }
+    moray_status status = draw_path(run, results);
+    if (!moray_failed(status))
+        status = draw_velocity(run, track->t, v_x, v_y, n);
+    if (!moray_failed(status))
+        status = draw_heading(run, track->t, heading, n);
+    if (!moray_failed(status))
+        status = draw_efforts(run, results, track->t, v_x); // whose turn is over
+    free(v_x);
+    return status;
+}

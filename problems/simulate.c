@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+//
+// Swims any gait or schedule of gaits, on either model, in any current.
+#include <math.h>
+
+#include "parts/simulate.h"
+
+const char *const simulate_integrators[] = {
+    [SIMULATE_EXPLICIT] = "explicit", [SIMULATE_TR_BDF2] = "tr-bdf2", [SIMULATE_PAPER] = "paper", NULL};
+_Static_assert(sizeof(simulate_integrator) == sizeof(int), "choices are stored as int");
+
+static const moray_option options[] = {
+    {.section = "simulation",
+     .key = "schedule",
+     .flag = "schedule",
+     .argument = "FILE",
+     .type = MORAY_OPTION_TEXT,
+     MORAY_AT(simulate, schedule_file),
+     .help = "comma-separated values: a line of names, t_s and any keys of [gait], then a line for each gait, which "
+             "keeps from the one before what its line leaves out; omega t of (25) counts from t = 0 in all of them, so "
+             "that a change of omega jumps in phase"},
+    {.section = "simulation",
+     .key = "duration_s",
+     .flag = "duration",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(simulate, duration),
+     .max = 1e6,
+     .open = true,
+     .unit = "s",
+     .help = "length of the simulation; 60 after the last change of gait unless given"},
+    {.section = "simulation",
+     .key = "output_step_s",
+     .flag = "output-step",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(simulate, output_step),
+     .max = 1e6,
+     .open = true,
+     .unit = "s",
+     .help = "time between two lines of trajectory.csv"},
+    {.section = "simulation",
+     .key = "start_heading_deg",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(simulate, heading),
+     .min = -360,
+     .max = 360,
+     .unit = "deg",
+     .help = "heading of the straight body at rest over ground, from which it starts"},
+    {.section = "simulation",
+     .key = "start_position_m",
+     .type = MORAY_OPTION_PAIR,
+     MORAY_AT(simulate, position),
+     .unit = "m",
+     .help = "position at the start"},
+    {.section = "simulation",
+     .key = "periods",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(simulate, periods),
+     .min = 1,
+     .max = 100000,
+     .help = "whole periods of the last gait at the end of the simulation that means and peaks are taken over; fewer "
+             "where it has fewer"},
+    {.section = "simulation",
+     .key = "integrator",
+     .flag = "integrator",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(simulate, integrator),
+     .choices = simulate_integrators,
+     .help = "Runge-Kutta of order 8 to 1e-9, TR-BDF2 to 1e-9, or as in the paper TR-BDF2 to 1e-4"},
+    {.section = "simulation",
+     .key = "rtol",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(simulate, rtol),
+     .min = 1e-14,
+     .max = 0.1,
+     .help = "relative tolerance, instead of the integrator's own"},
+    {.section = "simulation",
+     .key = "atol",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(simulate, atol),
+     .max = INFINITY,
+     .open = true,
+     .help = "absolute tolerance, instead of the integrator's own"},
+    MORAY_GAIT_OPTIONS(simulate, gait),
+};
+
+static const char *const without[] = {"scheme", "intervals", "tol", NULL};
+static const moray_program program = {
+    .name = "simulate",
+    .summary = "Swims an underwater snake robot: any gait or schedule of gaits, on either model, in any current.",
+    .options = options,
+    .n_options = sizeof options / sizeof *options,
+    .without = without,
+};
+
+int main(int argc, char **argv)
+{
+    simulate run = {.common = moray_common_defaults(),
+                    .gait = moray_gait_input_default(),
+                    .duration = NAN,
+                    .output_step = 0.05,
+                    .periods = 5,
+                    .rtol = NAN,
+                    .atol = NAN};
+    simulate_results results = {0};
+    int exit_code;
+    if (!moray_app_start(&program, argc, argv, &run, &exit_code))
+        return exit_code;
+    moray_status status = simulate_run(&run, &results);
+    if (!moray_failed(status))
+        status = simulate_report(&run, &results);
+    simulate_release(&results);
+    return moray_app_end(&program, &run, status);
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "moray/recede.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { states = MORAY_STEERING_STATES, per_interval = 4 }; // samples of a guess
+
+struct moray_recede {
+    moray_recede_spec spec;
+    int links;
+    moray_heading problem; // of the plan now carried out
+    moray_solution *solution;
+    moray_reference held; // constant, where nothing is known ahead
+    double held_time, held_heading;
+    moray_recede_record record;
+    int n;          // samples of a guess
+    double guess[]; // times, states, controls
+};
+
+// ---- From the swimmer to the plan
+// -------------------------------------------------------------------------------------
+
+// Undulation of the heading and its rate at t.
+static void undulation(const moray_cruise *cruise, double t, double *angle, double *rate)
+{
+    const double omega = cruise->gait.omega, c = cos(omega * t), s = sin(omega * t), *factor = cruise->undulation;
+    *angle = factor[0] * c + factor[1] * s;
+    *rate = omega * (factor[1] * c - factor[0] * s);
+}
+
+// The state that a plan starts from: the measured one, with the undulation that the plan's model has in place of that
+// of the swimmer's, and the offset as it is.
+static void measure(const moray_recede *r, const moray_swim_sample *sample, double state[states])
+{
+    const moray_cruise *from = r->spec.measured, *to = r->spec.planned;
+    const moray_offset offset = moray_recede_helm((moray_recede *)r).offset(sample->t, r);
+    moray_state_body(from->model, r->links, sample->x, state);
+    if (from->model != to->model) {
+        double angle[2], rate[2];
+        undulation(from, sample->t, &angle[0], &rate[0]);
+        undulation(to, sample->t, &angle[1], &rate[1]);
+        state[0] += angle[1] - angle[0];
+        state[3] += rate[1] - rate[0];
+        const double turn = to->model == MORAY_FIRST_PRINCIPLES ? state[0] : -state[0], v[2] = {state[4], state[5]};
+        state[4] = v[0] * cos(turn) - v[1] * sin(turn);
+        state[5] = v[0] * sin(turn) + v[1] * cos(turn);
+    }
+    state[6] = offset.value / r->spec.scale;
+    state[7] = offset.rate / r->spec.scale;
+    const moray_steering_limits *limits = &r->spec.heading.limits; // kept to rounding only
+    state[6] = fmin(fmax(state[6], -limits->offset), limits->offset);
+    state[7] = fmin(fmax(state[7], -limits->offset_rate), limits->offset_rate);
+}
+
+// ---- Plans
+// ------------------------------------------------------------------------------------------------------------
+
+// The last plan, moved on; without one a straight line along the heading at the start.
+static moray_guess guess_of(moray_recede *r, const moray_heading_spec *spec, moray_samples *samples, double *s)
+{
+    double *time = r->guess, *x = time + r->n, *u = x + states * r->n;
+    for (int k = 0; k < r->n; k++) {
+        const double ahead = (spec->t1 - spec->t0) * k / (r->n - 1);
+        time[k] = spec->t0 + ahead;
+        u[k] = 0;
+        memcpy(x + k * states, spec->start, sizeof spec->start);
+        if (r->solution)
+            moray_solution_at(r->solution, 0, time[k], x + k * states, u + k);
+    }
+    moray_steering_parameters(&r->spec.planned->gait, s);
+    *samples = (moray_samples){.n = r->n, .time = time, .x = x, .u = u};
+    return (moray_guess){.phase = samples, .s = s};
+}
+
+static moray_status make_plan(moray_recede *r, const moray_heading_spec *spec, moray_heading *problem,
+                              moray_solution **solution)
+{
+    double s[MORAY_STEERING_PARAMETERS];
+    moray_samples samples;
+    const moray_guess guess = guess_of(r, spec, &samples, s);
+    moray_settings settings = r->spec.settings;
+    if (r->solution)
+        settings.barrier = 1e-5;
+    MORAY_TRY(moray_heading_new(problem, spec));
+    MORAY_TRY(moray_solve(moray_steering_ocp(problem->steering), &settings, &guess, solution));
+    const moray_nlp_info *info = moray_solution_info(*solution);
+    r->record.iterations += info->iterations;
+    r->record.seconds += info->seconds;
+    if (r->record.plans > 0)
+        r->record.longest = fmax(r->record.longest, info->seconds);
+    if (info->outcome == MORAY_NLP_SOLVED || info->outcome == MORAY_NLP_ACCEPTABLE)
+        return moray_ok();
+    return moray_error(MORAY_NOT_SOLVED, "%.250s", moray_solution_diagnosis(*solution));
+}
+
+static void look(const moray_swim_sample *sample, void *self)
+{
+    moray_recede *r = self;
+    moray_heading_spec spec = r->spec.heading;
+    moray_heading problem = {0};
+    moray_solution *solution = NULL;
+    double rate;
+    measure(r, sample, spec.start);
+    spec.t0 = sample->t;
+    spec.t1 = sample->t + r->spec.horizon;
+    if (!r->spec.preview) {
+        r->held_time = sample->t;
+        r->held_heading = moray_reference_at(r->spec.heading.reference, nextafter(sample->t, INFINITY), &rate);
+        spec.reference = &r->held;
+    }
+    const moray_status status = make_plan(r, &spec, &problem, &solution);
+    r->record.plans++;
+    if (moray_failed(status) && r->record.failures++ == 0)
+        snprintf(r->record.first_failure, sizeof r->record.first_failure, "t = %.6g s: %.170s", sample->t, status.text);
+    moray_solution_free(moray_failed(status) ? solution : r->solution);
+    moray_heading_free(moray_failed(status) ? &problem : &r->problem);
+    if (moray_failed(status))
+        return;
+    r->problem = problem;
+    r->solution = solution;
+}
+
+static moray_offset offset(double t, const void *self)
+{
+    const moray_recede *r = self;
+    if (!r->solution)
+        return (moray_offset){0};
+    return moray_plan_offset(&(moray_plan){r->solution, r->spec.scale}, t);
+}
+
+moray_helm moray_recede_helm(moray_recede *recede)
+{
+    return (moray_helm){.offset = offset, .look = look, .period = recede->spec.interval, .self = recede};
+}
+
+// ---- Handling
+// ---------------------------------------------------------------------------------------------------------
+
+moray_status moray_recede_new(moray_recede **result, const moray_recede_spec *spec)
+{
+    *result = NULL;
+    if (!(spec->interval > 0 && spec->horizon >= spec->interval))
+        return moray_error(MORAY_INPUT, "horizon = %g s, replanned every %g s: the horizon must be the longer",
+                           spec->horizon, spec->interval);
+    const int n = per_interval * spec->settings.intervals + 1;
+    moray_recede *r = calloc(1, sizeof *r + (size_t)(n * (1 + states + 1)) * sizeof(double));
+    if (!r)
+        return moray_error(MORAY_MEMORY, "no memory for a receding horizon");
+    r->spec = *spec;
+    r->links = spec->heading.robot.links;
+    r->n = n;
+    r->held = (moray_reference){.n = 1, .time = &r->held_time, .heading = &r->held_heading};
+    memcpy(r->spec.heading.undulation, spec->planned->undulation, sizeof spec->planned->undulation);
+    *result = r;
+    return moray_ok();
+}
+
+void moray_recede_free(moray_recede *recede)
+{
+    if (!recede)
+        return;
+    moray_solution_free(recede->solution);
+    moray_heading_free(&recede->problem);
+    free(recede);
+}
+
+const moray_recede_record *moray_recede_record_of(const moray_recede *recede)
+{
+    return &recede->record;
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "moray/voyage.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct recorder {
+    moray_voyage *voyage;
+    const moray_helm *helm;
+};
+
+static bool record(const moray_swim_sample *sample, void *self)
+{
+    const struct recorder *recorder = self;
+    const moray_helm *helm = recorder->helm;
+    moray_voyage *voyage = recorder->voyage;
+    voyage->offset[voyage->track.n] = helm ? helm->offset(sample->t, helm->self).value : 0;
+    return moray_swim_track_add(sample, &voyage->track);
+}
+
+// The joints begin on the gait, with the offset that the helm begins with.
+static void start(const moray_voyage_plan *plan, const moray_swimmer *swimmer, double *x)
+{
+    double state[MORAY_STEERING_STATES];
+    moray_gait gait = plan->cruise->gait;
+    moray_cruise_start(plan->cruise, plan->heading, plan->current, state);
+    if (plan->helm) {
+        const moray_offset offset = plan->helm->offset(0, plan->helm->self);
+        gait.offset = offset.value;
+        gait.offset_rate = offset.rate;
+    }
+    moray_swimmer_on_gait(swimmer, &gait, 0, state, x);
+}
+
+static moray_status sail(moray_voyage *voyage, const moray_voyage_plan *plan, double *times, double *x)
+{
+    const int n = plan->intervals + 1;
+    struct recorder recorder = {voyage, plan->helm};
+    const moray_gait_change change = {0, plan->cruise->gait};
+    moray_sim_settings settings = moray_sim_settings_default();
+    const moray_swim_plan swim = {.t1 = plan->duration,
+                                  .schedule = &change,
+                                  .n_changes = 1,
+                                  .helm = plan->helm,
+                                  .times = times,
+                                  .n_times = n,
+                                  .observe = record,
+                                  .observer = &recorder};
+    settings.rtol = settings.atol = plan->tolerance;
+    for (int k = 0; k < n; k++)
+        times[k] = plan->duration * k / plan->intervals;
+    start(plan, voyage->swimmer, x);
+    return moray_swim_run(voyage->swimmer, &settings, &swim, x, NULL);
+}
+
+moray_status moray_voyage_run(moray_voyage *voyage, const moray_voyage_plan *plan)
+{
+    const int n = plan->intervals + 1, states = 2 * plan->robot->links + 4;
+    double *scratch = calloc((size_t)(n + states), sizeof *scratch);
+    *voyage = (moray_voyage){.offset = calloc((size_t)n, sizeof *voyage->offset)};
+    moray_status status = scratch && voyage->offset ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a voyage");
+    if (!moray_failed(status))
+        status = moray_swimmer_new(&voyage->swimmer, plan->robot, plan->cruise->model);
+    if (!moray_failed(status))
+        status = moray_swim_track_new(&voyage->track, voyage->swimmer, n);
+    if (!moray_failed(status)) {
+        moray_swimmer_set_current(voyage->swimmer, plan->current[0], plan->current[1]);
+        status = sail(voyage, plan, scratch, scratch + n);
+    }
+    free(scratch);
+    if (moray_failed(status))
+        moray_voyage_free(voyage);
+    return status;
+}
+
+void moray_voyage_free(moray_voyage *voyage)
+{
+    moray_swimmer_free(voyage->swimmer);
+    moray_swim_track_free(&voyage->track);
+    free(voyage->offset);
+    *voyage = (moray_voyage){0};
+}
+
+moray_heading_score moray_voyage_heading_score(const moray_voyage *voyage, const moray_cruise *cruise,
+                                               const moray_reference *reference)
+{
+    const moray_swim_track *track = &voyage->track;
+    const int last = track->n - 1;
+    moray_heading_score score = {.power = track->energy[last] / track->t[last]};
+    double rate;
+    for (int k = 0; k <= last; k++) {
+        const double t = track->t[k], heading = moray_cruise_heading(cruise, t, track->pose[k].heading);
+        const double error = heading - moray_reference_at(reference, t, &rate);
+        score.rms += error * error * (k == 0 || k == last ? 0.5 : 1) / last;
+        score.largest = fmax(score.largest, fabs(error));
+        score.final = error;
+    }
+    score.rms = sqrt(score.rms);
+    return score;
+}

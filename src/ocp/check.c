@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+//
+// Derivatives of every function of a problem against differences of its values, with the names of what disagrees.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "ocp/names.h"
+#include "ocp/probe.h"
+
+enum { points = 3, name_size = 60 };
+
+// A function of the problem: phase p, or the endpoint where p < 0.
+struct subject {
+    const moray_ocp *ocp;
+    int p;
+    const moray_map *map;
+    double *in, *out, *weight;
+};
+
+static void input_name(const struct subject *s, int i, char *text)
+{
+    if (s->p < 0)
+        endpoint_input_name(s->ocp, i, text, name_size);
+    else
+        phase_input_name(s->ocp, s->p, i, text, name_size);
+}
+
+static void output_name(const struct subject *s, int i, char *text)
+{
+    if (s->p < 0)
+        endpoint_output_name(s->ocp, i, text, name_size);
+    else
+        phase_output_name(s->ocp, s->p, i, text, name_size);
+}
+
+static const char *subject_name(const struct subject *s)
+{
+    return s->p < 0 ? "endpoint" : s->ocp->phase[s->p].name;
+}
+
+static void keep_jacobian(const struct subject *s, const moray_derivative_report *found,
+                          moray_ocp_derivative_report *report)
+{
+    char row[name_size], col[name_size];
+    if (found->jacobian_error <= report->jacobian_error)
+        return;
+    report->jacobian_error = isnan(found->jacobian_error) ? INFINITY : found->jacobian_error;
+    output_name(s, found->jacobian_row, row);
+    input_name(s, found->jacobian_col, col);
+    snprintf(report->jacobian, sizeof report->jacobian, "%s%s: d (%s) / d (%s) is %.10g, by differences %.10g",
+             s->p < 0 ? "" : "phase ", subject_name(s), row, col, found->jacobian_given, found->jacobian_reference);
+}
+
+// The output whose own second derivatives are wrong; -1 where none alone is.
+static int wrong_output(struct subject *s, double error)
+{
+    int worst = -1;
+    double most = error / 100;
+    moray_derivative_report found;
+    for (int i = 0; i < s->map->n_out; i++)
+        s->weight[i] = 0;
+    for (int i = 0; i < s->map->n_out; i++) {
+        s->weight[i] = 1;
+        if (!moray_failed(moray_check_derivatives(s->map, s->in, s->weight, &found)) &&
+            !(found.hessian_error <= most)) {
+            most = found.hessian_error;
+            worst = i;
+        }
+        s->weight[i] = 0;
+    }
+    return worst;
+}
+
+static void keep_hessian(struct subject *s, const moray_derivative_report *found, moray_ocp_derivative_report *report)
+{
+    char what[name_size] = "weighted sum", row[name_size], col[name_size];
+    moray_derivative_report shown = *found;
+    if (found->hessian_error <= report->hessian_error)
+        return;
+    report->hessian_error = isnan(found->hessian_error) ? INFINITY : found->hessian_error;
+    const int output = report->hessian_error > 1e-5 ? wrong_output(s, report->hessian_error) : -1;
+    if (output >= 0) {
+        output_name(s, output, what);
+        s->weight[output] = 1;
+        moray_check_derivatives(s->map, s->in, s->weight, &shown);
+    }
+    input_name(s, shown.hessian_row, row);
+    input_name(s, shown.hessian_col, col);
+    snprintf(report->hessian, sizeof report->hessian, "%s%s: d2 (%s) / d (%s) d (%s) is %.10g, by differences %.10g",
+             s->p < 0 ? "" : "phase ", subject_name(s), what, row, col, shown.hessian_given, shown.hessian_reference);
+}
+
+static bool is_finite(const struct subject *s)
+{
+    s->map->value(s->map->self, s->in, s->out);
+    for (int i = 0; i < s->map->n_out; i++)
+        if (!isfinite(s->out[i]))
+            return false;
+    return true;
+}
+
+static moray_status check_at(struct subject *s, int point, int *checked, moray_ocp_derivative_report *report)
+{
+    moray_derivative_report found;
+    if (s->p < 0)
+        endpoint_probe(s->ocp, point, s->in);
+    else
+        phase_probe(s->ocp, &s->ocp->phase[s->p], point, s->in);
+    for (int i = 0; i < s->map->n_out; i++)
+        s->weight[i] = 1 + 0.3 * cos(2.0 * i + point);
+    if (!is_finite(s))
+        return moray_ok();
+    ++*checked;
+    MORAY_TRY(moray_check_derivatives(s->map, s->in, s->weight, &found));
+    keep_jacobian(s, &found, report);
+    keep_hessian(s, &found, report);
+    return moray_ok();
+}
+
+static moray_status check_subject(struct subject s, moray_ocp_derivative_report *report)
+{
+    int checked = 0;
+    s.in = calloc((size_t)(s.map->n_in + 2 * s.map->n_out), sizeof *s.in);
+    if (!s.in)
+        return moray_error(MORAY_MEMORY, "no memory to check the derivatives of %s", subject_name(&s));
+    s.out = s.in + s.map->n_in;
+    s.weight = s.out + s.map->n_out;
+    moray_status status = moray_ok();
+    for (int point = 0; point < points && !moray_failed(status); point++)
+        status = check_at(&s, point, &checked, report);
+    if (!moray_failed(status) && checked == 0)
+        status = moray_error(MORAY_NUMERIC, "%s: its functions are not finite at any of %d points within the bounds",
+                             subject_name(&s), points);
+    free(s.in);
+    return status;
+}
+
+moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report)
+{
+    *report = (moray_ocp_derivative_report){.jacobian_error = -1, .hessian_error = -1};
+    for (int p = 0; p < ocp->phases; p++)
+        MORAY_TRY(check_subject((struct subject){.ocp = ocp, .p = p, .map = ocp->phase[p].map}, report));
+    return check_subject((struct subject){.ocp = ocp, .p = -1, .map = ocp->endpoint}, report);
+}

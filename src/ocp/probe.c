@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "ocp/probe.h"
+
+#include <math.h>
+
+int phase_inputs(const struct phase *p)
+{
+    return p->nx + p->nu + p->ns + 1;
+}
+
+int endpoint_inputs(const moray_ocp *ocp)
+{
+    int n = ocp->ns;
+    for (int i = 0; i < ocp->phases; i++)
+        n += 2 * ocp->phase[i].nx + 2 + ocp->phase[i].nq;
+    return n;
+}
+
+static double finite_size(double bound)
+{
+    return fabs(bound) < MORAY_INFINITY ? fabs(bound) : 0;
+}
+
+static double size_of(moray_bounds bounds)
+{
+    const double size = fmax(finite_size(bounds.lower), finite_size(bounds.upper));
+    return size > 0 ? fmin(size, 1) : 1;
+}
+
+static void size_list(const moray_bounds *bounds, int n, double **size)
+{
+    for (int i = 0; i < n; i++)
+        *(*size)++ = size_of(bounds[i]);
+}
+
+static double state_size(const struct phase *p, int i)
+{
+    return fmin(size_of(p->x0[i]), size_of(p->xf[i])); // which hold the bounds of x too
+}
+
+void phase_sizes(const moray_ocp *ocp, const struct phase *p, double *size)
+{
+    for (int i = 0; i < p->nx; i++)
+        *size++ = state_size(p, i);
+    size_list(p->u, p->nu, &size);
+    size_list(ocp->s, ocp->ns, &size);
+    *size = fmin(size_of(p->t0), size_of(p->tf));
+}
+
+void endpoint_sizes(const moray_ocp *ocp, double *size)
+{
+    for (int k = 0; k < ocp->phases; k++) {
+        const struct phase *p = &ocp->phase[k];
+        for (int end = 0; end < 2; end++) {
+            for (int i = 0; i < p->nx; i++)
+                *size++ = state_size(p, i);
+            *size++ = fmin(size_of(p->t0), size_of(p->tf));
+        }
+        size_list(p->q, p->nq, &size);
+    }
+    size_list(ocp->s, ocp->ns, &size);
+}
+
+static double probe_value(moray_bounds bounds, double size, int i, int trial)
+{
+    const double shift = 0.2 * (fmod(0.618033988749895 * (i + 1) + 0.37 * trial, 1) - 0.5);
+    const bool boxed = bounds.lower > -MORAY_INFINITY && bounds.upper < MORAY_INFINITY;
+    const double width = boxed ? bounds.upper - bounds.lower : size + fabs(bounds_middle(bounds));
+    const double value = bounds_middle(bounds) + width * (shift + (boxed ? 0 : 0.3));
+    return fmin(fmax(value, bounds.lower), bounds.upper);
+}
+
+static void probe_list(const moray_bounds *bounds, int n, int trial, double **in)
+{
+    for (int i = 0; i < n; i++)
+        *(*in)++ = probe_value(bounds[i], size_of(bounds[i]), i, trial);
+}
+
+// The middle between the ends says most about where a state lives; beside it, because both may be fixed at zero.
+static void probe_states(const struct phase *p, int trial, double **in)
+{
+    for (int i = 0; i < p->nx; i++) {
+        const double x0 = probe_value(p->x0[i], state_size(p, i), i, trial);
+        const double xf = probe_value(p->xf[i], state_size(p, i), i + 7, trial);
+        const double middle = 0.55 * x0 + 0.45 * xf, beside = 0.05 * (state_size(p, i) + fabs(middle));
+        *(*in)++ = fmin(fmax(middle + beside, p->x[i].lower), p->x[i].upper);
+    }
+}
+
+void phase_probe(const moray_ocp *ocp, const struct phase *p, int trial, double *in)
+{
+    probe_states(p, trial, &in);
+    probe_list(p->u, p->nu, trial, &in);
+    probe_list(ocp->s, ocp->ns, trial, &in);
+    *in = 0.6 * probe_value(p->t0, size_of(p->t0), 0, trial) + 0.4 * probe_value(p->tf, size_of(p->tf), 1, trial);
+}
+
+void endpoint_probe(const moray_ocp *ocp, int trial, double *in)
+{
+    for (int k = 0; k < ocp->phases; k++) {
+        const struct phase *p = &ocp->phase[k];
+        probe_list(p->x0, p->nx, trial, &in);
+        probe_list(&p->t0, 1, trial, &in);
+        probe_list(p->xf, p->nx, trial, &in);
+        probe_list(&p->tf, 1, trial + 1, &in);
+        probe_list(p->q, p->nq, trial, &in);
+    }
+    probe_list(ocp->s, ocp->ns, trial, &in);
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// Gradients of the first-principles model, all at once, by hand: of a weighted sum
+//     F = lambda . (mean theta'', p_x'', p_y'') + rho . u + pi sum u_i phi_i'
+// of what the joints' motion brings about. Written for complex numbers, so that one complex step through it is a row of
+// the Hessian.
+#ifndef MORAY_SNAKE_COMPLEX_ADJOINT_H
+#define MORAY_SNAKE_COMPLEX_ADJOINT_H
+
+#include "complex_model.h"
+
+typedef struct complex_weights {
+    const double *lambda; // [3]
+    const double *rho;    // [N-1]; NULL for zeros
+    double pi;
+} complex_weights;
+
+// Scratch of a link. With virtual accelerations of the chain, theta''_k of the link and xi_k of its centre, F is the
+// virtual power of the links' net forces and moments.
+typedef struct complex_dual_link {
+    double complex turn; // virtual theta''
+    complex_vector_z xi, net, on_v, on_a;
+} complex_dual_link;
+
+// Derivatives of F by theta_i, theta_i', theta_i'' [N each] and by the velocity of (p_x, p_y); theta'' counts as given
+// but for its mean.
+typedef struct complex_gradient {
+    double complex *theta, *dtheta, *ddtheta;
+    double complex v_x, v_y;
+} complex_gradient;
+
+// After complex_accelerations_z and complex_torques_z with the same motion and links; ddtheta[N] and u[N-1] from there.
+void complex_adjoint(const moray_robot *robot, const double V[2], const complex_motion_z *motion,
+                     const complex_link_z *links, const double complex *ddtheta, const double complex *u,
+                     const complex_weights *weight, complex_dual_link *dual, complex_gradient *out);
+
+#endif

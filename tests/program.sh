@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+# For tests of one program, sourced with its path in $1 and the source directory in $2: an own working directory, and
+# the words below.
+case $1 in
+/*) program=$1 ;;
+*) program=$PWD/$1 ;;
+esac
+source=$2
+. "$source/tests/tap.sh"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+
+# run ARGUMENTS: leaves $code, out and err.
+run() {
+    "$program" "$@" >out 2>err </dev/null
+    code=$?
+}
+
+# Standard error is one line that begins with the program's name.
+one_line() {
+    [ "$(wc -l <err)" -eq 1 ] && grep -q "^$(basename "$program"): " err
+}
+
+# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it, no --out.
+refuse() {
+    text=$1
+    shift
+    run "$@" --json --out fresh
+    check "exit 2: $(cat err)" [ $code -eq 2 ]
+    check "one line that says '$text'" eval 'one_line && grep -qF -e "$text" err'
+    check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
+}
+
+# number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
+number() {
+    [ $# -eq 1 ] && set -- . "$1"
+    awk -v block="\"$1\"" -v key="\"$2\"" 'index($0, block) || block == "\".\"" { seen = 1 }
+        seen && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
+}
+
+# near VALUE EXPECTED TOLERANCE
+near() {
+    awk -v is="$1" -v want="$2" -v by="$3" 'BEGIN { exit !(is != "" && want != "" && is - want <= by && want - is <= by) }'
+}

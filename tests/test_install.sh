@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+# The installed library serves a program built outside this tree: headers, pkg-config file, template.c, its published
+# optimum. Arguments: the source directory, the build directory, the compiler with its flags.
+source=$1
+build=$2
+shift 2
+. "$source/tests/tap.sh"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+
+check "meson install into an empty directory" meson install -C "$build" --no-rebuild --destdir "$work/root"
+pc=$(find root -name moray.pc)
+check "one pkg-config file: $pc" [ -f "$pc" ]
+prefix=$work/root$(sed -n 's/^prefix=//p' "$pc")
+export PKG_CONFIG_PATH="$work/${pc%/*}" PKG_CONFIG_SYSROOT_DIR="$work/root"
+library=$(dirname "$(find root -name libmoray.so)")
+export LD_LIBRARY_PATH="$work/$library${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+check "it knows nothing of the places where moray was built" eval '! grep -qF -e "$source" -e "$build" "$pc"'
+check "its version is the library's" [ "$(pkg-config --modversion moray)" = \
+    "$("$prefix/bin/max_speed" --version | sed 's/.* //')" ]
+
+# ---- Headers
+(cd "$prefix/include" && find . -type f | sort) >installed
+(cd "$source/include" && find . -type f | sort) >public
+check "the public headers are installed, each once, and no other" cmp installed public
+for header in $(sed 's|^\./||' installed); do
+    printf '#include <%s>\nint main(void) { return 0; }\n' "$header" >one.c
+    # shellcheck disable=SC2046
+    check "$header compiles from there" "$@" -std=c11 -Wall -Wextra -Werror -fsyntax-only $(pkg-config --cflags moray) one.c
+done
+
+# ---- A stranger's program
+cp "$source/problems/template.c" mine.c
+# shellcheck disable=SC2046
+check "template.c builds with pkg-config's flags alone" "$@" mine.c -o mine $(pkg-config --cflags --libs moray)
+
+# optimum ARGUMENTS: the objective that the program finds.
+optimum() {
+    ./mine --json "$@" >summary.json && awk -F: '/"objective"/ { print $2 + 0; exit }' OFMT=%.12g summary.json
+}
+near() {
+    awk -v got="$1" -v want="$2" 'BEGIN { exit !(got != "" && got - want < 2e-6 && want - got < 2e-6) }'
+}
+check "it finds the published optimum 4: $(optimum)" near "$(optimum)" 4
+check "and with l = 1/10, 4 / (9 l) = 4.444444: $(optimum --set l=0.1)" near "$(optimum --set l=0.1)" 4.4444444
+check "certified" eval './mine --out results && [ -s results/report.html ] && grep -q "\"pass\":.true" results/summary.json'
+check "a limit that is out of reach is not solved: exit 1" eval './mine --set max_iterations=2; [ $? -eq 1 ]'
+tap_done

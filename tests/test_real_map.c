@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+//
+// Maps of functions that know only real numbers, and the continued kinks of num.h, against closed forms.
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/map.h"
+#include "moray/num.h"
+
+static double entry(const moray_pattern *pattern, const double *values, int row, int col, bool *found)
+{
+    *found = false;
+    for (int k = 0; k < pattern->nnz; k++)
+        if (pattern->row[k] == row && pattern->col[k] == col) {
+            *found = true;
+            return values[k];
+        }
+    return 0;
+}
+
+// out = (x0 x1 + sin 3 x2, x2^2 exp x3, x4, x0 / x3, 1 when x1 > 0 else x4^2)
+static void sample(void *self, const double *x, double *out)
+{
+    ++*(int *)self;
+    out[0] = x[0] * x[1] + sin(3 * x[2]);
+    out[1] = x[2] * x[2] * exp(x[3]);
+    out[2] = x[4];
+    out[3] = x[0] / x[3];
+    out[4] = x[1] > 0 ? 1 : x[4] * x[4];
+}
+
+static const double point[5] = {0.3, -1.2, 0.7, 1.9, 4};
+
+static void test_real(void)
+{
+    moray_map map;
+    int calls = 0;
+    bool found;
+    double values[32];
+    CHECK_OK(moray_map_from_real(&map, 5, 5, sample, &calls, NULL, point), "a map of a real function");
+    const double *x = point;
+    const double jac[5][5] = {{x[1], x[0], 3 * cos(3 * x[2]), 0, 0},
+                              {0, 0, 2 * x[2] * exp(x[3]), x[2] * x[2] * exp(x[3]), 0},
+                              {0, 0, 0, 0, 1},
+                              {1 / x[3], 0, 0, -x[0] / (x[3] * x[3]), 0},
+                              {0, 0, 0, 0, 2 * x[4]}};
+    calls = 0;
+    map.jacobian(map.self, x, values);
+    CHECK(calls == 12, "five columns in three directions of four evaluations: %d", calls);
+    for (int i = 0; i < 5; i++)
+        for (int j = 0; j < 5; j++) {
+            CHECK_RELATIVE(entry(&map.jac, values, i, j, &found), jac[i][j], 1e-10, "Jacobian entry");
+            CHECK(found == (jac[i][j] != 0), "pattern knows entry %d, %d", i, j);
+        }
+    const double w[5] = {2, -0.5, 3, 0.25, 0.6}, e = exp(x[3]);
+    const double hess[5][5] = {{0},
+                               {w[0], 0},
+                               {0, 0, -9 * w[0] * sin(3 * x[2]) + 2 * w[1] * e},
+                               {-w[3] / (x[3] * x[3]), 0, 2 * w[1] * x[2] * e,
+                                w[1] * x[2] * x[2] * e + 2 * w[3] * x[0] / (x[3] * x[3] * x[3])},
+                               {0, 0, 0, 0, 2 * w[4]}};
+    map.hessian(map.self, x, w, values);
+    for (int i = 0; i < 5; i++)
+        for (int j = 0; j <= i; j++) {
+            CHECK_RELATIVE(entry(&map.hess, values, i, j, &found), hess[i][j], 2e-7, "Hessian entry");
+            CHECK(found == (hess[i][j] != 0), "pattern knows second derivative %d, %d", i, j);
+        }
+    moray_map_release(&map);
+    moray_map_release(&map);
+}
+
+// A NaN that a comparison swallows does not hide an input.
+static void swallows(void *self, const double *x, double *out)
+{
+    (void)self;
+    out[0] = x[0] > 0.5 ? 2 * x[0] : 0;
+    out[1] = fmax(x[1], 0);
+}
+
+static void released(void *self)
+{
+    ++*(int *)self;
+}
+
+static void test_swallowed(void)
+{
+    moray_map map;
+    int releases = 0;
+    const double x[] = {1, 1}, outside[] = {1, INFINITY};
+    double values[4];
+    CHECK_OK(moray_map_from_real(&map, 2, 2, swallows, &releases, released, x), "comparisons");
+    CHECK(map.jac.nnz == 2 && map.hess.nnz == 0, "both inputs are found, and no curvature: %d, %d", map.jac.nnz,
+          map.hess.nnz);
+    map.jacobian(map.self, x, values);
+    CHECK_NEAR(values[0] + values[1], 3, 1e-9, "their slopes");
+    moray_map_release(&map);
+    CHECK(releases == 1, "the user's data is released with the map");
+    moray_status status = moray_map_from_real(&map, 2, 2, swallows, &releases, released, outside);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "output 1"), "not finite: %s", status.text);
+    CHECK(releases == 2, "and released on error");
+}
+
+// Next to the end of its domain the steps shrink.
+static void root(void *self, const double *x, double *out)
+{
+    (void)self;
+    out[0] = sqrt(x[0]);
+}
+
+static void test_domain(void)
+{
+    moray_map map;
+    const double probe = 1, x = 1e-6;
+    double slope;
+    CHECK_OK(moray_map_from_real(&map, 1, 1, root, NULL, NULL, &probe), "a square root");
+    map.jacobian(map.self, &x, &slope);
+    CHECK_NEAR(slope / (0.5 / sqrt(x)), 1, 1e-5, "slope within 1e-6 of the end of its domain, relative");
+    moray_map_release(&map);
+}
+
+// A complex function that is not real has no value.
+static void imaginary(void *self, const double complex *x, double complex *out)
+{
+    (void)self;
+    out[0] = csqrt(x[0]);
+    out[1] = cpow(x[1], 2);
+}
+
+static void test_imaginary(void)
+{
+    moray_map map;
+    const double probe[] = {1, 1}, at[] = {-1, -1};
+    double out[2];
+    CHECK_OK(moray_map_from_complex(&map, 2, 2, imaginary, NULL, NULL, probe), "root and square");
+    map.value(map.self, at, out);
+    CHECK(isnan(out[0]) && isnan(out[1]), "of negative numbers: %g, %g", out[0], out[1]);
+    moray_map_release(&map);
+    moray_status status = moray_map_from_complex(&map, 2, 2, imaginary, NULL, NULL, at);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "must be finite and real"), "%s", status.text);
+}
+
+// ---- num.h ----
+
+// A function of two numbers with its partial derivatives by complex step.
+static void check_num(moray_num (*f)(moray_num, moray_num), double a, double b, double value, double da, double db,
+                      const char *what)
+{
+    const double h = 1e-50;
+    CHECK_NEAR(creal(f(a, b)), value, 2e-15, what);
+    CHECK_NEAR(cimag(f(CMPLX(a, h), b)) / h, da, 2e-15, what);
+    CHECK_NEAR(cimag(f(a, CMPLX(b, h))) / h, db, 2e-15, what);
+    CHECK(isnan(creal(f(NAN, b))) && isnan(creal(f(a, NAN))), "%s: a NaN passes through", what);
+}
+
+static moray_num absolute(moray_num a, moray_num b)
+{
+    return moray_abs(a) + 0 * b;
+}
+static moray_num sign(moray_num a, moray_num b)
+{
+    return moray_sign(a) * b;
+}
+static moray_num clamp(moray_num a, moray_num b)
+{
+    return moray_clamp(a, -1, b);
+}
+
+static moray_num square(moray_num a, moray_num b)
+{
+    return moray_pow(a, 2) + 0 * b;
+}
+static moray_num cube(moray_num a, moray_num b)
+{
+    return moray_pow(a, 3) + 0 * b;
+}
+static moray_num root_cubed(moray_num a, moray_num b)
+{
+    return moray_pow(a, 1.5) + 0 * b;
+}
+
+static void test_num(void)
+{
+    check_num(square, -1.5, 0, 2.25, -3, 0, "square of a negative number");
+    check_num(square, 0, 0, 0, 0, 0, "square of 0");
+    check_num(cube, -1.5, 0, -3.375, 6.75, 0, "cube of a negative number");
+    check_num(root_cubed, 4, 0, 8, 3, 0, "power 3/2");
+    CHECK(isnan(creal(moray_pow(-4, 1.5))), "no power 3/2 of a negative number");
+    check_num(absolute, -2, 1, 2, -1, 0, "abs of a negative number");
+    check_num(absolute, 3, 1, 3, 1, 0, "abs of a positive number");
+    check_num(sign, -3, 2, -2, 0, -1, "sign");
+    check_num(moray_max, 1, 2, 2, 0, 1, "max");
+    check_num(moray_max, 3, 2, 3, 1, 0, "max the other way");
+    check_num(moray_min, 1, 2, 1, 1, 0, "min");
+    check_num(moray_min, 3, 2, 2, 0, 1, "min the other way");
+    check_num(clamp, 0.5, 2, 0.5, 1, 0, "clamp inside");
+    check_num(clamp, 5, 2, 2, 0, 1, "clamp above");
+    check_num(moray_hypot, 3, -4, 5, 0.6, -0.8, "hypot");
+    for (int i = 0; i < 8; i++) {
+        const double angle = -3 + 0.83 * i, r = 1.7, y = r * sin(angle), x = r * cos(angle);
+        check_num(moray_atan2, y, x, angle, x / (r * r), -y / (r * r), "atan2");
+    }
+}
+
+int main(void)
+{
+    test_real();
+    test_swallowed();
+    test_domain();
+    test_imaginary();
+    test_num();
+    return tap_done();
+}

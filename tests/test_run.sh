@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+# What a program around moray_app_run gives its user. Arguments: the demo program, the source directory.
+. "$2/tests/program.sh"
+
+# says TEXT: one line on standard error with TEXT in it.
+says() {
+    one_line && grep -qF -e "$1" err
+}
+
+# has KEY VALUE TOLERANCE: the first value of KEY in the JSON.
+has() {
+    near "$(number "$1")" "$2" "$3"
+}
+
+# ---- Solved
+run --json --out results
+check "solved and certified: exit 0, nothing said: $(cat err)" eval '[ $code -eq 0 ] && [ ! -s err ]'
+check "one JSON object" eval '[ "$(head -c 1 out)" = "{" ] && [ "$(tail -n 1 out)" = "}" ]'
+check "objective 3" has objective 3 1e-6
+check "parameter by its name, 1/2" has share 0.5 1e-6
+check "gate after 1 s" has tf 1 1e-6
+check "half of the effort to it" eval 'tr -d "\n\t" <out | grep -o "\"integrals\":\[[0-9.e-]*\]" | head -n 1 |
+    sed "s/.*\[\(.*\)\]/\1/" | awk "{ exit !(\$1 > 1.499999 && \$1 < 1.500001) }"'
+for key in problem version scheme intervals constants phases solver certificate iterations nvar ncon nnz_jac nnz_hess \
+    time_s eval_time_s kkt mesh_error between_nodes resimulation; do
+    check "summary has $key" grep -q "\"$key\":" out
+done
+check "certificate passes" grep -q '"pass":.true' out
+check "summary.json is what --json prints" cmp out results/summary.json
+check "every figure by phase and unit, and nothing else" [ "$(ls -A results | tr '\n' ' ')" = \
+    "controls_1_to-the-gate.svg controls_2_beyond.svg report.html states_1_to-the-gate.svg \
+states_1_to-the-gate_2.svg states_2_beyond.svg states_2_beyond_2.svg summary.json trajectory.csv " ]
+check "columns with names and units, phases of the same names share them" \
+    [ "$(head -n 1 results/trajectory.csv)" = 'phase,t [s],x [m],v [m/s],u [N]' ]
+# x = 3 d (t/T)^2 - 2 d (t/T)^3 with d = T = 2
+check "the trajectory is the cubic" awk -F, 'NR > 1 { t = $2; e = $3 - (1.5 * t * t - 0.5 * t * t * t); n++
+    if (e > 1e-6 || e < -1e-6) bad = 1 } END { exit bad || n < 400 }' results/trajectory.csv
+check "from start to end" eval 'sed -n 2p results/trajectory.csv | grep -q "^1,0," && tail -n 1 results/trajectory.csv | grep -q "^2,2,"'
+check "the report has the table, the figures, the command line" eval '
+    grep -q "Certificate: pass" results/report.html && grep -q "<svg" results/report.html &&
+    grep -q -- "--json --out results" results/report.html'
+run
+check "the table: objective by its name" grep -q '^effort  *[0-9.]*  *N^2 s$' out
+check "the table: integral of each phase" grep -q '^integral q\[0\] of beyond  *1\.5[0-9]*  *N^2 s$' out
+check "the table: certificate" grep -q '^Certificate: pass$' out
+run --json --set gate=1.2 --scheme radau4 --intervals 7 --tol 1e-9
+check "--set reaches the functions, other options the solver" \
+    eval '[ $code -eq 0 ] && has gate 1.2 0 && has intervals 7 0 && grep -q radau4 out && has tf 1.1341378 1e-6'
+
+run --json --scheme trapezoid --intervals 3 --set mesh_tol=1e-4 --set refinements=20
+check "a coarse mesh is refined: $(grep -c '"nodes"' out) meshes" \
+    eval '[ $code -eq 0 ] && [ $(grep -c "\"nodes\":" out) -gt 1 ] && has objective 3 1e-3'
+run --json --scheme trapezoid --intervals 3 --set mesh_tol=1e-4
+check "and only when asked for" eval '[ $code -eq 3 ] && [ $(grep -c "\"nodes\":" out) -eq 1 ]'
+run --check
+check "--check finds exact derivatives" eval '[ $code -eq 0 ] && grep -q "^first derivatives differ by at most [0-9.]*e-1" out'
+run --check --set crooked=1
+check "--check names the wrong one: exit 1" \
+    eval '[ $code -eq 1 ] && says "derivatives are wrong" && grep -q "dynamics of state v.*control u" out'
+
+# ---- Not certified, not solved, interrupted, not stated
+run --json --set mesh_tol=1e-300
+check "certificate failed: exit 3 and a line that says what to try: $(cat err)" \
+    eval '[ $code -eq 3 ] && says "certificate failed" && says "try" && grep -q "\"pass\":.false" out'
+run --json --set gate=9 --out unsolved
+check "not solved: exit 1 and a line that names the constraint: $(cat err)" eval '[ $code -eq 1 ] && says "Largest violation"'
+check "not solved: the summary says so, and its certificate is empty" \
+    eval 'grep -q "\"status\":.\"infeasible\"" out && grep -q "\"kkt\":.null" out && grep -q "\"pass\":.false" out &&
+          cmp out unsolved/summary.json'
+run --set max_iterations=2
+check "iteration limit: exit 1: $(cat err)" eval '[ $code -eq 1 ] && says "iteration limit after 2"'
+run --json --set raise=1 --out interrupted
+check "SIGINT: exit 130: $(cat err)" eval '[ $code -eq 130 ] && says "interrupted after"'
+check "SIGINT: what there is is written" eval 'cmp out interrupted/summary.json && grep -q "\"status\":.\"interrupted\"" out &&
+    [ -s interrupted/trajectory.csv ] && [ -s interrupted/report.html ]'
+run --set raise=2 --out twice
+check "SIGINT twice: ends at once, nothing is left" eval '[ $code -eq 130 ] && [ ! -s out ] && [ ! -e twice ]'
+run --set undefined=1
+check "functions not finite at the guess: exit 1: $(cat err)" eval '[ $code -eq 1 ] && says "not finite"'
+for wrong in --links=3 --robot=x --current=1,1; do
+    run $wrong
+    check "no robots here: $(cat err)" eval '[ $code -eq 2 ] && says "unknown option"'
+done
+run --set gat=1
+check "unknown key: exit 2: $(cat err)" eval '[ $code -eq 2 ] && says "did you mean gate"'
+run --scheme euler --json --out euler
+check "bad scheme: exit 2, nothing printed or written: $(cat err)" \
+    eval '[ $code -eq 2 ] && says "scheme = euler: must be" && [ ! -s out ] && [ ! -e euler ]'
+run --help
+check "--help has the constants and no INI files" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -q INI out'
+run --version
+check "--version: $(cat out)" grep -q '^run_demo (moray) [0-9.]*$' out
+tap_done
