@@ -35,7 +35,10 @@ static bool row(const struct classic *classic, int argc, char **argv)
     printf(
         "%-22s %14.10g %11s %9.1e %-7s %2d meshes %4d intervals %4d it %6.2f s  KKT %.0e mesh %.0e between %.0e re-sim "
         "%.0e %s\n",
-        classic->name, result.value, classic->published, result.difference, result.agrees ? "agrees" : "DIFFERS",
+        classic->name, result.value, classic->published, result.difference,
+        !result.agrees      ? "DIFFERS"
+        : classic->computed ? "agrees*"
+                            : "agrees",
         result.meshes, result.intervals, result.iterations, result.seconds, c->kkt, c->mesh_error, c->between_nodes,
         c->resimulation,
         c->pass               ? "certified"

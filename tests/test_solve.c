@@ -202,6 +202,40 @@ static void test_order(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Least time of the double integrator, |u| <= 1, (0, 0) to (1, 0): tf = 2, u jumps at t = 1, which is a node: an
+//      integrator that ends a step there must not see the other side ----
+
+static void shove(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = at->u[0];
+}
+
+static void test_resimulation_stays_on_its_side_of_a_jump(void)
+{
+    moray_ocp *ocp;
+    const moray_phase_spec cart = {.name = "cart",
+                                   .nx = 2,
+                                   .nu = 1,
+                                   .continuous = shove,
+                                   .t0 = moray_fixed(0),
+                                   .tf = moray_between(0.1, 10),
+                                   .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                   .xf = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0)),
+                                   .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    CHECK_OK(
+        moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "least time", .phases = 1, .phase = &cart, .endpoint = arrival}),
+        "least time");
+    moray_solution *solution = solve(ocp, "gauss2", 4, NULL);
+    moray_certificate certificate;
+    CHECK_NEAR(moray_solution_objective(solution), 2, 1e-8, "least time");
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK(certificate.resimulation < 1e-7, "re-simulation %.1e", certificate.resimulation);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- An integrand that vanishes at every node: x' = 0, q = integral of sin^2(20 pi t) over [0, 1] = 1/2 ----
 
 static void ripple(const moray_node *at, moray_rates *out, const void *data)
@@ -304,6 +338,7 @@ int main(void)
     test_brachistochrone();
     test_costates();
     test_order();
+    test_resimulation_stays_on_its_side_of_a_jump();
     test_integrals_are_certified();
     test_refusals();
     test_infeasible_is_explained();

@@ -56,8 +56,8 @@ const struct classic classic_bryson_denham = {.name = "bryson-denham",
                                               .sign = 1,
                                               .build = build,
                                               .data = &(const struct wall){1. / 9, 0.5},
-                                              .scheme = "gauss3",
-                                              .intervals = 20};
+                                              .scheme = "hermite-simpson",
+                                              .intervals = 30};
 
 const struct classic classic_bryson_denham_energy = {.name = "bryson-denham-energy",
                                                      .title = "Bryson-Denham, integral of u^2",
@@ -67,8 +67,8 @@ const struct classic classic_bryson_denham_energy = {.name = "bryson-denham-ener
                                                      .sign = 1,
                                                      .build = build,
                                                      .data = &(const struct wall){1. / 9, 1},
-                                                     .scheme = "gauss3",
-                                                     .intervals = 20};
+                                                     .scheme = "hermite-simpson",
+                                                     .intervals = 30};
 
 const struct classic classic_breakwell = {.name = "breakwell",
                                           .title = "Breakwell, l = 0.1",
@@ -78,5 +78,5 @@ const struct classic classic_breakwell = {.name = "breakwell",
                                           .sign = 1,
                                           .build = build,
                                           .data = &(const struct wall){0.1, 0.5},
-                                          .scheme = "gauss3",
-                                          .intervals = 20};
+                                          .scheme = "hermite-simpson",
+                                          .intervals = 30};

@@ -8,7 +8,7 @@
 //   D = -rho Cd A |w| w / 2,  w = v - Omega x r,  rho = rho0 exp(-(|r| - Re) / H)
 //   from rest on the ground at 28.5 deg to a, e, i, Omega, omega of the orbit; the empty stages drop between phases
 //
-// GPOPS-II prints 7529.712412 kg, PSOPT 7529.661.
+// PSOPT prints 7529.661 kg on 18 to 25 nodes a phase; the refined value is 7529.712, which SOCS and GPOPS-II print too.
 #include <math.h>
 #include <tgmath.h>
 
@@ -215,8 +215,9 @@ const struct classic classic_launch = {.name = "launch",
                                        .title = "Multiple-stage launch vehicle",
                                        .source = "Benson 2004; GPOPS; PSOPT",
                                        .published = "7529.66",
+                                       .computed = "7529.712",
                                        .sign = -1,
                                        .build = build,
                                        .start = start,
                                        .scheme = "gauss3",
-                                       .intervals = 10};
+                                       .intervals = 5};

@@ -4,7 +4,10 @@
 //
 //   minimise integral of u^2 + x1^2
 //   x1' = x2,  x2' = -x1 + x2 (1.4 - 0.14 x2^2) + 4 u,  u + x1 / 6 <= 0
-//   t in [0, 4.5],  x(0) = (-5, -5)        J = 44.77625
+//   t in [0, 4.5],  x(0) = (-5, -5)
+//
+// PSOPT prints J = 44.77625 on 80 nodes. Every family of schemes converges to 44.80444 here, from below where the
+// constraint is only asked for at the nodes of a coarse mesh (trapezoid, 100 intervals: 44.67).
 #include "classics.h"
 
 static void circuit(const moray_node *at, moray_rates *out, const void *data)
@@ -53,8 +56,9 @@ const struct classic classic_rayleigh = {.name = "rayleigh",
                                          .title = "Rayleigh, mixed constraint",
                                          .source = "Betts 2010; PSOPT",
                                          .published = "44.77625",
+                                         .computed = "44.8044",
                                          .sign = 1,
                                          .build = build,
                                          .start = start,
-                                         .scheme = "hermite-simpson",
-                                         .intervals = 400};
+                                         .scheme = "gauss3",
+                                         .intervals = 20};

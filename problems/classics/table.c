@@ -30,7 +30,8 @@
     X(low_thrust_slack)                                                                                                \
     X(two_burn)                                                                                                        \
     X(manutec)                                                                                                         \
-    X(swimmer)
+    X(swimmer)                                                                                                         \
+    X(climb)
 
 #define DECLARE(name) extern const struct classic classic_##name;
 CLASSICS(DECLARE)

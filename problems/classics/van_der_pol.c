@@ -4,7 +4,10 @@
 //
 //   minimise integral of (x1^2 + x2^2 + u^2) / 2
 //   x1' = x2,  x2' = (1 - x1^2) x2 - x1 + u
-//   t in [0, 2],  x(0) = (1, 0), u and the end free        J = 1.047921   (CTDirect's reference for BOCOP's data)
+//   t in [0, 2],  x(0) = (1, 0), u and the end free
+//
+// CTDirect's reference for BOCOP's data is J = 1.047921, which is what 100 intervals of the trapezoid give. Refined:
+// 1.0478069.
 #include "classics.h"
 
 static void oscillate(const moray_node *at, moray_rates *out, const void *data)

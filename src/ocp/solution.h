@@ -32,6 +32,10 @@ void solution_at_tau(const moray_solution *solution, int p, const struct interva
 // Fills the multipliers of `to` with those of a solution of the same problem on any mesh. Error: MORAY_MEMORY.
 moray_status carry_multipliers(const moray_solution *from, moray_solution *to);
 
+// As moray_solution_at, from the polynomials of one interval, at its ends too, where the control may jump.
+void solution_on_interval(const moray_solution *solution, int p, const struct interval *interval, double time,
+                          double *x, double *u);
+
 // Writes the diagnosis text; the history ends with the last mesh that was tried.
 void diagnose(moray_solution *solution);
 
