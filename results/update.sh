@@ -6,7 +6,13 @@ root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd) || exit 1
 cd "$root" || exit 1
 wanted=" $* "
 
-# show NAME PROGRAM [ARGUMENT...]: one run.
+# show NAME PROGRAM [ARGUMENT...]: one run with --out; print: one that writes nothing but its table.
+print() {
+    files=
+    show "$@"
+    files=yes
+}
+files=yes
 show() {
     name=$1
     shift
@@ -15,7 +21,7 @@ show() {
     *) return 0 ;;
     esac
     mkdir -p "results/$name" || exit 1
-    if ! sh problems/run.sh "$@" --quiet --out "results/$name" >table.tmp; then
+    if ! sh problems/run.sh "$@" --quiet ${files:+--out "results/$name"} >table.tmp; then
         rm -f table.tmp
         echo "failed: sh problems/run.sh $*" >&2
         exit 1
@@ -37,3 +43,4 @@ show max_speed max_speed
 show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
 show paper paper all
+print benchmark_s1 benchmark --part s1
