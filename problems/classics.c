@@ -1,67 +1,236 @@
 // SPDX-License-Identifier: MIT
 //
-// Solves the textbook problems and sets the optimum beside what is published.
-//   classics [name [scheme [intervals]]]
-#include <stdio.h>
+// Textbook problems whose optimum is published, solved from the textbook's start and set beside what was printed.
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "classics/classics.h"
+#include "moray/run.h"
 #include "moray/sim.h"
 
-static bool row(const struct classic *classic, int argc, char **argv)
+enum { most = 64, diagnosis_size = 600 };
+
+typedef struct classics_run {
+    moray_common common;
+    int refinements; // -1: each problem's own
+    bool chosen[most];
+    moray_ticker ticker;
+    const char *solving;
+} classics_run;
+
+static const char own_scheme[] = "recommended";
+
+static const moray_option options[] = {
+    {.section = "solver",
+     .key = "refinements",
+     .flag = "refinements",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(classics_run, refinements),
+     .min = -1,
+     .max = 100,
+     .help = "finer meshes tried until the certificate passes; -1: 20, but none where a value belongs to its mesh"},
+};
+
+static classics_run defaults(void)
 {
+    classics_run run = {.common = moray_common_defaults(), .refinements = -1};
+    strcpy(run.common.scheme, own_scheme);
+    run.common.intervals = 0;
+    run.common.tol = NAN;
+    return run;
+}
+
+// ---- Solving -------------------------------------------------------------------------------------------------------
+
+struct line {
+    const struct classic *classic;
+    moray_settings settings;
     struct classic_result result;
-    char diagnosis[600];
-    moray_settings settings = classic_settings(classic);
-    const moray_sim_settings sim_settings = moray_sim_settings_default();
-    const moray_integrator integrator = moray_sim_integrator(&sim_settings);
-    if (argc > 2)
-        settings.scheme = argv[2];
-    if (argc > 3)
-        settings.intervals = atoi(argv[3]);
-    if (argc > 4)
-        settings.tolerance = atof(argv[4]);
-    if (argc > 5)
-        settings.max_refinements = atoi(argv[5]);
-    if (argc > 6)
-        settings.print_level = atoi(argv[6]);
-    const moray_status status =
-        classic_solve(classic, &settings, &integrator, &result, diagnosis, (int)sizeof diagnosis);
-    if (moray_failed(status)) {
-        printf("%-22s %s\n", classic->name, status.text);
-        return false;
-    }
-    const moray_certificate *c = &result.certificate;
-    printf(
-        "%-22s %14.10g %11s %9.1e %-7s %2d meshes %4d intervals %4d it %6.2f s  KKT %.0e mesh %.0e between %.0e re-sim "
-        "%.0e %s\n",
-        classic->name, result.value, classic->published, result.difference,
-        !result.agrees      ? "DIFFERS"
-        : classic->computed ? "agrees*"
-                            : "agrees",
-        result.meshes, result.intervals, result.iterations, result.seconds, c->kkt, c->mesh_error, c->between_nodes,
-        c->resimulation,
-        c->pass               ? "certified"
-        : classic->fixed_mesh ? "(mesh as published)"
-                              : "NOT CERTIFIED");
-    if (result.outcome != MORAY_NLP_SOLVED)
-        printf("%s", diagnosis);
+    char diagnosis[diagnosis_size];
+};
+
+static bool show_iteration(void *observer, const moray_progress *at)
+{
+    const classics_run *run = observer;
+    moray_ticker_show(&run->ticker, "%s: iteration %d, objective %.6g, violation %.1e", run->solving, at->iteration,
+                      at->objective, at->infeasibility);
+    return !moray_interrupted();
+}
+
+static moray_status solve(classics_run *run, struct line *line)
+{
+    const moray_sim_settings sim = moray_sim_settings_default();
+    const moray_integrator integrator = moray_sim_integrator(&sim);
+    line->settings = classic_settings(line->classic);
+    if (strcmp(run->common.scheme, own_scheme) != 0)
+        line->settings.scheme = run->common.scheme;
+    if (run->common.intervals > 0)
+        line->settings.intervals = run->common.intervals;
+    if (!isnan(run->common.tol))
+        line->settings.tolerance = run->common.tol;
+    if (run->refinements >= 0)
+        line->settings.max_refinements = run->refinements;
+    line->settings.progress = show_iteration;
+    line->settings.observer = run;
+    run->solving = line->classic->name;
+    moray_status status = classic_solve(line->classic, &line->settings, &integrator, &line->result, line->diagnosis,
+                                        (int)sizeof line->diagnosis);
+    moray_ticker_end(&run->ticker);
+    return status;
+}
+
+// ---- Showing -------------------------------------------------------------------------------------------------------
+
+static void print_head(void)
+{
+    printf("%-21s %14s %11s %9s %-11s %6s %9s %6s %8s  certificate\n", "problem", "optimum", "published", "difference",
+           "", "meshes", "intervals", "iter.", "time");
+}
+
+static void print_line(const struct line *line)
+{
+    const struct classic_result *r = &line->result;
+    const moray_certificate *c = &r->certificate;
+    char failed[100];
+    snprintf(failed, sizeof failed, "%sKKT %.0e, mesh %.0e, between nodes %.0e, re-simulation %.0e",
+             line->classic->fixed_mesh ? "mesh as published: " : "FAILS: ", c->kkt, c->mesh_error, c->between_nodes,
+             c->resimulation);
+    printf("%-21s %14.10g %11s %9.1e  %-11s %6d %9d %6d %6.2f s  %s\n", line->classic->name, r->value,
+           line->classic->published, r->difference, classic_verdict(line->classic, r), r->meshes, r->intervals,
+           r->iterations, r->seconds, c->pass ? "passes" : failed);
+    if (r->outcome != MORAY_NLP_SOLVED)
+        printf("    %s", line->diagnosis);
     fflush(stdout);
-    return result.agrees;
+}
+
+static void line_to_json(moray_json *json, const struct line *line)
+{
+    const struct classic_result *r = &line->result;
+    moray_json_open(json, line->classic->name);
+    moray_json_text(json, "title", line->classic->title);
+    moray_json_text(json, "source", line->classic->source);
+    moray_json_text(json, "scheme", line->settings.scheme);
+    moray_json_number(json, "intervals", line->settings.intervals);
+    moray_json_number(json, "optimum", r->value);
+    moray_json_number(json, "published", strtod(line->classic->published, NULL));
+    moray_json_number(json, "difference", r->difference);
+    moray_json_text(json, "verdict", classic_verdict(line->classic, r));
+    moray_json_open(json, "solver");
+    moray_json_text(json, "status", moray_nlp_outcome_text(r->outcome));
+    moray_json_number(json, "meshes", r->meshes);
+    moray_json_number(json, "intervals", r->intervals);
+    moray_json_number(json, "iterations", r->iterations);
+    moray_json_number(json, "time_s", r->seconds);
+    moray_json_close(json);
+    moray_certificate_to_json(json, &r->certificate);
+    moray_json_close(json);
+}
+
+static moray_status write_report(const classics_run *run, const struct line *lines, int n)
+{
+    moray_table_row rows[most];
+    char text[most][60];
+    for (int i = 0; i < n; i++) {
+        const struct classic_result *r = &lines[i].result;
+        snprintf(text[i], sizeof text[i], "%.10g, published %s: %s", r->value, lines[i].classic->published,
+                 classic_verdict(lines[i].classic, r));
+        rows[i] = (moray_table_row){.label = lines[i].classic->title,
+                                    .text = text[i],
+                                    .value = {0, r->iterations, r->seconds, r->intervals, r->certificate.pass}};
+    }
+    const moray_table table = {.columns = {"optimum", "iterations", "time [s]", "intervals", "certified"},
+                               .n_columns = 5,
+                               .rows = rows,
+                               .n_rows = n};
+    return moray_output_report(run->common.output, &(moray_report){.title = "Textbook problems",
+                                                                   .tables = &table,
+                                                                   .n_tables = 1,
+                                                                   .argc = run->common.argc,
+                                                                   .argv = run->common.argv});
+}
+
+static moray_status write_results(const classics_run *run, const struct line *lines, int n)
+{
+    moray_json *json = moray_json_new();
+    moray_status status = moray_ok();
+    moray_json_text(json, "problem", "classics");
+    moray_json_text(json, "version", moray_version());
+    moray_json_open(json, "problems");
+    for (int i = 0; i < n; i++)
+        line_to_json(json, &lines[i]);
+    moray_json_close(json);
+    if (run->common.output) {
+        FILE *file;
+        status = moray_output_file(run->common.output, "summary.json", &file);
+        if (!moray_failed(status))
+            status = moray_json_write(json, file);
+        if (!moray_failed(status))
+            status = write_report(run, lines, n);
+        if (!moray_failed(status))
+            status = moray_output_commit(run->common.output);
+    }
+    if (!moray_failed(status) && run->common.json)
+        status = moray_json_write(json, stdout);
+    moray_json_free(json);
+    return status;
+}
+
+// ---- The program ---------------------------------------------------------------------------------------------------
+
+static moray_status judge(const struct line *lines, int n)
+{
+    int differ = 0;
+    for (int i = 0; i < n; i++) {
+        if (lines[i].result.outcome == MORAY_NLP_INTERRUPTED)
+            return moray_error(MORAY_INTERRUPTED, "interrupted at %s", lines[i].classic->name);
+        differ += strcmp(classic_verdict(lines[i].classic, &lines[i].result), "DIFFERS") == 0;
+    }
+    if (differ)
+        return moray_error(MORAY_NOT_SOLVED, "%d of %d differ from what is published", differ, n);
+    return moray_ok();
+}
+
+static moray_status work(classics_run *run, struct line *lines)
+{
+    int n = 0;
+    if (!run->common.json)
+        print_head();
+    moray_interrupt_begin();
+    for (int i = 0; classics[i] && !moray_interrupted(); i++) {
+        if (!run->chosen[i])
+            continue;
+        lines[n].classic = classics[i];
+        MORAY_TRY(solve(run, &lines[n]));
+        if (!run->common.json)
+            print_line(&lines[n]);
+        n++;
+    }
+    moray_interrupt_end();
+    MORAY_TRY(write_results(run, lines, n));
+    return judge(lines, n);
 }
 
 int main(int argc, char **argv)
 {
-    bool all = true;
-    if (argc > 1) {
-        const struct classic *classic = classic_find(argv[1]);
-        if (!classic) {
-            fprintf(stderr, "no problem %s\n", argv[1]);
-            return 2;
-        }
-        return row(classic, argc, argv) ? 0 : 1;
-    }
-    for (const struct classic *const *c = classics; *c; c++)
-        all = row(*c, argc, argv) && all;
-    return all ? 0 : 1;
+    static moray_word word[most];
+    static struct line lines[most];
+    int n = 0, exit_code;
+    for (; n < most && classics[n]; n++)
+        word[n] = (moray_word){.name = classics[n]->name, .help = classics[n]->title};
+    const moray_words words = {
+        .noun = "problem", .word = word, .n = n, .all = "all", .offset = offsetof(classics_run, chosen)};
+    const moray_program program = {
+        .name = "classics",
+        .summary = "Solves textbook problems of optimal control and sets the optimum beside what is published. Scheme, "
+                   "intervals and tolerance are each problem's own unless given.",
+        .options = options,
+        .n_options = sizeof options / sizeof *options,
+        .words = &words,
+        .no_robot = true};
+    classics_run run = defaults();
+    if (!moray_app_start(&program, argc, argv, &run, &exit_code))
+        return exit_code;
+    run.ticker = moray_ticker_start(stderr, run.common.quiet);
+    return moray_app_end(&program, &run, work(&run, lines));
 }

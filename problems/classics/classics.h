@@ -34,8 +34,13 @@ struct classic_result {
     double value, difference; // in the textbook's sign; difference from what was printed
     bool agrees;              // with `computed` where there is one, else with `published`, rounded or cut; and with the
                               // closed form to 1e-7
+    bool better;              // than what was printed, and certified
     moray_certificate certificate;
 };
+
+// "agrees", "better" (than what was printed), "by the data" (as they give it, which is worse than was printed) or
+// "DIFFERS".
+const char *classic_verdict(const struct classic *classic, const struct classic_result *result);
 
 // Recommended settings: the ones to start from.
 moray_settings classic_settings(const struct classic *classic);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Low-thrust orbit transfer (Betts 2001, sec. 5.3): from a low circular orbit to a high elliptic inclined one on the
+// Low-thrust orbit transfer (Betts 2001, ch. 5): from a low circular orbit to a high elliptic inclined one on the
 // least propellant, in some eight revolutions about the oblate Earth.
 //
 //   maximise w(tf)
@@ -89,7 +89,7 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
 
 const struct classic classic_low_thrust = {.name = "low-thrust",
                                            .title = "Low-thrust orbit transfer",
-                                           .source = "Betts 2001, 5.3; PSOPT",
+                                           .source = "Betts 2001; PSOPT",
                                            .published = "0.2201791",
                                            .sign = -1,
                                            .data = &(const double){0},
@@ -101,7 +101,7 @@ const struct classic classic_low_thrust = {.name = "low-thrust",
 
 const struct classic classic_low_thrust_slack = {.name = "low-thrust-slack",
                                                  .title = "Low-thrust orbit transfer, |u|^2 to 1e-3",
-                                                 .source = "Betts 2001, 5.3; PSOPT",
+                                                 .source = "Betts 2001; PSOPT",
                                                  .published = "0.2203403",
                                                  .computed = "0.2203404",
                                                  .sign = -1,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Orbits about the oblate Earth in modified equinoctial elements (p, f, g, h, k, L), in feet and seconds (Betts 2001,
-// sec. 5.3; constants as there).
+// ch. 5; constants as there).
 #ifndef ORBIT_H
 #define ORBIT_H
 

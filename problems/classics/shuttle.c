@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Space shuttle re-entry (Betts 2001, sec. 5.1): the largest cross range, without a limit on heating.
+// Space shuttle re-entry (Betts 2001, ch. 5): the largest cross range, without a limit on heating.
 //
 //   maximise latitude theta(tf)
 //   h' = v sin gamma,  phi' = v / r cos gamma sin psi / cos theta,  theta' = v / r cos gamma cos psi
@@ -79,7 +79,7 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
 
 const struct classic classic_shuttle = {.name = "shuttle",
                                         .title = "Space shuttle re-entry",
-                                        .source = "Betts 2001, 5.1",
+                                        .source = "Betts 2001",
                                         .published = "34.1412",
                                         .sign = -1,
                                         .build = build,

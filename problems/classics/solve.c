@@ -26,6 +26,15 @@ static void sample_start(const struct classic *classic, const moray_ocp *ocp, st
     }
 }
 
+const char *classic_verdict(const struct classic *classic, const struct classic_result *result)
+{
+    if (result->agrees && !classic->computed)
+        return "agrees";
+    if (result->better && (result->agrees || !classic->computed))
+        return "better";
+    return result->agrees ? "by the data" : "DIFFERS";
+}
+
 static moray_status solve_from_start(const struct classic *classic, const moray_ocp *ocp,
                                      const moray_settings *settings, moray_solution **solution)
 {
@@ -97,6 +106,12 @@ moray_status classic_solve(const struct classic *classic, const moray_settings *
         if (diagnosis)
             snprintf(diagnosis, (size_t)size, "%s", moray_solution_diagnosis(solution));
         status = moray_certify(solution, integrator, &result->certificate);
+        if (status.code == MORAY_NUMERIC) { // what is found leaves its domain when it is simulated: no certificate
+            result->certificate.resimulation = INFINITY;
+            result->certificate.pass = false;
+            status = moray_ok();
+        }
+        result->better = result->certificate.pass && classic->sign * result->difference < 0;
     }
     moray_solution_free(solution);
     moray_ocp_free(ocp);

@@ -10,7 +10,9 @@
 //   angles theta + beta1, theta, theta + beta3 to the x axis; (x, y) the middle of the body x(0) = y(0) = 0, y(25) = 0,
 //   -3.15 <= theta <= 3.15, theta(0) <= 0, beta1(0) >= 0
 //
-// BOCOP's example; its reference value in CTDirect is 0.984273.
+// BOCOP's example; CTDirect's reference value is 0.984273. There are many local maxima, and from the constant start the
+// scheme, the mesh and the solver decide which is found: coarse meshes end between 0.84 and 1.00; gauss3, refined from
+// 60 intervals, at 0.991877.
 #include <math.h>
 #include <tgmath.h>
 
@@ -106,4 +108,5 @@ const struct classic classic_swimmer = {.name = "swimmer",
                                         .build = build,
                                         .start = start,
                                         .scheme = "gauss3",
-                                        .intervals = 40};
+                                        .intervals = 60,
+                                        .tolerance = 1e-8};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Linear tangent steering (Bryson and Ho 1975, sec. 2.4; Betts 2001, sec. 4.7; rocket steering of COPS).
+// Linear tangent steering (Bryson and Ho 1975, sec. 2.4; Betts 2001; rocket steering of COPS).
 //
 //   minimise tf
 //   x'' = a cos u,  y'' = a sin u,  a = 100,  |u| <= pi / 2
@@ -60,7 +60,7 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
 
 const struct classic classic_tangent_steering = {.name = "tangent-steering",
                                                  .title = "Linear tangent steering",
-                                                 .source = "Bryson and Ho 1975, 2.4; Betts 2001, 4.7",
+                                                 .source = "Bryson and Ho 1975, 2.4; Betts 2001",
                                                  .published = "0.55457088",
                                                  .closed_form = 0.5545708783,
                                                  .sign = 1,

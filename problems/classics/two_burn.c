@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Two-burn orbit transfer (Betts 2001, sec. 5.4?; PSOPT): from a low inclined orbit to the geostationary one by two
+// Two-burn orbit transfer (Betts 2001, ch. 5; PSOPT): from a low inclined orbit to the geostationary one by two
 // burns of fixed thrust, in four phases: coast, burn, coast, burn, whose times are free.
 //
 //   maximise w(tf)
