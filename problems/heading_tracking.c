@@ -34,6 +34,8 @@ static const moray_option options[] = {
               "of the mesh, an undulation"),
     STEER_INT(heading_job, refinements, "solver", "refinements", 0, 20,
               "finer meshes tried where the first is too coarse"),
+    STEER_INT(heading_job, gait_evaluations, "solver", "gait_evaluations", 0, 10000,
+              "gaits tried for the first-principles plan; 0: the paper's"),
     {.section = "receding",
      .key = "recede",
      .type = MORAY_OPTION_BOOL,
@@ -61,13 +63,14 @@ static heading_job defaults(void)
                        .reference_text = "steps:20=30,60=0",
                        .horizon = 100,
                        .input = steer_input_default(),
-                       .weight_steering = 0.03,
+                       .weight_steering = 0.01,
                        .max_error = INFINITY,
                        .intervals_per_period = 5,
                        .refinements = 2,
                        .replan_periods = 1,
                        .look_ahead_periods = 6,
                        .recede = true,
+                       .gait_evaluations = 30,
                        .evaluations = 15};
     job.common.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "radau5");

@@ -64,20 +64,19 @@ typedef struct moray_heading {
 moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec);
 void moray_heading_free(moray_heading *problem);
 
-// A plan from t = 0 on that begins in the straight cruise of its own gait.
+// A plan from t = 0 on that begins in the straight cruise of its gait.
 typedef struct moray_heading_plan {
     moray_heading problem;
     moray_solution *solution;
-    moray_cruise cruise; // of the gait found: its speed is the start's, its undulation is what the error leaves out
-    int rounds;          // solves until these agreed
-    double seconds;      // of all of them
+    moray_cruise cruise; // of its gait: its speed is the start's, its undulation is what the error leaves out
 } moray_heading_plan;
 
-// Solves; start and undulation of the spec are set by this, t0 is 0. Starts from the plan `from` (of any model,
-// averaged or not; its gait is where the search begins), or with NULL from the reference as though it were followed by
-// `gait`, which may be NULL otherwise. Where the gait is free the cruise is found again and the plan made anew until
-// they agree. Errors: those of moray_heading_new, moray_cruise_find and moray_solve. Returns MORAY_OK whenever the
-// solver ran, solved or not. Free with moray_heading_plan_free.
+// Solves; start and undulation of the spec are set by this, t0 is 0. On the averaged plant the gait is found within the
+// limits, from `gait` on. Elsewhere it is `gait`, whatever the limits of gait and power: the undulation's phase omega t
+// goes round so often that a free omega has a local optimum every fraction of a percent. Starts from the plan `from`
+// (of any model, averaged or not), or with NULL from the reference as though it were followed. Errors: those of
+// moray_heading_new, moray_cruise_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or not. Free
+// with moray_heading_plan_free.
 moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
                                      const moray_settings *settings, const moray_gait *gait,
                                      const moray_heading_plan *from);

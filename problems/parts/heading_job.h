@@ -37,7 +37,7 @@ typedef struct heading_job {
     int intervals_per_period, refinements;
     double replan_periods, look_ahead_periods;
     bool recede;
-    int evaluations;
+    int gait_evaluations, evaluations;
     // found along the way
     moray_reference reference;
     moray_cruise cruise[HEADING_GAITS][2]; // by the model swum on
@@ -46,6 +46,7 @@ typedef struct heading_job {
     double turn_rate; // sustained at the limit of the offset, by the model of the last plan [rad/s]
     heading_trial trial[HEADING_TRIALS];
     int n_trials;
+    int gaits_tried; // by the search for the gait of the first-principles plan
     moray_ticker ticker;
 } heading_job;
 
@@ -60,6 +61,13 @@ moray_status heading_make_plans(heading_job *job);
 
 // Limits of the model, with the gait that is swum where `gait` is not NULL.
 moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool averaged);
+
+// Of a solve on the averaged plant or the full one, whose undulation has that period.
+moray_settings heading_settings(heading_job *job, bool averaged, double period);
+
+// From *gait to the one whose first-principles plan has the least objective on a coarse mesh, within the limits of gait
+// and straight-ahead power. Error: those of moray_search; MORAY_NOT_SOLVED when no gait gets by with the power.
+moray_status heading_search_gait(heading_job *job, moray_gait *gait);
 
 // What keeps the robot from following more closely, in one paragraph.
 void heading_explain(const heading_job *job, char *text, size_t size);

@@ -53,8 +53,6 @@ static void json_plan(moray_json *json, const char *key, const heading_job *job,
     moray_json_open(json, key);
     moray_gait_to_json(json, "gait", &job->common.robot, gaits);
     moray_solver_to_json(json, plan->solution);
-    moray_json_number(json, "solves", plan->rounds);
-    moray_json_number(json, "all_solves_time_s", plan->seconds);
     moray_json_close(json);
     moray_certificate_to_json(json, &job->certificate[model]);
     moray_json_close(json);

@@ -108,7 +108,7 @@ static bool show_iteration(void *observer, const moray_progress *at)
     return true;
 }
 
-static moray_settings settings_of(heading_job *job, bool averaged, double period)
+moray_settings heading_settings(heading_job *job, bool averaged, double period)
 {
     const double per_period = averaged ? 1.2 : job->intervals_per_period;
     const int least = (int)ceil(job->horizon / period * per_period);
@@ -145,12 +145,13 @@ static moray_status find_cruises(heading_job *job, int index, const moray_gait *
     return moray_ok();
 }
 
-static moray_status make_plan(heading_job *job, moray_model model, const moray_heading_plan *from)
+static moray_status make_plan(heading_job *job, moray_model model, const moray_gait *gait,
+                              const moray_heading_plan *from)
 {
     const moray_heading_spec spec = heading_spec(job, model, false);
-    const moray_settings settings = settings_of(job, false, 2 * M_PI / from->cruise.gait.omega);
+    const moray_settings settings = heading_settings(job, false, 2 * M_PI / gait->omega);
     moray_heading_plan *plan = &job->plan[model];
-    MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, NULL, from));
+    MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, gait, from));
     MORAY_TRY(find_turn_rate(job, plan));
     if (moray_solution_info(plan->solution)->outcome != MORAY_NLP_SOLVED)
         return why_not(job, plan);
@@ -167,10 +168,13 @@ moray_status heading_make_plans(heading_job *job)
     MORAY_TRY(find_cruises(job, 0, &paper, MORAY_CONTROL_ORIENTED));
     const moray_gait first = steer_first_gait(&job->input, robot);
     const moray_heading_spec averaged = heading_spec(job, MORAY_CONTROL_ORIENTED, true);
-    const moray_settings coarse = settings_of(job, true, 2 * M_PI / first.omega);
+    const moray_settings coarse = heading_settings(job, true, 2 * M_PI / first.omega);
     MORAY_TRY(moray_heading_plan_make(&job->averaged, &averaged, &coarse, &first, NULL));
-    MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged));
+    MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged.cruise.gait, &job->averaged));
     if (job->common.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
-    return make_plan(job, MORAY_FIRST_PRINCIPLES, &job->plan[MORAY_CONTROL_ORIENTED]);
+    moray_gait gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    if (job->gait_evaluations > 0 && !steer_gait_given(&job->input))
+        MORAY_TRY(heading_search_gait(job, &gait));
+    return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->plan[MORAY_CONTROL_ORIENTED]);
 }

@@ -140,8 +140,7 @@ static void solver_line(const char *what, const heading_job *job, const moray_he
     int meshes;
     const moray_mesh_record *record = moray_solution_history(plan->solution, &meshes);
     moray_solver_line(plan->solution, job->common.scheme, record[meshes - 1].intervals, line, sizeof line);
-    snprintf(text, size, "%s: %s; %d solve%s, %.2f s in all", what, line, plan->rounds, plan->rounds == 1 ? "" : "s",
-             plan->seconds);
+    snprintf(text, size, "%s: %s", what, line);
 }
 
 // ---- Standard output
@@ -192,7 +191,7 @@ static int choose_shown(heading_job *job, heading_trial **trials)
 static moray_status draw_over_time(const heading_job *job, heading_trial *const *trials, const moray_voyage *voyages)
 {
     const int n = voyages->track.n;
-    const double *t = voyages->track.t, ratio = job->cruise[0][1].gait.amplitude / job->cruise[0][0].gait.amplitude;
+    const double *t = voyages->track.t;
     double *data = malloc((size_t)(n * (2 * shown + 1)) * sizeof *data), *reference = data + 2 * shown * n, rate;
     moray_curve heading[shown + 1], offset[shown];
     if (!data)
@@ -210,7 +209,6 @@ static moray_status draw_over_time(const heading_job *job, heading_trial *const 
         heading[1 + i] = (moray_curve){.label = trials[i]->name, .x = t, .y = angle, .n = n};
         offset[i] = (moray_curve){.label = trials[i]->name, .x = t, .y = phi, .n = n};
     }
-    (void)ratio;
     moray_status status = steer_draw(job->common.output, job->common.quiet, "heading_tracking",
                                      &(moray_figure){.name = "heading",
                                                      .title = "Heading without its undulation, first-principles model",

@@ -46,18 +46,24 @@ static double offset_ratio(const heading_job *job, const heading_trial *trial, m
     return from == to ? 1 : -cruise[to].gait.amplitude / cruise[from].gait.amplitude; // erratum E3
 }
 
+static moray_steering_limits limits_of(const heading_job *job, moray_model model)
+{
+    return steer_limits(&job->input, &job->common.robot, &job->cruise[0][model]);
+}
+
 static void set_pilot(const heading_job *job, const heading_trial *trial, moray_model model, helmsman *h)
 {
     const double ratio = offset_ratio(job, trial, MORAY_CONTROL_ORIENTED, model);
     const bool both = trial->law == HEADING_BOTH;
+    const moray_steering_limits limits = limits_of(job, model);
     h->aim = (aim){&job->reference, trial->lead, &job->plan[trial->plan]};
     h->pilot = (moray_pilot){.target = both ? planned : reference_ahead,
                              .self = &h->aim,
                              .gain = trial->gain * ratio,
                              .plan = both ? &h->plan : NULL,
                              .cruise = &job->cruise[trial->gait][model],
-                             .offset = job->input.offset * fabs(ratio),
-                             .offset_rate = job->input.offset_rate * fabs(ratio),
+                             .offset = limits.offset,
+                             .offset_rate = limits.offset_rate,
                              .period = look_every};
     h->helm = moray_pilot_helm(&h->pilot);
 }
@@ -77,14 +83,14 @@ static moray_status set_receding(const heading_job *job, const heading_trial *tr
                               .preview = trial->preview};
     const moray_gait *gait = &planned_cruise->gait;
     moray_steering_limits *limits = &spec.heading.limits;
-    const double control_ratio = offset_ratio(job, trial, MORAY_CONTROL_ORIENTED, trial->plan);
+    const moray_steering_limits swum = limits_of(job, model); // the swimmer's hold too
     limits->theta_max =
         moray_fixed(moray_theta_max_from_amplitude(&job->common.robot, trial->plan, gait->amplitude, gait->delta));
     limits->omega = moray_fixed(gait->omega);
     limits->delta = moray_fixed(gait->delta);
     limits->power = MORAY_INFINITY;
-    limits->offset = job->input.offset * fabs(control_ratio);
-    limits->offset_rate = job->input.offset_rate * fabs(control_ratio);
+    limits->offset = fmin(limits->offset, swum.offset / fabs(spec.scale));
+    limits->offset_rate = fmin(limits->offset_rate, swum.offset_rate / fabs(spec.scale));
     spec.heading.max_error = MORAY_INFINITY;
     spec.settings.scheme = "radau4";
     spec.settings.intervals = (int)ceil(4 * job->look_ahead_periods);

@@ -5,8 +5,7 @@
 
 #include "moray/heading.h"
 
-enum { states = MORAY_STEERING_STATES, most_rounds = 5 };
-static const double same_speed = 1e-3, same_angle = 1e-3; // [m/s], [rad]
+enum { states = MORAY_STEERING_STATES };
 
 // ---- Guesses
 // ----------------------------------------------------------------------------------------------------------
@@ -69,25 +68,42 @@ static void guess_from_other(guess_samples *guess, const moray_robot *robot, con
     moray_steering_parameters(&mapped, guess->s);
 }
 
-// ---- Rounds
-// -----------------------------------------------------------------------------------------------------------
+// ---- Plans
+// ------------------------------------------------------------------------------------------------------------
 
-static moray_status solve_from(moray_heading_plan *plan, const moray_settings *settings, const moray_guess *guess)
+// Leaves no choice of a gait.
+static void keep_gait(moray_heading_spec *spec, const moray_gait *gait)
 {
-    moray_solution *solution = NULL;
-    MORAY_TRY(moray_solve(moray_steering_ocp(plan->problem.steering), settings, guess, &solution));
-    plan->solution = solution;
-    plan->seconds += moray_solution_info(solution)->seconds;
-    plan->rounds++;
-    return moray_ok();
+    moray_steering_limits *limits = &spec->limits;
+    const double theta_max = moray_theta_max_from_amplitude(&spec->robot, spec->model, gait->amplitude, gait->delta);
+    limits->theta_max = moray_fixed(theta_max);
+    limits->omega = moray_fixed(gait->omega);
+    limits->delta = moray_fixed(gait->delta);
+    limits->power = MORAY_INFINITY;
 }
 
-static moray_status solve_first(moray_heading_plan *plan, const moray_heading_spec *spec,
-                                const moray_settings *settings, const moray_heading_plan *from)
+// Begins in the plan's cruise; averaged, without its undulation.
+static moray_status pose_problem(moray_heading_plan *plan, moray_heading_spec *spec)
 {
+    double rate;
+    const double heading = moray_reference_at(spec->reference, 0, &rate);
+    moray_cruise_start(&plan->cruise, heading, spec->current, spec->start);
+    if (spec->averaged) {
+        spec->start[0] = heading;
+        spec->start[3] = 0;
+    }
+    for (int k = 0; k < 2; k++)
+        spec->undulation[k] = spec->averaged ? 0 : plan->cruise.undulation[k];
+    return moray_heading_new(&plan->problem, spec);
+}
+
+static moray_status solve(moray_heading_plan *plan, const moray_heading_spec *spec, const moray_settings *settings,
+                          const moray_heading_plan *from)
+{
+    const moray_ocp *ocp = moray_steering_ocp(plan->problem.steering);
     if (from && from->cruise.model == spec->model) {
         const moray_guess guess = moray_guess_from_solution(from->solution);
-        return solve_from(plan, settings, &guess);
+        return moray_solve(ocp, settings, &guess, &plan->solution);
     }
     guess_samples samples;
     MORAY_TRY(guess_new(&samples, 16 * settings->intervals + 1));
@@ -95,55 +111,10 @@ static moray_status solve_first(moray_heading_plan *plan, const moray_heading_sp
         guess_from_other(&samples, &spec->robot, from, spec->model);
     else
         guess_from_reference(&samples, spec, &plan->cruise);
-    const moray_status status = solve_from(plan, settings, &(moray_guess){.phase = &samples.samples, .s = samples.s});
+    const moray_guess guess = {.phase = &samples.samples, .s = samples.s};
+    const moray_status status = moray_solve(ocp, settings, &guess, &plan->solution);
     free(samples.time);
     return status;
-}
-
-// The problem of a plan that begins in the plan's cruise.
-static moray_status pose_problem(moray_heading_plan *plan, moray_heading_spec *spec)
-{
-    double rate;
-    const double heading = moray_reference_at(spec->reference, 0, &rate);
-    moray_cruise_start(&plan->cruise, heading, spec->current, spec->start);
-    if (spec->averaged)
-        spec->start[0] = heading;
-    memcpy(spec->undulation, plan->cruise.undulation, sizeof spec->undulation);
-    if (spec->averaged)
-        memset(spec->undulation, 0, sizeof spec->undulation);
-    return moray_heading_new(&plan->problem, spec);
-}
-
-static bool agree(const moray_cruise *one, const moray_cruise *other)
-{
-    return fabs(one->speed - other->speed) < same_speed &&
-           hypot(one->undulation[0] - other->undulation[0], one->undulation[1] - other->undulation[1]) < same_angle;
-}
-
-// One more round from the plan's own solution, with the cruise of the gait found there.
-static moray_status solve_again(moray_heading_plan *plan, moray_heading_spec *spec, const moray_settings *settings)
-{
-    moray_heading before = plan->problem;
-    moray_solution *solution = plan->solution;
-    plan->problem = (moray_heading){0};
-    moray_status status = pose_problem(plan, spec);
-    if (!moray_failed(status)) {
-        moray_settings warm = *settings;
-        warm.intervals = 0; // the mesh found so far
-        const moray_guess guess = moray_guess_from_solution(solution);
-        status = solve_from(plan, &warm, &guess);
-    }
-    if (plan->solution != solution)
-        moray_solution_free(solution);
-    else if (moray_failed(status)) // nothing may be left that needs the problem before
-        moray_solution_free(solution), plan->solution = NULL;
-    moray_heading_free(&before);
-    return status;
-}
-
-static bool solved(const moray_heading_plan *plan)
-{
-    return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED;
 }
 
 static moray_status make(moray_heading_plan *plan, moray_heading_spec *spec, const moray_settings *settings,
@@ -151,16 +122,11 @@ static moray_status make(moray_heading_plan *plan, moray_heading_spec *spec, con
 {
     MORAY_TRY(moray_cruise_find(&plan->cruise, &spec->robot, spec->model, gait));
     MORAY_TRY(pose_problem(plan, spec));
-    MORAY_TRY(solve_first(plan, spec, settings, from));
-    while (plan->rounds < most_rounds && solved(plan)) {
-        const moray_gait found = moray_steering_gait(moray_solution_parameters(plan->solution));
-        const moray_cruise before = plan->cruise;
-        MORAY_TRY(moray_cruise_find(&plan->cruise, &spec->robot, spec->model, &found));
-        if (agree(&before, &plan->cruise))
-            break;
-        MORAY_TRY(solve_again(plan, spec, settings));
-    }
-    return moray_ok();
+    MORAY_TRY(solve(plan, spec, settings, from));
+    if (!spec->averaged)
+        return moray_ok();
+    const moray_gait found = moray_steering_gait(moray_solution_parameters(plan->solution));
+    return moray_cruise_find(&plan->cruise, &spec->robot, spec->model, &found);
 }
 
 moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
@@ -168,16 +134,11 @@ moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_headi
                                      const moray_heading_plan *from)
 {
     moray_heading_spec own = *spec;
-    moray_gait start;
-    if (gait)
-        start = *gait;
-    if (from) {
-        start = moray_steering_gait(moray_solution_parameters(from->solution));
-        start = moray_gait_map(&spec->robot, &start, from->cruise.model, spec->model);
-    }
     own.t0 = 0;
+    if (!own.averaged)
+        keep_gait(&own, gait);
     *plan = (moray_heading_plan){0};
-    const moray_status status = make(plan, &own, settings, &start, from);
+    const moray_status status = make(plan, &own, settings, gait, from);
     if (moray_failed(status))
         moray_heading_plan_free(plan);
     return status;
