@@ -41,12 +41,17 @@ static const moray_option own[] = {
 };
 enum { N_OWN = sizeof own / sizeof *own };
 
+// Finer than that of one optimum's program: the mesh suits every gait within the limits. A limit on the effort is kept
+// at the nodes.
+enum { USUAL_INTERVALS = 20, EFFORT_INTERVALS = 60 };
+
 static search_gait *defaults(void)
 {
     search_gait *run = calloc(1, sizeof *run);
     if (!run)
         return NULL;
     run->job = gait_job_defaults(&(gait_program){.name = "search_gait", .power = NAN, .speed = NAN});
+    run->job.common.intervals = USUAL_INTERVALS;
     run->job.random_starts = 40;
     run->global_method = 1;
     run->global_orbits = 400;
@@ -54,10 +59,12 @@ static search_gait *defaults(void)
     return run;
 }
 
-// The paper's gait sets the power to the one goal and the speed to the other.
+// Defaults that depend on others: the paper's gait sets the power to the one goal and the speed to the other.
 static void complete(search_gait *run)
 {
     run->job.goal = (moray_gait_goal)run->goal;
+    if (isfinite(run->job.joint_effort) && run->job.common.intervals == USUAL_INTERVALS)
+        run->job.common.intervals = EFFORT_INTERVALS;
     if (search_gait_fastest(run) && isnan(run->job.speed))
         run->job.speed = INFINITY;
     else if (!search_gait_fastest(run) && isnan(run->job.power))

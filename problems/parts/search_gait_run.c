@@ -96,6 +96,26 @@ static optimum *place(search_gait *run, const moray_gait *gait, const moray_orbi
     return at;
 }
 
+// The paper's gait, or a random one that holds the course: none else is a start. Error: MORAY_NOT_SOLVED when there
+// seems to be none.
+static moray_status start_gait(search_gait *run, int k, moray_gait *gait)
+{
+    const int most_draws = 30;
+    moray_orbit_result orbit;
+    *gait = run->job.paper.gait[run->spec.model];
+    for (int draw = 0; k > 0; draw++) {
+        *gait = gait_job_random(&run->job, run->spec.model);
+        const moray_status status = moray_orbit_solve(moray_gait_search_orbit(run->search), gait, &orbit);
+        if (!moray_failed(status) || moray_interrupted())
+            return moray_ok();
+        if (draw == most_draws)
+            return moray_error(MORAY_NOT_SOLVED,
+                               "current = %g,%g: of %d gaits drawn from the limits none holds the course",
+                               run->spec.current[0], run->spec.current[1], most_draws);
+    }
+    return moray_ok();
+}
+
 static moray_status search_from_starts(search_gait *run)
 {
     char activity[64];
@@ -103,10 +123,11 @@ static moray_status search_from_starts(search_gait *run)
     run->starts = 1 + run->job.random_starts;
     run->activity = activity;
     for (int k = 0; k < run->starts; k++) {
-        moray_gait gait = k ? gait_job_random(&run->job, run->spec.model) : run->job.paper.gait[run->spec.model];
+        moray_gait gait;
         moray_orbit_result orbit;
         moray_search_info info;
         snprintf(activity, sizeof activity, "start %d of %d", k + 1, run->starts);
+        MORAY_TRY(start_gait(run, k, &gait));
         const bool found = search_locally(run, &gait, &orbit, &info);
         optimum *at = found ? place(run, &gait, &orbit, info.objective) : NULL;
         run->lost += at == NULL;
@@ -144,15 +165,32 @@ static int by_objective(const void *one, const void *other)
 
 // ---- Polishing -----------------------------------------------------------------------------------------------------
 
+static moray_bounds around(moray_bounds limits, double value, double reach)
+{
+    return moray_between(fmax(limits.lower, fmin(value, limits.upper) - reach),
+                         fmin(limits.upper, fmax(value, limits.lower) + reach));
+}
+
+// Near the optimum alone: Ipopt starts by moving away from the limits, and may come back in another valley.
+static moray_gait_problem_spec nearby(const search_gait *run, const moray_gait *gait)
+{
+    moray_gait_problem_spec spec = run->spec;
+    spec.limits.theta_max = around(spec.limits.theta_max, theta_max_of(run, gait), 2 * DEG);
+    spec.limits.delta = around(spec.limits.delta, gait->delta, 4 * DEG);
+    spec.limits.omega = around(spec.limits.omega, gait->omega, 0.1 * gait->omega);
+    return spec;
+}
+
 static moray_status polish(search_gait *run, optimum *o)
 {
+    const moray_gait_problem_spec spec = nearby(run, &o->gait);
     moray_orbit *orbit = moray_gait_search_orbit(run->search);
     moray_orbit_result result;
     moray_swim_track track;
     o->at = run->demand;
     MORAY_TRY(moray_orbit_solve(orbit, &o->gait, &result));
     MORAY_TRY(moray_orbit_floquet(orbit, &o->floquet));
-    MORAY_TRY(gait_job_problem(&run->job, &o->at, run->job.goal, run->spec.current, &o->at.problem));
+    MORAY_TRY(moray_gait_problem_new(&o->at.problem, &spec));
     MORAY_TRY(moray_orbit_track(orbit, 101, &track));
     const moray_status status = gait_job_solve_from(&run->job, o->at.problem, &o->gait, &track, &o->at.solution);
     moray_swim_track_free(&track);
@@ -186,6 +224,12 @@ moray_status search_gait_run(search_gait *run)
         return moray_error(MORAY_NOT_SOLVED,
                            "none of %d starts leads to a gait within the limits that holds the course", run->starts);
     qsort(run->optimum, (size_t)run->n, sizeof *run->optimum, by_objective);
+    const double speed = moray_course_speed(&run->optimum[0].orbit.steady, run->spec.course);
+    if (speed <= 0)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "current = %g,%g: the robot cannot stem it: within the limits the best gait makes %.4f m/s "
+                           "along the course",
+                           run->spec.current[0], run->spec.current[1], speed);
     for (; run->shown < run->n && run->shown < SEARCH_GAIT_SHOWN; run->shown++) {
         const moray_status status = polish(run, &run->optimum[run->shown]);
         if (moray_failed(status)) {
