@@ -63,7 +63,7 @@ static heading_job defaults(void)
                        .reference_text = "steps:20=30,60=0",
                        .horizon = 100,
                        .input = steer_input_default(),
-                       .weight_steering = 0.01,
+                       .weight_steering = 0.003,
                        .max_error = INFINITY,
                        .intervals_per_period = 5,
                        .refinements = 2,

@@ -52,13 +52,13 @@ moray_helm moray_plan_helm(const moray_plan *plan);
 // ---- Feedback
 // ---------------------------------------------------------------------------------------------------------
 
-// phi_0 = plan + gain (target - heading), the heading without its undulation, limited in range and rate. Decided every
-// `period`, between straight lines.
+// phi_0 = feed + gain (target - heading), the heading without its undulation, limited in range and rate. Decided every
+// `period`, with straight lines in between.
 typedef struct moray_pilot {
-    double (*target)(const moray_swim_sample *sample, void *self); // heading to steer for [rad]
-    void *self;
-    double gain;                // [m/rad or rad/rad]
-    const moray_plan *plan;     // NULL: none
+    double (*target)(const moray_swim_sample *sample, void *self);         // heading to steer for [rad]
+    double (*feed)(const moray_swim_sample *sample, double t, void *self); // offset wanted at t, soon; NULL: none
+    void *self;                                                            // of both
+    double gain;                                                           // [m/rad or rad/rad]
     const moray_cruise *cruise; // of the swimmer's model: what undulation there is
     double offset, offset_rate; // limits
     double period;              // [s]

@@ -1,25 +1,37 @@
 // SPDX-License-Identifier: MIT
 //
-// Heading tracking in receding horizon: a helm that makes a new plan from the measured state every so often.
+// Receding horizon: a helm that makes a new plan from the measured state every so often.
 #ifndef MORAY_RECEDE_H
 #define MORAY_RECEDE_H
 
 #include "moray/heading.h"
 #include "moray/helm.h"
 
+// What is planned: problems of one phase with the states and first control of a steering problem, from a state at t on.
+typedef struct moray_replanner {
+    // Makes the problem that begins at t. Error: any; no problem is left then.
+    moray_status (*make)(void *self, double t, const double state[MORAY_STEERING_STATES], void **problem,
+                         const moray_ocp **ocp);
+    void (*free)(void *problem);
+    void *self;
+    int nu; // controls
+} moray_replanner;
+
 typedef struct moray_recede_spec {
-    moray_heading_spec heading;   // of the plans; start, undulation and times are set by this
-    moray_settings settings;      // of each solve
-    const moray_cruise *planned;  // of the plans' model: the gait that all plans keep
-    const moray_cruise *measured; // of the swimmer's model
-    double scale;                 // of the swimmer's offset to the plans'
-    double horizon, interval;     // length of a plan; between two plans [s]
-    bool preview; // the reference is known over the horizon; else it is taken to stay as it is at every new plan
+    int links;
+    moray_replanner replanner;
+    moray_settings settings;             // of each solve
+    const moray_steering_limits *limits; // of the plans' offset
+    const moray_cruise *planned;         // of the plans' model: the gait that all plans keep
+    const moray_cruise *measured;        // of the swimmer's model
+    double scale;                        // of the swimmer's offset to the plans'
+    double horizon, interval;            // length of a plan; between two plans [s]
+    const moray_solution *first;         // where the first plan starts from; NULL: from going straight on
 } moray_recede_spec;
 
 typedef struct moray_recede moray_recede;
 
-// Error: MORAY_INPUT, MORAY_MEMORY. Free with moray_recede_free.
+// Copies the spec, not what it points to. Error: MORAY_INPUT, MORAY_MEMORY. Free with moray_recede_free.
 moray_status moray_recede_new(moray_recede **recede, const moray_recede_spec *spec);
 void moray_recede_free(moray_recede *recede);
 
@@ -33,5 +45,18 @@ typedef struct moray_recede_record {
     char first_failure[200];
 } moray_recede_record;
 const moray_recede_record *moray_recede_record_of(const moray_recede *recede);
+
+// ---- Heading tracking -----------------------------------------------------------------------------------------------
+
+typedef struct moray_heading_replanner {
+    moray_heading_spec spec; // start, undulation and times are set anew every time
+    double horizon;          // [s]
+    bool preview;            // the reference is known over the horizon; else it is taken to stay as it is at t
+    moray_reference held;    // for this
+    double held_time, held_heading;
+} moray_heading_replanner;
+
+// Uses it, so that it must outlive the plans.
+moray_replanner moray_heading_replan(moray_heading_replanner *replanner);
 
 #endif

@@ -16,14 +16,20 @@ typedef struct report_tables {
     moray_table_row rows[tables][most_rows];
 } report_tables;
 
+// Zero where it is as good as zero, so that tables show no rounding.
+static double small(double value)
+{
+    return fabs(value) < 5e-4 ? 0 : value;
+}
+
 static void score_rows(const heading_job *job, moray_table_row *rows)
 {
     for (int k = 0; k < job->n_trials; k++) {
         const heading_trial *trial = &job->trial[k];
         const moray_heading_score *control = &trial->score[0], *revolute = &trial->score[1];
         rows[k] = (moray_table_row){.label = trial->name,
-                                    .value = {control->rms / DEG, control->final / DEG, revolute->rms / DEG,
-                                              revolute->final / DEG, revolute->largest / DEG, revolute->power}};
+                                    .value = {control->rms / DEG, small(control->final / DEG), revolute->rms / DEG,
+                                              small(revolute->final / DEG), revolute->largest / DEG, revolute->power}};
     }
 }
 
@@ -179,13 +185,14 @@ static void print_all(const heading_job *job, const report_tables *t)
 
 enum { shown = 3 };
 
-// The tuned feedback, the first blind plan, the best of the plans with feedback.
-static int choose_shown(heading_job *job, heading_trial **trials)
+// The tuned feedback, the same ahead of its time, the last plan.
+static void choose_shown(heading_job *job, heading_trial **trials)
 {
     trials[0] = &job->trial[1];
-    trials[1] = &job->trial[job->common.model == MORAY_FIRST_PRINCIPLES ? 5 : 3];
-    trials[2] = trials[1] + 1;
-    return shown;
+    trials[1] = &job->trial[2];
+    for (int k = 0; k < job->n_trials; k++)
+        if (job->trial[k].law == HEADING_PLAN)
+            trials[2] = &job->trial[k];
 }
 
 static moray_status draw_over_time(const heading_job *job, heading_trial *const *trials, const moray_voyage *voyages)
@@ -234,7 +241,7 @@ static moray_status draw_shown(heading_job *job, heading_trial *const *trials, c
         {trials[0]->name, &voyages[0]}, {trials[1]->name, &voyages[1]}, {trials[2]->name, &voyages[2]}};
     MORAY_TRY(draw_over_time(job, trials, voyages));
     MORAY_TRY(steer_draw_path(&job->common, "heading_tracking", paths, shown, NULL, 0));
-    MORAY_TRY(steer_draw_joints(&job->common, "heading_tracking", &voyages[shown - 1], 0, fmin(job->horizon, 40)));
+    MORAY_TRY(steer_draw_joints(&job->common, "heading_tracking", &voyages[shown - 1]));
     return steer_write_trajectory(&job->common, &voyages[shown - 1]);
 }
 
@@ -243,12 +250,12 @@ static moray_status draw(heading_job *job)
     heading_trial *trials[shown];
     moray_voyage voyages[shown] = {{0}};
     moray_status status = moray_ok();
-    const int n = choose_shown(job, trials);
-    for (int k = 0; k < n && !moray_failed(status); k++)
+    choose_shown(job, trials);
+    for (int k = 0; k < shown && !moray_failed(status); k++)
         status = heading_swim(job, trials[k], MORAY_FIRST_PRINCIPLES, &voyages[k]);
     if (!moray_failed(status))
         status = draw_shown(job, trials, voyages);
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < shown; k++)
         moray_voyage_free(&voyages[k]);
     return status;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <string.h>
+
 #include "heading_job.h"
 
 static const double look_every = 0.1;             // of a pilot [s]
@@ -13,6 +15,7 @@ typedef struct aim {
     const moray_reference *reference;
     double lead;
     const moray_heading_plan *plan;
+    double scale; // of the plan's offsets
 } aim;
 
 static double reference_ahead(const moray_swim_sample *sample, void *self)
@@ -30,11 +33,19 @@ static double planned(const moray_swim_sample *sample, void *self)
     return moray_cruise_heading(&to->plan->cruise, sample->t, x[0]);
 }
 
+static double planned_offset(const moray_swim_sample *sample, double t, void *self)
+{
+    const aim *to = self;
+    (void)sample;
+    return moray_plan_offset(&(moray_plan){to->plan->solution, to->scale}, t).value;
+}
+
 // All that a helm may need, for one trial on one model.
 typedef struct helmsman {
     aim aim;
     moray_plan plan;
     moray_pilot pilot;
+    moray_heading_replanner replanner;
     moray_recede *recede;
     moray_helm helm;
 } helmsman;
@@ -56,11 +67,11 @@ static void set_pilot(const heading_job *job, const heading_trial *trial, moray_
     const double ratio = offset_ratio(job, trial, MORAY_CONTROL_ORIENTED, model);
     const bool both = trial->law == HEADING_BOTH;
     const moray_steering_limits limits = limits_of(job, model);
-    h->aim = (aim){&job->reference, trial->lead, &job->plan[trial->plan]};
+    h->aim = (aim){&job->reference, trial->lead, &job->plan[trial->plan], h->plan.scale};
     h->pilot = (moray_pilot){.target = both ? planned : reference_ahead,
+                             .feed = both ? planned_offset : NULL,
                              .self = &h->aim,
                              .gain = trial->gain * ratio,
-                             .plan = both ? &h->plan : NULL,
                              .cruise = &job->cruise[trial->gait][model],
                              .offset = limits.offset,
                              .offset_rate = limits.offset_rate,
@@ -68,30 +79,42 @@ static void set_pilot(const heading_job *job, const heading_trial *trial, moray_
     h->helm = moray_pilot_helm(&h->pilot);
 }
 
-// Plans of the trial's gait, on a mesh a little coarser than that of the whole plan.
+// Limits of plans of the trial's gait, such that those of the swimmer hold too.
+static moray_steering_limits replanning_limits(const heading_job *job, const heading_trial *trial, moray_model model,
+                                               double scale)
+{
+    const moray_gait *gait = &job->cruise[trial->gait][trial->plan].gait;
+    const moray_steering_limits swum = limits_of(job, model);
+    moray_steering_limits limits = limits_of(job, trial->plan);
+    limits.theta_max =
+        moray_fixed(moray_theta_max_from_amplitude(&job->common.robot, trial->plan, gait->amplitude, gait->delta));
+    limits.omega = moray_fixed(gait->omega);
+    limits.delta = moray_fixed(gait->delta);
+    limits.power = MORAY_INFINITY;
+    limits.offset = fmin(limits.offset, swum.offset / fabs(scale));
+    limits.offset_rate = fmin(limits.offset_rate, swum.offset_rate / fabs(scale));
+    return limits;
+}
+
 static moray_status set_receding(const heading_job *job, const heading_trial *trial, moray_model model, helmsman *h)
 {
-    const moray_cruise *planned_cruise = &job->cruise[trial->gait][trial->plan];
-    const double period = 2 * M_PI / planned_cruise->gait.omega;
-    moray_recede_spec spec = {.heading = heading_spec(job, trial->plan, false),
+    const moray_cruise *cruise = &job->cruise[trial->gait][trial->plan];
+    const double period = 2 * M_PI / cruise->gait.omega, horizon = job->look_ahead_periods * period;
+    const double scale = offset_ratio(job, trial, trial->plan, model);
+    h->replanner = (moray_heading_replanner){
+        .spec = heading_spec(job, trial->plan, false), .horizon = horizon, .preview = trial->preview};
+    h->replanner.spec.limits = replanning_limits(job, trial, model, scale);
+    h->replanner.spec.max_error = MORAY_INFINITY;
+    memcpy(h->replanner.spec.undulation, cruise->undulation, sizeof cruise->undulation);
+    moray_recede_spec spec = {.links = job->common.robot.links,
+                              .replanner = moray_heading_replan(&h->replanner),
                               .settings = moray_settings_default(),
-                              .planned = planned_cruise,
+                              .limits = &h->replanner.spec.limits,
+                              .planned = cruise,
                               .measured = &job->cruise[trial->gait][model],
-                              .scale = offset_ratio(job, trial, trial->plan, model),
-                              .horizon = job->look_ahead_periods * period,
-                              .interval = job->replan_periods * period,
-                              .preview = trial->preview};
-    const moray_gait *gait = &planned_cruise->gait;
-    moray_steering_limits *limits = &spec.heading.limits;
-    const moray_steering_limits swum = limits_of(job, model); // the swimmer's hold too
-    limits->theta_max =
-        moray_fixed(moray_theta_max_from_amplitude(&job->common.robot, trial->plan, gait->amplitude, gait->delta));
-    limits->omega = moray_fixed(gait->omega);
-    limits->delta = moray_fixed(gait->delta);
-    limits->power = MORAY_INFINITY;
-    limits->offset = fmin(limits->offset, swum.offset / fabs(spec.scale));
-    limits->offset_rate = fmin(limits->offset_rate, swum.offset_rate / fabs(spec.scale));
-    spec.heading.max_error = MORAY_INFINITY;
+                              .scale = scale,
+                              .horizon = horizon,
+                              .interval = job->replan_periods * period};
     spec.settings.scheme = "radau4";
     spec.settings.intervals = (int)ceil(4 * job->look_ahead_periods);
     spec.settings.tolerance = 1e-6;
@@ -181,7 +204,7 @@ static bool judge(void *self, const double *x, double *f, double *c, double *gra
 static moray_status tune(const heading_job *job, heading_trial *trial)
 {
     const bool lead = trial->law == HEADING_FEEDBACK && trial->preview;
-    const double lower[] = {log(0.002), 0}, upper[] = {log(0.5), 8};
+    const double lower[] = {log(0.002), 0}, upper[] = {log(2), 8};
     double x[] = {log(0.06), 2.5};
     tuning t = {.job = job, .trial = trial, .status = moray_ok()};
     const moray_search_problem problem = {.n = 1 + lead, .lower = lower, .upper = upper, .self = &t, .evaluate = judge};

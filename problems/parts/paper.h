@@ -14,10 +14,10 @@
 enum { PAPER_STUDIES = 32, PAPER_TABLES = 12 };
 
 typedef struct paper_settings {
-    moray_common common;            // robot, current, output
-    double theta_max, omega, delta; // of the gait that studies take where they do not vary it
-    moray_reading reading;          // of the control-oriented model
-    bool as_printed;                // reading = printed
+    moray_common common;             // robot, current, output
+    double theta_max, omega, delta;  // of the gait that studies take where they do not vary it
+    moray_reading reading;           // of the control-oriented model
+    bool as_printed;                 // reading = printed
     char write_ini[MORAY_PATH_SIZE]; // empty: none
     bool chosen[PAPER_STUDIES];
 } paper_settings;

@@ -82,9 +82,8 @@ moray_status steer_draw(moray_output *output, bool quiet, const char *program, c
 moray_status steer_draw_path(const moray_common *common, const char *program, const steer_curve *curves, int n,
                              const moray_curve *more, int n_more);
 
-// joints.svg: joints at the tail, in the middle and at the head over [from, to] of the voyage.
-moray_status steer_draw_joints(const moray_common *common, const char *program, const moray_voyage *voyage, double from,
-                               double to);
+// joints.svg: joints at the tail, in the middle and at the head while the voyage steers most.
+moray_status steer_draw_joints(const moray_common *common, const char *program, const moray_voyage *voyage);
 
 // trajectory.csv of a voyage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status steer_write_trajectory(const moray_common *common, const moray_voyage *voyage);

@@ -80,43 +80,51 @@ moray_status steer_draw_path(const moray_common *common, const char *program, co
     return status;
 }
 
-moray_status steer_draw_joints(const moray_common *common, const char *program, const moray_voyage *voyage, double from,
-                               double to)
+// Ten seconds either side of the largest offset: first sample and how many.
+static int busiest(const moray_voyage *voyage, int *first)
 {
     const moray_swim_track *track = &voyage->track;
-    const int joints = track->n_joints, joint[3] = {0, (joints - 1) / 2, joints - 1};
-    const char *const labels[3] = {"joint at the tail", "in the middle", "at the head"};
-    const bool control = moray_swimmer_model(voyage->swimmer) == MORAY_CONTROL_ORIENTED;
-    int first = 0, n = 0;
-    while (first < track->n - 1 && track->t[first] < from)
-        first++;
-    while (first + n < track->n && track->t[first + n] <= to)
+    const double around = 10;
+    int most = 0, n = 0;
+    for (int k = 0; k < track->n; k++)
+        if (fabs(voyage->offset[k]) > fabs(voyage->offset[most]))
+            most = k;
+    for (*first = most; *first > 0 && track->t[*first] > track->t[most] - around;)
+        --*first;
+    while (*first + n < track->n && track->t[*first + n] <= track->t[most] + around)
         n++;
-    double *phi = malloc((size_t)(2 * joints + 3 * n) * sizeof *phi), *values = phi + 2 * joints;
+    return n;
+}
+
+moray_status steer_draw_joints(const moray_common *common, const char *program, const moray_voyage *voyage)
+{
+    enum { shown = 3 };
+    const moray_swim_track *track = &voyage->track;
+    const int joints = track->n_joints, joint[shown] = {0, (joints - 1) / 2, joints - 1};
+    const char *const labels[] = {"joint at the tail", "in the middle", "at the head", "offset"};
+    const bool control = moray_swimmer_model(voyage->swimmer) == MORAY_CONTROL_ORIENTED;
+    const double unit = control ? 0.01 : DEG;
+    moray_curve curves[shown + 1];
+    int first;
+    const int n = busiest(voyage, &first);
+    double *phi = malloc((size_t)(2 * joints + (shown + 1) * n) * sizeof *phi), *values = phi + 2 * joints;
     if (!phi)
         return moray_error(MORAY_MEMORY, "no memory for a figure");
     for (int k = 0; k < n; k++) {
         moray_swimmer_joints(voyage->swimmer, track->x + (size_t)(first + k) * track->n_states, phi, phi + joints);
-        for (int j = 0; j < 3; j++)
-            values[j * n + k] = phi[joint[j]] * (control ? 100 : 1 / DEG);
+        for (int j = 0; j < shown; j++)
+            values[j * n + k] = phi[joint[j]] / unit;
+        values[shown * n + k] = voyage->offset[first + k] / unit;
     }
-    moray_curve curves[4] = {{.label = "offset", .x = track->t + first, .y = voyage->offset + first, .n = n}};
-    double *offset = malloc(((size_t)n + 1) * sizeof *offset);
-    for (int k = 0; k < n && offset; k++)
-        offset[k] = voyage->offset[first + k] * (control ? 100 : 1 / DEG);
-    curves[0].y = offset;
-    for (int j = 0; j < 3; j++)
-        curves[1 + j] = (moray_curve){.label = labels[j], .x = track->t + first, .y = values + j * n, .n = n};
-    moray_status status = offset ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a figure");
-    if (!moray_failed(status))
-        status = steer_draw(common->output, common->quiet, program,
-                            &(moray_figure){.name = "joints",
-                                            .title = "Joint motion",
-                                            .x_label = "time [s]",
-                                            .y_label = control ? "joint coordinate [cm]" : "joint angle [deg]",
-                                            .curves = curves,
-                                            .n_curves = 4});
-    free(offset);
+    for (int j = 0; j <= shown; j++)
+        curves[j] = (moray_curve){.label = labels[j], .x = track->t + first, .y = values + j * n, .n = n};
+    const moray_figure figure = {.name = "joints",
+                                 .title = "Joint motion where the robot steers most",
+                                 .x_label = "time [s]",
+                                 .y_label = control ? "joint coordinate [cm]" : "joint angle [deg]",
+                                 .curves = curves,
+                                 .n_curves = shown + 1};
+    const moray_status status = steer_draw(common->output, common->quiet, program, &figure);
     free(phi);
     return status;
 }

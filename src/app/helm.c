@@ -141,9 +141,9 @@ static void look(const moray_swim_sample *sample, void *self)
 {
     moray_pilot *pilot = self;
     const double t = sample->t, heading = moray_cruise_heading(pilot->cruise, t, sample->pose.heading);
-    double wanted = pilot->gain * (pilot->target(sample, pilot->self) - heading);
-    if (pilot->plan)
-        wanted += moray_plan_offset(pilot->plan, t + pilot->period).value;
+    double wanted = pilot->gain * remainder(pilot->target(sample, pilot->self) - heading, 2 * M_PI);
+    if (pilot->feed)
+        wanted += pilot->feed(sample, t + pilot->period, pilot->self);
     pilot->value = straight(t, pilot).value;
     pilot->from = t;
     pilot->slope = clamp((clamp(wanted, pilot->offset) - pilot->value) / pilot->period, pilot->offset_rate);

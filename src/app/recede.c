@@ -10,11 +10,8 @@ enum { states = MORAY_STEERING_STATES, per_interval = 4 }; // samples of a guess
 
 struct moray_recede {
     moray_recede_spec spec;
-    int links;
-    moray_heading problem; // of the plan now carried out
+    void *problem; // of the plan now carried out
     moray_solution *solution;
-    moray_reference held; // constant, where nothing is known ahead
-    double held_time, held_heading;
     moray_recede_record record;
     int n;          // samples of a guess
     double guess[]; // times, states, controls
@@ -37,7 +34,7 @@ static void measure(const moray_recede *r, const moray_swim_sample *sample, doub
 {
     const moray_cruise *from = r->spec.measured, *to = r->spec.planned;
     const moray_offset offset = moray_recede_helm((moray_recede *)r).offset(sample->t, r);
-    moray_state_body(from->model, r->links, sample->x, state);
+    moray_state_body(from->model, r->spec.links, sample->x, state);
     if (from->model != to->model) {
         double angle[2], rate[2];
         undulation(from, sample->t, &angle[0], &rate[0]);
@@ -50,7 +47,7 @@ static void measure(const moray_recede *r, const moray_swim_sample *sample, doub
     }
     state[6] = offset.value / r->spec.scale;
     state[7] = offset.rate / r->spec.scale;
-    const moray_steering_limits *limits = &r->spec.heading.limits; // kept to rounding only
+    const moray_steering_limits *limits = r->spec.limits; // kept to rounding only
     state[6] = fmin(fmax(state[6], -limits->offset), limits->offset);
     state[7] = fmin(fmax(state[7], -limits->offset_rate), limits->offset_rate);
 }
@@ -58,34 +55,34 @@ static void measure(const moray_recede *r, const moray_swim_sample *sample, doub
 // ---- Plans
 // ------------------------------------------------------------------------------------------------------------
 
-// The last plan, moved on; without one a straight line along the heading at the start.
-static moray_guess guess_of(moray_recede *r, const moray_heading_spec *spec, moray_samples *samples, double *s)
+// The last plan, moved on; without one a straight line from the start.
+static moray_guess guess_of(moray_recede *r, double t, const double state[states], moray_samples *samples, double *s)
 {
+    const moray_solution *from = r->solution ? r->solution : r->spec.first;
+    const int nu = r->spec.replanner.nu;
     double *time = r->guess, *x = time + r->n, *u = x + states * r->n;
     for (int k = 0; k < r->n; k++) {
-        const double ahead = (spec->t1 - spec->t0) * k / (r->n - 1);
-        time[k] = spec->t0 + ahead;
-        u[k] = 0;
-        memcpy(x + k * states, spec->start, sizeof spec->start);
-        if (r->solution)
-            moray_solution_at(r->solution, 0, time[k], x + k * states, u + k);
+        time[k] = t + r->spec.horizon * k / (r->n - 1);
+        memset(u + k * nu, 0, (size_t)nu * sizeof *u);
+        memcpy(x + k * states, state, states * sizeof *x);
+        if (from)
+            moray_solution_at(from, 0, time[k], x + k * states, u + k * nu);
     }
     moray_steering_parameters(&r->spec.planned->gait, s);
     *samples = (moray_samples){.n = r->n, .time = time, .x = x, .u = u};
     return (moray_guess){.phase = samples, .s = s};
 }
 
-static moray_status make_plan(moray_recede *r, const moray_heading_spec *spec, moray_heading *problem,
-                              moray_solution **solution)
+static moray_status solve(moray_recede *r, double t, const double state[states], const moray_ocp *ocp,
+                          moray_solution **solution)
 {
     double s[MORAY_STEERING_PARAMETERS];
     moray_samples samples;
-    const moray_guess guess = guess_of(r, spec, &samples, s);
+    const moray_guess guess = guess_of(r, t, state, &samples, s);
     moray_settings settings = r->spec.settings;
     if (r->solution)
         settings.barrier = 1e-5;
-    MORAY_TRY(moray_heading_new(problem, spec));
-    MORAY_TRY(moray_solve(moray_steering_ocp(problem->steering), &settings, &guess, solution));
+    MORAY_TRY(moray_solve(ocp, &settings, &guess, solution));
     const moray_nlp_info *info = moray_solution_info(*solution);
     r->record.iterations += info->iterations;
     r->record.seconds += info->seconds;
@@ -96,29 +93,34 @@ static moray_status make_plan(moray_recede *r, const moray_heading_spec *spec, m
     return moray_error(MORAY_NOT_SOLVED, "%.250s", moray_solution_diagnosis(*solution));
 }
 
+static void drop(const moray_recede *r, void *problem, moray_solution *solution)
+{
+    moray_solution_free(solution);
+    if (problem)
+        r->spec.replanner.free(problem);
+}
+
 static void look(const moray_swim_sample *sample, void *self)
 {
     moray_recede *r = self;
-    moray_heading_spec spec = r->spec.heading;
-    moray_heading problem = {0};
+    const moray_replanner *replanner = &r->spec.replanner;
+    double state[states];
+    void *problem = NULL;
+    const moray_ocp *ocp;
     moray_solution *solution = NULL;
-    double rate;
-    measure(r, sample, spec.start);
-    spec.t0 = sample->t;
-    spec.t1 = sample->t + r->spec.horizon;
-    if (!r->spec.preview) {
-        r->held_time = sample->t;
-        r->held_heading = moray_reference_at(r->spec.heading.reference, nextafter(sample->t, INFINITY), &rate);
-        spec.reference = &r->held;
-    }
-    const moray_status status = make_plan(r, &spec, &problem, &solution);
+    measure(r, sample, state);
+    moray_status status = replanner->make(replanner->self, sample->t, state, &problem, &ocp);
+    if (!moray_failed(status))
+        status = solve(r, sample->t, state, ocp, &solution);
     r->record.plans++;
-    if (moray_failed(status) && r->record.failures++ == 0)
-        snprintf(r->record.first_failure, sizeof r->record.first_failure, "t = %.6g s: %.170s", sample->t, status.text);
-    moray_solution_free(moray_failed(status) ? solution : r->solution);
-    moray_heading_free(moray_failed(status) ? &problem : &r->problem);
-    if (moray_failed(status))
+    if (moray_failed(status)) {
+        if (r->record.failures++ == 0)
+            snprintf(r->record.first_failure, sizeof r->record.first_failure, "t = %.6g s: %.170s", sample->t,
+                     status.text);
+        drop(r, problem, solution);
         return;
+    }
+    drop(r, r->problem, r->solution);
     r->problem = problem;
     r->solution = solution;
 }
@@ -146,14 +148,11 @@ moray_status moray_recede_new(moray_recede **result, const moray_recede_spec *sp
         return moray_error(MORAY_INPUT, "horizon = %g s, replanned every %g s: the horizon must be the longer",
                            spec->horizon, spec->interval);
     const int n = per_interval * spec->settings.intervals + 1;
-    moray_recede *r = calloc(1, sizeof *r + (size_t)(n * (1 + states + 1)) * sizeof(double));
+    moray_recede *r = calloc(1, sizeof *r + (size_t)(n * (1 + states + spec->replanner.nu)) * sizeof(double));
     if (!r)
         return moray_error(MORAY_MEMORY, "no memory for a receding horizon");
     r->spec = *spec;
-    r->links = spec->heading.robot.links;
     r->n = n;
-    r->held = (moray_reference){.n = 1, .time = &r->held_time, .heading = &r->held_heading};
-    memcpy(r->spec.heading.undulation, spec->planned->undulation, sizeof spec->planned->undulation);
     *result = r;
     return moray_ok();
 }
@@ -162,12 +161,53 @@ void moray_recede_free(moray_recede *recede)
 {
     if (!recede)
         return;
-    moray_solution_free(recede->solution);
-    moray_heading_free(&recede->problem);
+    drop(recede, recede->problem, recede->solution);
     free(recede);
 }
 
 const moray_recede_record *moray_recede_record_of(const moray_recede *recede)
 {
     return &recede->record;
+}
+
+// ---- Heading tracking
+// -------------------------------------------------------------------------------------------------
+
+static moray_status make_heading(void *self, double t, const double state[states], void **problem,
+                                 const moray_ocp **ocp)
+{
+    moray_heading_replanner *r = self;
+    moray_heading_spec spec = r->spec;
+    double rate;
+    moray_heading *heading = calloc(1, sizeof *heading);
+    if (!heading)
+        return moray_error(MORAY_MEMORY, "no memory for a plan");
+    memcpy(spec.start, state, sizeof spec.start);
+    spec.t0 = t;
+    spec.t1 = t + r->horizon;
+    if (!r->preview) {
+        r->held = (moray_reference){.n = 1, .time = &r->held_time, .heading = &r->held_heading};
+        r->held_time = t;
+        r->held_heading = moray_reference_at(r->spec.reference, nextafter(t, INFINITY), &rate);
+        spec.reference = &r->held;
+    }
+    const moray_status status = moray_heading_new(heading, &spec);
+    if (moray_failed(status)) {
+        free(heading);
+        return status;
+    }
+    *problem = heading;
+    *ocp = moray_steering_ocp(heading->steering);
+    return status;
+}
+
+static void free_heading(void *problem)
+{
+    moray_heading_free(problem);
+    free(problem);
+}
+
+moray_replanner moray_heading_replan(moray_heading_replanner *replanner)
+{
+    return (moray_replanner){.make = make_heading, .free = free_heading, .self = replanner, .nu = 1};
 }
