@@ -10,17 +10,19 @@ static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W", "mean joint power"),
 };
 
+static const gait_program program = {.name = "min_energy",
+                                     .summary =
+                                         "Optimises the gait of an underwater snake robot for the least joint work per "
+                                         "distance along a course, at or above a speed, and proves it on the "
+                                         "first-principles model.",
+                                     .goal = MORAY_GAIT_THRIFTIEST,
+                                     .options = options,
+                                     .n_options = sizeof options / sizeof *options,
+                                     .power = INFINITY,
+                                     .speed = NAN};
+
 int main(int argc, char **argv)
 {
-    return gait_job_main(
-        &(gait_program){.name = "min_energy",
-                        .summary = "Optimises the gait of an underwater snake robot for the least joint work per "
-                                   "distance along a course, at or above a speed, and proves it on the "
-                                   "first-principles model.",
-                        .goal = MORAY_GAIT_THRIFTIEST,
-                        .options = options,
-                        .n_options = sizeof options / sizeof *options,
-                        .power = INFINITY,
-                        .speed = NAN},
-        argc, argv);
+    gait_job job = gait_job_defaults(&program);
+    return gait_job_main(&program, &job, argc, argv);
 }

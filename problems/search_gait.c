@@ -4,9 +4,6 @@
 // orbit found by Newton's method; every optimum polished by collocation and proved by simulation.
 #include "parts/search_gait.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static const char *const goals[] = {"speed", "economy", NULL};
 
 #define CHOICE(name, where, field, list, text)                                                                         \
@@ -39,25 +36,10 @@ static const moray_option own[] = {
      .max = 1e9,
      .help = "of the random starts and of isres"},
 };
-enum { N_OWN = sizeof own / sizeof *own };
 
 // Finer than that of one optimum's program: the mesh suits every gait within the limits. A limit on the effort is kept
 // at the nodes.
 enum { USUAL_INTERVALS = 20, EFFORT_INTERVALS = 60 };
-
-static search_gait *defaults(void)
-{
-    search_gait *run = calloc(1, sizeof *run);
-    if (!run)
-        return NULL;
-    run->job = gait_job_defaults(&(gait_program){.name = "search_gait", .power = NAN, .speed = NAN});
-    run->job.common.intervals = USUAL_INTERVALS;
-    run->job.random_starts = 40;
-    run->global_method = 1;
-    run->global_orbits = 400;
-    run->seed = 1;
-    return run;
-}
 
 // Defaults that depend on others: the paper's gait sets the power to the one goal and the speed to the other.
 static void complete(search_gait *run)
@@ -71,52 +53,53 @@ static void complete(search_gait *run)
         run->job.power = INFINITY;
 }
 
-static bool certified(const search_gait *run)
+static moray_status work(gait_job *job)
 {
-    for (int k = 0; k < run->shown; k++)
-        if (!run->optimum[k].at.certificate.pass)
-            return false;
-    return true;
+    search_gait *run = (search_gait *)job;
+    complete(run);
+    return search_gait_run(run);
 }
 
-static void release(search_gait *run)
+static moray_status report(gait_job *job)
 {
+    return search_gait_report((search_gait *)job);
+}
+
+static bool certified(const gait_job *job)
+{
+    const search_gait *run = (const search_gait *)job;
+    bool pass = true;
+    for (int k = 0; k < run->shown; k++)
+        pass = pass && run->optimum[k].at.certificate.pass;
+    return pass;
+}
+
+static void release(gait_job *job)
+{
+    search_gait *run = (search_gait *)job;
     for (int k = 0; k < run->shown; k++)
         gait_job_stage_free(&run->optimum[k].at);
     moray_gait_search_free(run->search);
-    gait_job_free(&run->job);
-    free(run);
 }
+
+static const gait_program program = {
+    .name = "search_gait",
+    .summary = "Searches for all optima of the gait of an underwater snake robot, from many starts and globally, and "
+               "polishes each by collocation.",
+    .options = own,
+    .n_options = sizeof own / sizeof *own,
+    .power = NAN,
+    .speed = NAN,
+    .work = work,
+    .report = report,
+    .certified = certified,
+    .release = release};
 
 int main(int argc, char **argv)
 {
-    moray_option options[GAIT_JOB_OPTIONS + N_OWN];
-    memcpy(options, gait_job_options, sizeof gait_job_options);
-    memcpy(options + GAIT_JOB_OPTIONS, own, sizeof own);
-    const moray_program app = {.name = "search_gait",
-                               .summary = "Searches for all optima of the gait of an underwater snake robot, from many "
-                                          "starts and globally, and polishes each by collocation.",
-                               .options = options,
-                               .n_options = GAIT_JOB_OPTIONS + N_OWN};
-    search_gait *run = defaults();
-    int exit_code = MORAY_EXIT_NOT_SOLVED;
-    if (!run)
-        return exit_code;
-    if (!moray_app_start(&app, argc, argv, run, &exit_code)) {
-        free(run);
-        return exit_code;
-    }
-    complete(run);
-    run->job.ticker = moray_ticker_start(stderr, run->job.common.quiet);
-    moray_interrupt_begin();
-    moray_status status = search_gait_run(run);
-    if (!moray_failed(status))
-        status = search_gait_report(run);
-    moray_interrupt_end();
-    moray_ticker_end(&run->job.ticker);
-    exit_code = moray_app_end(&app, run, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !certified(run))
-        exit_code = MORAY_EXIT_CERTIFICATE;
-    release(run);
-    return exit_code;
+    static search_gait run; // large
+    run = (search_gait){.job = gait_job_defaults(&program), .global_method = 1, .global_orbits = 400, .seed = 1};
+    run.job.random_starts = 40;
+    run.job.common.intervals = USUAL_INTERVALS;
+    return gait_job_main(&program, &run.job, argc, argv);
 }

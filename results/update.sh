@@ -44,3 +44,5 @@ show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
 show paper paper all
 print benchmark_s1 benchmark --part s1
+show pareto pareto
+show pareto_free pareto --set theta_max_deg=1:60

@@ -315,6 +315,22 @@ static void test_taper_limits(moray_model model, double taper)
     CHECK_NEAR(gait->amplitude * gait->omega * (1 + fabs(taper)), spec.limits.joint_rate, 1e-8, "largest joint rate");
 }
 
+// The multiplier of the power limit is what a watt more is worth.
+static void test_power_price(moray_model model)
+{
+    const double power = paper_power(model), step = 0.01 * power;
+    moray_gait_problem_spec spec = default_spec(model, power);
+    const struct outcome here = solve(&spec, "lobatto5", 12);
+    spec.limits.power = power + step;
+    const struct outcome more = solve(&spec, "lobatto5", 12);
+    spec.limits.power = power - step;
+    const struct outcome less = solve(&spec, "lobatto5", 12);
+    CHECK_RELATIVE(here.promise.power_price, (more.promise.course_speed - less.promise.course_speed) / (2 * step), 1e-4,
+                   "speed per power");
+    spec.limits.power = MORAY_INFINITY;
+    CHECK_NEAR(solve(&spec, "lobatto5", 20).promise.power_price, 0, 0, "no limit, no price");
+}
+
 static void refuses(moray_gait_problem_spec spec, const char *text)
 {
     moray_gait_problem *problem;
@@ -358,6 +374,7 @@ int main(void)
     test_thriftiest_by_simulation();
     test_thriftiest_in_current();
     for (int model = 0; model < 2; model++) {
+        test_power_price((moray_model)model);
         test_taper((moray_model)model);
         test_taper_limits((moray_model)model, 0.5);
         test_taper_limits((moray_model)model, -0.8);

@@ -64,6 +64,7 @@ moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const m
 typedef struct moray_gait_promise {
     moray_gait gait;
     double v_x, v_y, speed, course_speed, power;
+    double power_price; // by how much the goal improves per watt more that is allowed [m/s or J/m, per W]
 } moray_gait_promise;
 moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem, const moray_solution *solution);
 

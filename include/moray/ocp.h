@@ -261,6 +261,9 @@ int moray_solution_nodes(const moray_solution *solution, int phase, double *time
 // else depends on.
 int moray_solution_hamiltonian(const moray_solution *solution, int phase, double *hamiltonian);
 
+// Multipliers [ne] of the events: minus dJ / d(bound) of those at a bound, positive at the upper, else 0.
+const double *moray_solution_event_multipliers(const moray_solution *solution);
+
 // Sizes of the programme that was solved.
 typedef struct moray_nlp_size {
     int variables, constraints, nnz_jac, nnz_hess;

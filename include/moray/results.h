@@ -56,7 +56,7 @@ void moray_json_free(moray_json *json);
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
-enum { MORAY_TABLE_COLUMNS = 6 };
+enum { MORAY_TABLE_COLUMNS = 8 };
 
 // label, one number a column (NaN: left blank), unit. `text`, where not NULL, stands in the first column instead.
 typedef struct moray_table_row {
@@ -106,7 +106,8 @@ typedef struct moray_curve {
 typedef struct moray_figure {
     const char *name; // of the file, without .svg
     const char *title, *x_label, *y_label;
-    bool equal_axes; // same scale on both axes, for paths in the plane
+    bool equal_axes;   // same scale on both axes, for paths in the plane
+    bool log_x, log_y; // logarithmic axes, for values above 0
     const moray_curve *curves;
     int n_curves;
 } moray_figure;

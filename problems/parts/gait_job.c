@@ -76,6 +76,7 @@ static moray_status speed_demand(const gait_job *job, stage *at)
 moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at)
 {
     at->model = model;
+    memcpy(at->taper, job->taper, sizeof at->taper);
     at->power = isnan(job->power) ? job->paper.steady[model].power : job->power;
     return speed_demand(job, at);
 }
@@ -145,7 +146,7 @@ void gait_job_free(gait_job *job)
     moray_basin_free(&job->basin);
 }
 
-int gait_job_main(const gait_program *program, int argc, char **argv)
+int gait_job_main(const gait_program *program, gait_job *job, int argc, char **argv)
 {
     moray_option options[most_options];
     memcpy(options, gait_job_options, sizeof gait_job_options);
@@ -154,20 +155,21 @@ int gait_job_main(const gait_program *program, int argc, char **argv)
                                .summary = program->summary,
                                .options = options,
                                .n_options = GAIT_JOB_OPTIONS + program->n_options};
-    gait_job job = gait_job_defaults(program);
     int exit_code;
-    if (!moray_app_start(&app, argc, argv, &job, &exit_code))
+    if (!moray_app_start(&app, argc, argv, job, &exit_code))
         return exit_code;
-    job.ticker = moray_ticker_start(stderr, job.common.quiet);
+    job->ticker = moray_ticker_start(stderr, job->common.quiet);
     moray_interrupt_begin();
-    moray_status status = work(&job);
+    moray_status status = program->work ? program->work(job) : work(job);
     moray_interrupt_end();
-    moray_ticker_end(&job.ticker);
+    moray_ticker_end(&job->ticker);
     if (!moray_failed(status))
-        status = gait_job_report(&job);
-    exit_code = moray_app_end(&app, &job, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !certified(&job))
+        status = program->report ? program->report(job) : gait_job_report(job);
+    exit_code = moray_app_end(&app, job, status);
+    if (exit_code == MORAY_EXIT_SOLVED && !(program->certified ? program->certified(job) : certified(job)))
         exit_code = MORAY_EXIT_CERTIFICATE;
-    gait_job_free(&job);
+    if (program->release)
+        program->release(job);
+    gait_job_free(job);
     return exit_code;
 }

@@ -10,11 +10,14 @@
 
 #define DEG (M_PI / 180)
 
+typedef struct gait_job gait_job;
+
 // One optimisation: the problem on one model, its best solution, and what the gait is worth when it is swum.
 typedef struct stage {
     moray_model model;
     double power; // limit of the mean joint power [W], or infinite
     double speed; // least speed along the course [m/s], or 0
+    double taper[2];
     moray_gait_problem *problem;
     moray_solution *solution;
     int starts, agreeing; // how many, and how many of them ended at the best solution
@@ -24,7 +27,7 @@ typedef struct stage {
     moray_gait_gain gain; // over the paper's gait
 } stage;
 
-typedef struct gait_job {
+struct gait_job {
     moray_common common; // model complex: both stages, control-oriented first; control: that alone
     const char *name;    // of the program
     moray_gait_goal goal;
@@ -32,12 +35,12 @@ typedef struct gait_job {
     double power, speed; // NaN: what the paper's gait uses and makes
     double joint_rate, joint_effort;
     moray_joints joints;
-    int random_starts;
+    int random_starts, refinements; // refinements: finer meshes tried where the first does not pass the certificate
     moray_basin basin;
     moray_gait_trial paper;
     stage stage[2]; // by model
     moray_ticker ticker;
-} gait_job;
+};
 
 static inline const stage *last_stage(const gait_job *job)
 {
@@ -55,24 +58,31 @@ static inline const stage *last_stage(const gait_job *job)
         .max = INFINITY, .open = true, .unit = in, .help = text                                                        \
     }
 
-// What makes a program of this: its goal, its own options besides those of every gait job, its defaults in the job.
+// What makes a program of this: its goal, its own options besides those of every gait job, its defaults in the job. And
+// where it does not optimise, prove and report one gait: what it does, tells, whether all it found is certified, and
+// how what it holds besides is freed.
 typedef struct gait_program {
     const char *name, *summary;
     moray_gait_goal goal;
     const moray_option *options;
     int n_options;
     double power, speed; // defaults
+    moray_status (*work)(gait_job *job);
+    moray_status (*report)(gait_job *job);
+    bool (*certified)(const gait_job *job);
+    void (*release)(gait_job *job);
 } gait_program;
 
-// The whole program; returns its exit code.
-int gait_job_main(const gait_program *program, int argc, char **argv);
+// The job with all its settings at their defaults.
+gait_job gait_job_defaults(const gait_program *program);
+
+// The whole program on a job, which may stand first in a larger struct, with its defaults; returns its exit code.
+int gait_job_main(const gait_program *program, gait_job *job, int argc, char **argv);
 
 // ---- Pieces --------------------------------------------------------------------------------------------------------
 
 enum { GAIT_JOB_OPTIONS = 10 }; // of every gait job
 extern const moray_option gait_job_options[GAIT_JOB_OPTIONS];
-
-gait_job gait_job_defaults(const gait_program *program);
 
 // Swims the paper's gait. Error: that of moray_scheme_parse, moray_basin_new or moray_gait_trial_run.
 moray_status gait_job_prepare(gait_job *job);
@@ -106,7 +116,12 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
 moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,
                                  const moray_swim_track *orbit, moray_solution **solution);
 
-moray_gait gait_job_random(const gait_job *job, moray_model model); // by drand48, within the limits of the gait
+// Solves the stage's problem, which it makes if need be, from the gait of another stage of the same model, at the omega
+// that the stage's power lets expect, and keeps the better of that and what the stage has. Error: those of
+// gait_job_problem and gait_job_solve.
+moray_status gait_job_continue(gait_job *job, stage *at, const stage *from);
+
+moray_gait gait_job_random(const gait_job *job, const stage *at); // by drand48, within the limits of the gait
 
 // Certificate of a stage's solution. Error: those of moray_certify.
 moray_status gait_job_certify(gait_job *job, stage *at);
@@ -114,12 +129,13 @@ moray_status gait_job_certify(gait_job *job, stage *at);
 // Swims the promised gait on both models, and compares it with the paper's. Error: those of moray_gait_trial_run.
 moray_status gait_job_prove(gait_job *job, stage *at);
 
-// Problem, best solution from the starts and random ones, promise and certificate of a stage whose model, power and
-// speed are set. Error: MORAY_NOT_SOLVED saying why, MORAY_INTERRUPTED, and those of the above.
+// Problem, best solution from the starts and random ones, promise and certificate of a stage whose model, power, speed
+// and taper are set. Error: MORAY_NOT_SOLVED saying why, MORAY_INTERRUPTED, and those of the above.
 moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known);
 
-// Parts of the summary: what the job is, and one stage.
+// Parts of the summary: what the job is, "predicted" of what a solution promises, and one stage.
 void gait_job_json_head(moray_json *json, const gait_job *job);
+void gait_job_json_promise(moray_json *json, const moray_gait_promise *promise);
 void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at);
 
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.

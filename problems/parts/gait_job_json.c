@@ -15,9 +15,8 @@ void gait_job_json_head(moray_json *json, const gait_job *job)
     moray_json_number(json, "intervals", job->common.intervals);
 }
 
-static void json_promise(moray_json *json, const stage *at)
+void gait_job_json_promise(moray_json *json, const moray_gait_promise *promise)
 {
-    const moray_gait_promise *promise = &at->promise;
     moray_json_open(json, "predicted");
     moray_json_number(json, "speed_m_s", promise->speed);
     moray_json_number(json, "course_speed_m_s", promise->course_speed);
@@ -49,7 +48,7 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
     moray_json_number(json, "power_limit_W", at->power);
     moray_json_number(json, "least_course_speed_m_s", at->speed);
     moray_gait_to_json(json, "gait", &job->common.robot, at->trial.gait);
-    json_promise(json, at);
+    gait_job_json_promise(json, &at->promise);
     moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, job->common.course);
     moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, job->common.course);
     json_gain(json, &at->gain);

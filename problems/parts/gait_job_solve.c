@@ -25,7 +25,7 @@ moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, mora
                    .omega = moray_between(job->omega[0], job->omega[1]),
                    .delta = moray_between(job->delta[0], job->delta[1]),
                    .offset = moray_between(offset[0], offset[1]),
-                   .taper = moray_between(job->taper[0], job->taper[1]),
+                   .taper = moray_between(at->taper[0], at->taper[1]),
                    .power = limit(at->power),
                    .joint_rate = own ? limit(job->joint_rate * (revolute ? DEG : 1)) : MORAY_INFINITY,
                    .joint_effort = own ? limit(job->joint_effort) : MORAY_INFINITY,
@@ -58,6 +58,7 @@ moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *proble
                                      .intervals = job->common.intervals,
                                      .tolerance = job->common.tol,
                                      .mesh_tolerance = 1e-6,
+                                     .max_refinements = job->refinements,
                                      .max_iterations = 1000,
                                      .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
                                      .own_scaling = true,
@@ -87,21 +88,21 @@ static double uniform(double low, double high)
     return low + (high - low) * drand48();
 }
 
-moray_gait gait_job_random(const gait_job *job, moray_model model)
+moray_gait gait_job_random(const gait_job *job, const stage *at)
 {
     const double theta_max = uniform(job->theta_max[0], job->theta_max[1]);
     moray_gait gait = {.omega = uniform(job->omega[0], job->omega[1]), .delta = uniform(job->delta[0], job->delta[1])};
-    gait.amplitude = moray_amplitude_from_theta_max(&job->common.robot, model, theta_max, gait.delta);
-    if (job->taper[0] < job->taper[1])
-        gait.taper = uniform(job->taper[0], job->taper[1]);
+    gait.amplitude = moray_amplitude_from_theta_max(&job->common.robot, at->model, theta_max, gait.delta);
+    if (at->taper[0] < at->taper[1])
+        gait.taper = uniform(at->taper[0], at->taper[1]);
     return gait;
 }
 
 // The gait with a taper that is allowed, its largest joint amplitude as before.
-static moray_gait tapered(const gait_job *job, moray_gait gait)
+static moray_gait tapered(const stage *at, moray_gait gait)
 {
     const double before = 1 + fabs(gait.taper);
-    gait.taper = fmin(fmax(gait.taper, job->taper[0]), job->taper[1]);
+    gait.taper = fmin(fmax(gait.taper, at->taper[0]), at->taper[1]);
     gait.amplitude *= before / (1 + fabs(gait.taper));
     return gait;
 }
@@ -131,6 +132,22 @@ static void keep_best(stage *at, moray_solution *solution)
         at->solution = solution;
 }
 
+// At constant shape the power grows with about the square of omega, a little faster.
+moray_status gait_job_continue(gait_job *job, stage *at, const stage *from)
+{
+    const double exponent = 0.45, share = at->power / from->promise.power;
+    moray_gait gait = tapered(at, from->promise.gait);
+    moray_solution *solution = NULL;
+    if (isfinite(share))
+        gait.omega = fmin(fmax(gait.omega * pow(share, exponent), job->omega[0]), job->omega[1]);
+    if (!at->problem)
+        MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
+    MORAY_TRY(gait_job_solve(job, at, at->problem, &gait, &solution));
+    keep_best(at, solution);
+    at->promise = moray_gait_problem_promise(at->problem, at->solution);
+    return moray_ok();
+}
+
 // From the known gaits, then, on the model asked for, from random ones.
 static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known)
 {
@@ -138,7 +155,7 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
     srand48(1);
     at->starts = known->n + random;
     for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
-        const moray_gait gait = tapered(job, k < known->n ? known->gait[k] : gait_job_random(job, at->model));
+        const moray_gait gait = tapered(at, k < known->n ? known->gait[k] : gait_job_random(job, at));
         moray_solution *solution = NULL;
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
         if (!moray_failed(status))

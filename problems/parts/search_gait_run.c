@@ -104,7 +104,7 @@ static moray_status start_gait(search_gait *run, int k, moray_gait *gait)
     moray_orbit_result orbit;
     *gait = run->job.paper.gait[run->spec.model];
     for (int draw = 0; k > 0; draw++) {
-        *gait = gait_job_random(&run->job, run->spec.model);
+        *gait = gait_job_random(&run->job, &run->demand);
         const moray_status status = moray_orbit_solve(moray_gait_search_orbit(run->search), gait, &orbit);
         if (!moray_failed(status) || moray_interrupted())
             return moray_ok();

@@ -112,6 +112,10 @@ static void write_script(FILE *script, const moray_figure *figure)
           "set grid lc rgb '#d0d0d0' lt 1 lw 0.5\nset border 3\nset tics nomirror\nset key outside below height 1\n"
           "set offsets graph 0, graph 0, graph 0.03, graph 0.03\n",
           script);
+    if (figure->log_x)
+        fputs("set logscale x\n", script);
+    if (figure->log_y)
+        fputs("set logscale y\n", script);
     if (figure->equal_axes)
         write_equal_axes(script, figure);
     set_text(script, "title", figure->title);

@@ -273,6 +273,7 @@ moray_status gait_endpoint_map(moray_map *map, struct gait_endpoint *e)
     if (inputs > 1024)
         return moray_error(MORAY_INPUT, "links: %d states are more than this form is made for", e->nx);
     e->events = e->nx - 2 + terms_of(e, zeros, term) - 1;
+    e->power_event = e->nx - 2 + 3 + e->head + e->tail;
     triplets_record(&e->jac);
     walk_endpoint_jacobian(e, zeros, &e->jac);
     MORAY_TRY(triplets_close(&e->jac));

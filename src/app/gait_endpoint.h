@@ -20,6 +20,7 @@ struct gait_endpoint {
     moray_gait_goal goal;
     bool power, rate, speed;
     int events;
+    int power_event; // place of the mean power among them
     triplets jac, hess;
 };
 

@@ -238,6 +238,8 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
     promise.speed = hypot(promise.v_x - spec->current[0], promise.v_y - spec->current[1]);
     promise.course_speed = promise.v_x * cos(spec->course) + promise.v_y * sin(spec->course);
     promise.power = moray_solution_integrals(solution, 0)[0] / tf;
+    if (problem->endpoint.power)
+        promise.power_price = moray_solution_event_multipliers(solution)[problem->endpoint.power_event];
     return promise;
 }
 

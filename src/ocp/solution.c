@@ -21,6 +21,11 @@ const double *moray_solution_parameters(const moray_solution *solution)
     return solution->iterate.x + solution->transcription->layout.s;
 }
 
+const double *moray_solution_event_multipliers(const moray_solution *solution)
+{
+    return solution->iterate.lambda + solution->transcription->layout.events;
+}
+
 const double *moray_solution_integrals(const moray_solution *solution, int phase)
 {
     return solution->iterate.x + solution->transcription->layout.phase[phase].q;

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+//
+// Fronts of speed against power, by continuation: the fastest gaits within ever less mean joint power, of lateral
+// undulation and of eel-like motion, on both models; every gait swum on the first-principles model.
+#include "parts/pareto.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const pareto_kinds[PARETO_KINDS] = {"lateral", "eel-like", "free taper"};
+const char *const pareto_models[2] = {"control-oriented", "first-principles"};
+
+static const moray_option options[] = {
+    {.section = "problem",
+     .key = "points",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(pareto, points),
+     .min = 2,
+     .max = PARETO_POINTS,
+     .help = "gaits of a front, at powers in equal ratios"},
+    {.section = "problem",
+     .key = "least_share",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(pareto, least_share),
+     .min = 1e-4,
+     .max = 0.9,
+     .help = "least power, as a share of what the fastest lateral gait of the same model uses"},
+    {.section = "problem",
+     .key = "eel_taper",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(pareto, eel_taper),
+     .min = -1,
+     .max = 1,
+     .help = "taper of the eel-like motion; with -(N-2)/N joint i swings in the proportion (N-i)/N"},
+};
+
+// ---- One front -----------------------------------------------------------------------------------------------------
+
+static void limit_power(stage *at, const pareto_front *front, int k, double most, double share)
+{
+    at->model = front->model;
+    at->power = k == 0 ? INFINITY : most * pow(share, (double)k / (front->n - 1));
+}
+
+static bool solved(const stage *at)
+{
+    return at->solution && moray_solution_info(at->solution)->outcome == MORAY_NLP_SOLVED;
+}
+
+static void show(pareto *run, const pareto_front *front, int k, const char *what)
+{
+    moray_ticker_show(&run->job.ticker, "pareto: %s model, %s, point %d of %d: %s", pareto_models[front->model],
+                      pareto_kinds[front->kind], k + 1, front->n, what);
+}
+
+// The fastest gait of all, from the paper's gait or from that of another front; and from it, to and fro, the others.
+static moray_status follow(pareto *run, pareto_front *front, const pareto_front *like)
+{
+    gait_job *job = &run->job;
+    const gait_starts paper = {{job->paper.gait[front->model]}, 1};
+    stage *at = front->at;
+    if (like)
+        MORAY_TRY(gait_job_continue(job, at, like->at));
+    else
+        MORAY_TRY(gait_job_optimise(job, at, &paper));
+    const double most = like ? like->at->promise.power : at->promise.power;
+    for (int k = 1; k < front->n; k++)
+        limit_power(&at[k], front, k, most, run->least_share);
+    for (int way = 1; way >= -1; way -= 2)
+        for (int k = way > 0 ? 1 : front->n - 2; k >= 0 && k < front->n && !moray_interrupted(); k += way) {
+            show(run, front, k, way > 0 ? "there" : "and back");
+            if (solved(&at[k - way]))
+                MORAY_TRY(gait_job_continue(job, &at[k], &at[k - way]));
+        }
+    return moray_interrupted() ? moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written")
+                               : moray_ok();
+}
+
+// Keeps the gaits that are worth it, certified and swum on both models.
+static moray_status prove(pareto *run, pareto_front *front)
+{
+    const double no_price = 1e-5; // of a power limit that makes no difference [m/s per W]
+    gait_job *job = &run->job;
+    const moray_integrator integrator = moray_sim_integrator(&job->basin.settings.sim);
+    const int all = front->n;
+    front->n = 0;
+    for (int k = 0; k < all && !moray_interrupted(); k++) {
+        stage *at = &front->at[k];
+        if (!solved(at) || (k > 0 && at->promise.power_price < no_price)) {
+            gait_job_stage_free(at);
+            continue;
+        }
+        show(run, front, k, "swum on both models");
+        MORAY_TRY(moray_certify(at->solution, &integrator, &at->certificate));
+        MORAY_TRY(moray_gait_trial_run(&job->basin, &at->promise.gait, front->model, &at->trial));
+        const stage kept = *at;
+        *at = (stage){0};
+        front->at[front->n++] = kept;
+    }
+    return moray_ok();
+}
+
+static moray_status make_front(pareto *run, moray_model model, int kind)
+{
+    pareto_front *front = &run->front[run->fronts];
+    *front = (pareto_front){.model = model, .kind = kind, .n = run->points};
+    front->at = calloc((size_t)front->n, sizeof *front->at);
+    run->fronts++;
+    if (!front->at)
+        return moray_error(MORAY_MEMORY, "no memory for a front of %d points", front->n);
+    const double eel[2] = {run->eel_taper, run->eel_taper}, none[2] = {0, 0};
+    const double *const taper[PARETO_KINDS] = {none, eel, run->job.taper};
+    for (int k = 0; k < front->n; k++) {
+        memcpy(front->at[k].taper, taper[kind], sizeof eel);
+        limit_power(&front->at[k], front, 0, 0, 0);
+    }
+    MORAY_TRY(follow(run, front, kind == 0 ? NULL : front - kind));
+    return prove(run, front);
+}
+
+// ---- All -----------------------------------------------------------------------------------------------------------
+
+static moray_status work(gait_job *job)
+{
+    pareto *run = (pareto *)job;
+    const int kinds = job->taper[0] < job->taper[1] ? PARETO_KINDS : PARETO_KINDS - 1;
+    if (isnan(run->eel_taper))
+        run->eel_taper = (2.0 - job->common.robot.links) / job->common.robot.links;
+    MORAY_TRY(gait_job_prepare(job));
+    for (int model = 0; model <= (int)job->common.model; model++)
+        for (int kind = 0; kind < kinds; kind++)
+            MORAY_TRY(make_front(run, (moray_model)model, kind));
+    return moray_ok();
+}
+
+static bool certified(const gait_job *job)
+{
+    const pareto *run = (const pareto *)job;
+    bool pass = true;
+    for (int f = 0; f < run->fronts; f++)
+        for (int k = 0; k < run->front[f].n; k++)
+            pass = pass && run->front[f].at[k].certificate.pass;
+    return pass;
+}
+
+static void release(gait_job *job)
+{
+    pareto *run = (pareto *)job;
+    for (int f = 0; f < run->fronts; f++) {
+        for (int k = 0; run->front[f].at && k < run->points; k++)
+            gait_job_stage_free(&run->front[f].at[k]);
+        free(run->front[f].at);
+    }
+}
+
+double pareto_speed_at(const pareto_front *front, double power)
+{
+    const stage *above = NULL;
+    if (front->n > 0 && power >= front->at[0].promise.power)
+        return front->at[0].promise.course_speed;
+    for (int k = 0; k < front->n; k++) {
+        const stage *at = &front->at[k];
+        if (above && at->promise.power <= power && power <= above->promise.power) {
+            const double share = log(power / at->promise.power) / log(above->promise.power / at->promise.power);
+            return at->promise.course_speed * pow(above->promise.course_speed / at->promise.course_speed, share);
+        }
+        above = at;
+    }
+    return NAN;
+}
+
+bool pareto_is_lateral(const pareto_front *front)
+{
+    bool none = true;
+    for (int k = 0; k < front->n; k++)
+        none = none && fabs(front->at[k].promise.gait.taper) < 1e-4;
+    return none;
+}
+
+static const gait_program program = {
+    .name = "pareto",
+    .summary =
+        "Follows the front of speed against power of an underwater snake robot, laterally and as an eel, and swims "
+        "its gaits on the first-principles model.",
+    .goal = MORAY_GAIT_FASTEST,
+    .options = options,
+    .n_options = sizeof options / sizeof *options,
+    .speed = INFINITY,
+    .work = work,
+    .report = pareto_report,
+    .certified = certified,
+    .release = release};
+
+int main(int argc, char **argv)
+{
+    pareto run = {.job = gait_job_defaults(&program), .points = 16, .eel_taper = NAN, .least_share = 0.02};
+    run.job.refinements = 4;
+    run.job.taper[0] = -1;
+    run.job.taper[1] = 1;
+    return gait_job_main(&program, &run.job, argc, argv);
+}
