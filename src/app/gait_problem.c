@@ -12,7 +12,8 @@ struct moray_gait_problem {
     moray_plant_size size;
     moray_map plant, ends;
     struct gait_endpoint endpoint;
-    moray_bounds *block; // x, x0, c, e in turn
+    moray_bounds *block; // x0, c, e in turn
+    const char **event_names;
     moray_ocp *ocp;
 };
 
@@ -155,13 +156,15 @@ static moray_status make_ocp(moray_gait_problem *problem)
     const int nx = problem->size.nx, nc = problem->size.nc, ne = problem->endpoint.events,
               at = problem->endpoint.position;
     problem->block = calloc((size_t)(nx + nc + ne), sizeof *problem->block);
-    if (!problem->block)
+    problem->event_names = calloc((size_t)ne, sizeof *problem->event_names);
+    if (!problem->block || !problem->event_names)
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
     moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc;
     for (int r = 0; r < nx; r++)
         x0[r] = r == at || r == at + 1 ? moray_fixed(0) : moray_free();
     fill_path_bounds(problem, c);
     fill_event_bounds(problem, e);
+    gait_endpoint_names(&problem->endpoint, problem->event_names);
     const bool control = problem->spec.model == MORAY_CONTROL_ORIENTED;
     const double largest = control ? 2 * problem->spec.robot.l * sin(limits->theta_max.upper) // of a, by (33)
                                    : 2 * limits->theta_max.upper;                             // of alpha, by (27)
@@ -186,6 +189,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
                                                           .s_names = s_names[problem->spec.model],
                                                           .ne = ne,
                                                           .e = {e, ne},
+                                                          .e_names = problem->event_names,
                                                           .endpoint_map = &problem->ends});
 }
 
@@ -217,6 +221,7 @@ void moray_gait_problem_free(moray_gait_problem *problem)
     moray_map_release(&problem->plant);
     gait_endpoint_free(&problem->endpoint);
     free(problem->block);
+    free(problem->event_names);
     free(problem);
 }
 
@@ -225,11 +230,13 @@ const moray_ocp *moray_gait_problem_ocp(const moray_gait_problem *problem)
     return problem->ocp;
 }
 
+enum { most_states = 6 + 2 * 512 };
+
 moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem, const moray_solution *solution)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
     const int at = problem->endpoint.position;
-    double t0, tf, x[6 + 2 * 512];
+    double t0, tf, x[most_states];
     moray_gait_promise promise = {.gait = moray_gait_from_parameters(moray_solution_parameters(solution))};
     moray_solution_times(solution, 0, &t0, &tf);
     moray_solution_at(solution, 0, tf, x, NULL);
@@ -241,6 +248,23 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
     if (problem->endpoint.power)
         promise.power_price = moray_solution_event_multipliers(solution)[problem->endpoint.power_event];
     return promise;
+}
+
+moray_gait_slope moray_gait_problem_slope(const moray_gait_problem *problem, const moray_solution *solution,
+                                          const moray_sensitivity *sensitivity)
+{
+    const moray_gait_promise promise = moray_gait_problem_promise(problem, solution);
+    const int at = problem->endpoint.position;
+    const double *course = problem->endpoint.course;
+    double t0, tf, d_t0, d_tf, d_x0[most_states], d_xf[most_states];
+    moray_solution_times(solution, 0, &t0, &tf);
+    moray_sensitivity_times(sensitivity, 0, &d_t0, &d_tf);
+    moray_sensitivity_ends(sensitivity, 0, d_x0, d_xf);
+    const double d_way = d_xf[at] * course[0] + d_xf[at + 1] * course[1];
+    const double d_work = moray_sensitivity_integrals(sensitivity, 0)[0];
+    return (moray_gait_slope){.gait = moray_gait_from_parameters(moray_sensitivity_parameters(sensitivity)),
+                              .course_speed = (d_way - promise.course_speed * d_tf) / tf,
+                              .power = (d_work - promise.power * d_tf) / tf};
 }
 
 // The plant's state from the swimmer's.
