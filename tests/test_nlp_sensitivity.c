@@ -310,6 +310,31 @@ static void twice(const double *x, const double *p, struct facts *f)
         f->jac[1][j] = 2;
 }
 
+// One equation and its double: x and the sum of lambda_i c_i are as with one.
+static void test_dependent(void)
+{
+    struct dense d = {.facts = twice, .g_lower = {1, 2}, .g_upper = {1, 2}};
+    struct slope room;
+    moray_iterate slope = slope_in(&room);
+    moray_nlp_sensitivity *s;
+    dense_new(&d, 3, 2);
+    const double x[] = {6 / 11.0, 3 / 11.0, 2 / 11.0}; // x_j = 6/11 / j
+    memcpy(d.x, x, sizeof x);
+    d.lambda[0] = -6 / 11.0;
+    d.g[0] = 1, d.g[1] = 2;
+    CHECK_OK(moray_nlp_sensitivity_new(&s, &d.nlp, &d.at), "one constraint twice");
+    const double both[] = {1, 2}, one[] = {1, 0};
+    const moray_nlp_shift together = {.g_lower = both, .g_upper = both}, apart = {.g_lower = one, .g_upper = one};
+    CHECK_OK(moray_nlp_sensitivity_solve(s, &together, &slope), "both move");
+    for (int j = 0; j < 3; j++)
+        CHECK_NEAR(slope.x[j], x[j], 1e-12, "x grows in proportion");
+    CHECK_NEAR(slope.lambda[0] + 2 * slope.lambda[1], -6 / 11.0, 1e-9, "and so does their multiplier");
+    CHECK_NEAR(slope.objective, 6 / 11.0, 1e-9, "d f");
+    const moray_status status = moray_nlp_sensitivity_solve(s, &apart, &slope);
+    CHECK(status.code == MORAY_NUMERIC && strstr(status.text, "cannot all follow"), "one moves alone: %s", status.text);
+    moray_nlp_sensitivity_free(s);
+}
+
 static void flat(const double *x, const double *p, struct facts *f)
 {
     quadratic(x, p, f);
@@ -319,12 +344,9 @@ static void flat(const double *x, const double *p, struct facts *f)
 
 static void test_refusals(void)
 {
-    struct dense dependent = {.facts = twice, .g_lower = {1, 2}, .g_upper = {1, 2}},
-                 loose = {.facts = flat, .g_lower = {1}, .g_upper = {1}};
+    struct dense loose = {.facts = flat, .g_lower = {1}, .g_upper = {1}};
     moray_nlp_sensitivity *s;
-    dense_new(&dependent, 3, 2);
-    moray_status status = moray_nlp_sensitivity_new(&s, &dependent.nlp, &dependent.at);
-    CHECK(status.code == MORAY_NUMERIC && !s, "one constraint twice: %s", status.text);
+    moray_status status;
     dense_new(&loose, 3, 1);
     status = moray_nlp_sensitivity_new(&s, &loose.nlp, &loose.at);
     CHECK(status.code == MORAY_NUMERIC && !s, "a minimum that is not strict: %s", status.text);
@@ -339,6 +361,7 @@ int main(void)
     test_least_norm();
     test_disc();
     test_weak();
+    test_dependent();
     test_refusals();
     return tap_done();
 }

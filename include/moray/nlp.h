@@ -102,7 +102,7 @@ moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate,
 //
 // How a solution moves with a parameter p of the programme: the implicit function theorem on its optimality conditions,
 // with the constraints that are active held so. The KKT matrix is factored once, each parameter is one more right-hand
-// side. Asked for are a strict local minimum and independent active constraints, not that multipliers be far from 0.
+// side. Asked for is a strict local minimum. Active constraints may depend on each other if they move together.
 
 // What p does to the programme while x and the multipliers stand still. NULL: nothing.
 typedef struct moray_nlp_shift {
@@ -122,8 +122,8 @@ typedef struct moray_nlp_change {
 
 typedef struct moray_nlp_sensitivity moray_nlp_sensitivity;
 
-// Of a solution; both must outlive the result. Error: MORAY_NUMERIC where a function is not finite or the matrix is
-// singular (dependent constraints, a minimum that is not strict), MORAY_MEMORY.
+// Of a solution; both must outlive the result. Error: MORAY_NUMERIC where a function is not finite or the minimum not
+// strict, MORAY_MEMORY.
 moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const moray_nlp *nlp,
                                        const moray_iterate *solution);
 void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
@@ -133,7 +133,8 @@ void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
 // constraint[].
 int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *sensitivity, int *constraint, int most);
 
-// slope: the derivative by p of every entry of the solution, objective included. Error: MORAY_NUMERIC.
+// slope: the derivative by p of every entry of the solution, objective included; multipliers of constraints that depend
+// on each other share evenly. Error: MORAY_NUMERIC where those cannot all follow, so that one lets go at once.
 moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
                                          moray_iterate *slope);
 

@@ -106,7 +106,7 @@ static moray_status fill_again(sensitivity *run, const struct displaced *at, sen
     double value[2][SLOPES];
     bool all = true;
     for (int side = 0; side < 2; side++) {
-        const int k = side * (SIDES - 1);
+        const int k = 1 + side;
         moray_gait_promise promise;
         bool solved;
         MORAY_TRY(solve_again(run, at->problem[k], &promise, &solved));
@@ -115,7 +115,7 @@ static moray_status fill_again(sensitivity *run, const struct displaced *at, sen
     }
     row->deviation = 0;
     for (int i = 0; i < SLOPES; i++) {
-        row->again[i] = all ? (value[1][i] - value[0][i]) / (4 * row->step) : NAN;
+        row->again[i] = all ? (value[1][i] - value[0][i]) / (2 * row->step) : NAN;
         row->deviation =
             fmax(row->deviation, all ? fabs(row->slope[i] - row->again[i]) * row->scale / run->size[i] : INFINITY);
     }

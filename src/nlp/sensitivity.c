@@ -1,83 +1,21 @@
 // SPDX-License-Identifier: MIT
+#include "nlp/sensitivity.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "moray/nlp.h"
-#include "nlp/klu.h"
-
-static const double small = 1e-4;     // of a multiplier or slack in the scale of the solver
-static const double singular = 1e-15; // reciprocal condition beyond which nothing is determined
-
-enum activity { INACTIVE, AT_LOWER, AT_UPPER, EQUAL };
-
-// Constraints are numbered rows first, then bounds of the columns.
-struct moray_nlp_sensitivity {
-    const moray_nlp *nlp;
-    const moray_iterate *at;
-    enum activity *activity; // [m + n]
-    bool *weak;              // [m + n]
-    double *jac, *hess, *gradient;
-    double *values, *rhs; // [entries], [n + m]
-    moray_pattern pattern;
-    sparse_lu *lu;
-};
-
-// ---- Active set ----------------------------------------------------------------------------------------------------
-
-// One side of a constraint: slack, and multiplier that is positive where it holds the constraint; both in user units,
-// with what takes the slack to the solver's.
-struct side {
-    bool bounded, fixed;
-    double slack, multiplier, scale;
-};
-
-static struct side side_of(const moray_nlp *nlp, const moray_iterate *at, int i, bool upper)
-{
-    const int j = i - nlp->m;
-    const bool row = i < nlp->m;
-    const double low = row ? nlp->g_lower[i] : nlp->x_lower[j], high = row ? nlp->g_upper[i] : nlp->x_upper[j];
-    const double value = row ? at->g[i] : at->x[j];
-    const double *scales = row ? nlp->g_scale : nlp->x_scale;
-    return (struct side){.bounded = upper ? high < MORAY_INFINITY : low > -MORAY_INFINITY,
-                         .fixed = low == high,
-                         .slack = upper ? high - value : value - low,
-                         .multiplier = row     ? (upper ? at->lambda[i] : -at->lambda[i])
-                                       : upper ? at->z_upper[j]
-                                               : at->z_lower[j],
-                         .scale = scales ? scales[row ? i : j] : 1};
-}
-
-static void find_activity(moray_nlp_sensitivity *s)
-{
-    const moray_nlp *nlp = s->nlp;
-    const double f_scale = nlp->f_scale != 0 ? nlp->f_scale : 1;
-    for (int i = 0; i < nlp->m + nlp->n; i++)
-        for (int upper = 0; upper < 2; upper++) {
-            const struct side side = side_of(nlp, s->at, i, upper);
-            const double slack = side.slack * side.scale, multiplier = side.multiplier * f_scale / side.scale;
-            if (side.fixed)
-                s->activity[i] = EQUAL;
-            else if (side.bounded && multiplier > slack)
-                s->activity[i] = upper ? AT_UPPER : AT_LOWER;
-            if (!side.fixed && side.bounded)
-                s->weak[i] = s->weak[i] || (slack < small && multiplier < small);
-        }
-}
-
-int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *s, int *constraint, int most)
-{
-    int n = 0;
-    for (int i = 0; i < s->nlp->m + s->nlp->n; i++)
-        if (s->weak[i] && n++ < most)
-            constraint[n - 1] = i;
-    return n;
-}
+static const double singular = 1e-16;   // reciprocal condition beyond which nothing is determined
+static const double regularity = 1e-10; // of active constraints, see fill; in the scale of the solver
+static const double followed = 1e-6;    // residual of a right-hand side, relative
+enum { refinements = 3 };
 
 // ---- KKT matrix ----------------------------------------------------------------------------------------------------
 //
 // [H J'; J 0] for d(x, lambda), where the row of a column at a bound says what the bound makes of it, and that of a
-// constraint that is not active says that its multiplier stays 0.
+// constraint that is not active says that its multiplier stays 0. Factored is [H J'; J -r], regular where active
+// constraints depend on each other too: refinement takes away what r does, but for a right-hand side that they cannot
+// all follow.
 
 static bool is_held(const moray_nlp_sensitivity *s, int row)
 {
@@ -98,8 +36,10 @@ static void fill(moray_nlp_sensitivity *s)
     const int n = nlp->n, m = nlp->m;
     int k = 0;
     for (; k < n + m; k++) {
-        put(s, k, k, k, 0);
-        s->values[k] = is_held(s, k);
+        const double g_scale = k >= n && nlp->g_scale ? nlp->g_scale[k - n] : 1;
+        put(s, k, k, k, k < n ? 0 : -regularity * objective_scale(nlp) / (g_scale * g_scale));
+        if (is_held(s, k))
+            s->values[k] = 1;
     }
     for (int e = 0; e < nlp->nnz_jac; e++) {
         put(s, k++, n + nlp->jac_row[e], nlp->jac_col[e], s->jac[e]);
@@ -129,13 +69,12 @@ static moray_status evaluate(moray_nlp_sensitivity *s)
 static moray_status factor(moray_nlp_sensitivity *s)
 {
     MORAY_TRY(sparse_lu_new(&s->lu, s->nlp->n + s->nlp->m, &s->pattern));
-    MORAY_TRY(sparse_lu_factor(s->lu, s->values));
+    const moray_status status = sparse_lu_factor(s->lu, s->values);
     const double condition = sparse_lu_condition(s->lu);
-    if (condition > singular)
-        return moray_ok();
+    if (status.code == MORAY_MEMORY || (!moray_failed(status) && condition > singular))
+        return status;
     return moray_error(MORAY_NUMERIC,
-                       "the KKT matrix is singular to rounding (reciprocal condition %.1e): active constraints that "
-                       "depend on each other, or a minimum that is not strict",
+                       "the KKT matrix is singular (reciprocal condition %.1e): the minimum is not a strict one",
                        condition);
 }
 
@@ -144,7 +83,7 @@ static moray_status allocate(moray_nlp_sensitivity *s)
     const moray_nlp *nlp = s->nlp;
     const size_t n = (size_t)nlp->n, m = (size_t)nlp->m, jac = (size_t)nlp->nnz_jac, hess = (size_t)nlp->nnz_hess;
     const size_t entries = n + m + 2 * jac + 2 * hess;
-    s->jac = calloc(jac + hess + n + entries + n + m, sizeof *s->jac);
+    s->jac = calloc(jac + hess + n + entries + 3 * (n + m), sizeof *s->jac);
     s->activity = calloc(n + m, sizeof *s->activity);
     s->weak = calloc(n + m, sizeof *s->weak);
     if (!s->jac || !s->activity || !s->weak)
@@ -153,6 +92,8 @@ static moray_status allocate(moray_nlp_sensitivity *s)
     s->gradient = s->hess + hess;
     s->values = s->gradient + n;
     s->rhs = s->values + entries;
+    s->residual = s->rhs + n + m;
+    s->solution = s->residual + n + m;
     return moray_pattern_new(&s->pattern, (int)entries);
 }
 
@@ -200,14 +141,6 @@ static double entry(const double *vector, int i)
     return vector ? vector[i] : 0;
 }
 
-// d/dp of one bound of a constraint.
-static double bound_slope(const moray_nlp *nlp, const moray_nlp_shift *shift, int i, bool upper)
-{
-    if (i < nlp->m)
-        return entry(upper ? shift->g_upper : shift->g_lower, i);
-    return entry(upper ? shift->x_upper : shift->x_lower, i - nlp->m);
-}
-
 static void fill_rhs(moray_nlp_sensitivity *s, const moray_nlp_shift *shift)
 {
     const int n = s->nlp->n, m = s->nlp->m;
@@ -217,6 +150,52 @@ static void fill_rhs(moray_nlp_sensitivity *s, const moray_nlp_shift *shift)
     for (int i = 0; i < m; i++)
         s->rhs[n + i] =
             is_held(s, n + i) ? 0 : bound_slope(s->nlp, shift, i, s->activity[i] == AT_UPPER) - entry(shift->g, i);
+}
+
+// What takes a row of the matrix to the solver's scale.
+static double row_scale(const moray_nlp_sensitivity *s, int row)
+{
+    const moray_nlp *nlp = s->nlp;
+    if (row >= nlp->n)
+        return nlp->g_scale && !is_held(s, row) ? nlp->g_scale[row - nlp->n] : 1;
+    const double scale = nlp->x_scale ? nlp->x_scale[row] : 1;
+    return is_held(s, row) ? scale : objective_scale(nlp) / scale;
+}
+
+static double scaled_norm(const moray_nlp_sensitivity *s, const double *vector)
+{
+    double largest = 0;
+    for (int i = 0; i < s->nlp->n + s->nlp->m; i++)
+        if (!(fabs(vector[i] * row_scale(s, i)) <= largest))
+            largest = fabs(vector[i] * row_scale(s, i));
+    return largest;
+}
+
+// residual <- rhs - [H J'; J 0] solution
+static void find_residual(moray_nlp_sensitivity *s)
+{
+    const int n = s->nlp->n, size = n + s->nlp->m;
+    memcpy(s->residual, s->rhs, (size_t)size * sizeof *s->residual);
+    for (int k = 0; k < s->pattern.nnz; k++)
+        if (k < n || k >= size || is_held(s, k))
+            s->residual[s->pattern.row[k]] -= s->values[k] * s->solution[s->pattern.col[k]];
+}
+
+static moray_status solve_kkt(moray_nlp_sensitivity *s)
+{
+    const int size = s->nlp->n + s->nlp->m;
+    memset(s->solution, 0, (size_t)size * sizeof *s->solution);
+    for (int k = 0; k < refinements; k++) {
+        find_residual(s);
+        MORAY_TRY(sparse_lu_solve(s->lu, 1, s->residual));
+        for (int i = 0; i < size; i++)
+            s->solution[i] += s->residual[i];
+    }
+    find_residual(s);
+    if (scaled_norm(s, s->residual) <= followed * scaled_norm(s, s->rhs))
+        return moray_ok();
+    return moray_error(MORAY_NUMERIC, "the active constraints depend on each other and cannot all follow: one of them "
+                                      "lets go at once");
 }
 
 // What the multipliers of the bounds must do for the Lagrangian's gradient to stay 0, in z_upper.
@@ -246,9 +225,9 @@ moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *s, const moray_n
     const moray_nlp *nlp = s->nlp;
     const size_t n = (size_t)nlp->n, m = (size_t)nlp->m;
     fill_rhs(s, shift);
-    MORAY_TRY(sparse_lu_solve(s->lu, 1, s->rhs));
-    memcpy(slope->x, s->rhs, n * sizeof *slope->x);
-    memcpy(slope->lambda, s->rhs + n, m * sizeof *slope->lambda);
+    MORAY_TRY(solve_kkt(s));
+    memcpy(slope->x, s->solution, n * sizeof *slope->x);
+    memcpy(slope->lambda, s->solution + n, m * sizeof *slope->lambda);
     complete_multipliers(s, shift, slope);
     for (int i = 0; i < nlp->m; i++)
         slope->g[i] = entry(shift->g, i);
@@ -258,45 +237,4 @@ moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *s, const moray_n
     for (int j = 0; j < nlp->n; j++)
         slope->objective += s->gradient[j] * slope->x[j];
     return moray_ok();
-}
-
-// ---- Changes of the active set -------------------------------------------------------------------------------------
-
-// The step at which what is `value` > 0 now and changes at `rate` is 0; infinite where it never is.
-static double step_to_zero(double value, double rate, int direction)
-{
-    return rate * direction < 0 ? fmax(value, 0) / fabs(rate) : INFINITY;
-}
-
-static moray_nlp_change change_of(const moray_nlp_sensitivity *s, const moray_nlp_shift *shift,
-                                  const moray_iterate *slope, int i, bool upper, int direction)
-{
-    const moray_nlp *nlp = s->nlp;
-    const enum activity activity = s->activity[i];
-    const struct side side = side_of(nlp, s->at, i, upper), rate = side_of(nlp, slope, i, upper);
-    moray_nlp_change change = {INFINITY, i, upper, activity == (upper ? AT_UPPER : AT_LOWER)};
-    if (activity == EQUAL || !side.bounded)
-        return change;
-    if (change.leaves) {
-        change.step = step_to_zero(side.multiplier, rate.multiplier, direction);
-    } else if (activity == INACTIVE) {
-        const double value = i < nlp->m ? slope->g[i] : slope->x[i - nlp->m];
-        const double gap = bound_slope(nlp, shift, i, upper) - value;
-        change.step = step_to_zero(side.slack, upper ? gap : -gap, direction);
-    }
-    return change;
-}
-
-moray_nlp_change moray_nlp_sensitivity_change(const moray_nlp_sensitivity *s, const moray_nlp_shift *shift,
-                                              const moray_iterate *slope, int direction)
-{
-    moray_nlp_change first = {INFINITY, -1, false, false};
-    for (int i = 0; i < s->nlp->m + s->nlp->n; i++)
-        for (int upper = 0; upper < 2; upper++) {
-            const moray_nlp_change change = change_of(s, shift, slope, i, upper, direction);
-            if (change.step < first.step)
-                first = change;
-        }
-    first.step *= direction;
-    return first;
 }

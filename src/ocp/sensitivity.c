@@ -180,11 +180,13 @@ static moray_status add(moray_sensitivity *s, struct transcription *t, double we
 moray_status moray_sensitivity_by(moray_sensitivity *s, const moray_ocp *const displaced[4], double h)
 {
     static const double stencil[] = {1 / 12.0, -8 / 12.0, 8 / 12.0, -1 / 12.0};
+    static const int order[] = {0, 3, 1, 2}; // by pairs, so that what stands still sums to 0 exactly
     if (!(h > 0 && isfinite(h)))
         return moray_error(MORAY_INPUT, "h = %g: must be finite and above 0", h);
     memset(s->block, 0, (size_t)(s->here - s->block) * sizeof *s->block);
     s->shift = (moray_nlp_shift){0, s->gradient, s->g, s->x_lower, s->x_upper, s->g_lower, s->g_upper};
-    for (int k = 0; k < 4; k++) {
+    for (int i = 0; i < 4; i++) {
+        const int k = order[i];
         struct transcription *t;
         MORAY_TRY(on_same_mesh(s->solution, displaced[k], &t));
         const moray_status status = add(s, t, stencil[k] / h);

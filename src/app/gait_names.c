@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <stdio.h>
+
 #include "app/gait_endpoint.h"
 
-void gait_endpoint_names(const struct gait_endpoint *e, const char **name)
+void gait_event_names(const struct gait_endpoint *e, const char **name)
 {
     for (int r = 0; r < e->nx - 2; r++)
         *name++ = "periodicity";
@@ -18,4 +20,14 @@ void gait_endpoint_names(const struct gait_endpoint *e, const char **name)
         *name++ = "joint rate";
     if (e->speed)
         *name++ = "course speed";
+}
+
+void gait_path_names(int n, int efforts, gait_name *text, const char **name)
+{
+    for (int i = 0; i < n; i++) {
+        const bool effort = i < efforts;
+        snprintf(text[i], sizeof *text, "%s %d", effort ? "joint effort" : "link angle",
+                 i + 1 - (effort ? 0 : efforts));
+        name[i] = text[i];
+    }
 }
