@@ -33,7 +33,7 @@ void gait_event_names(const struct gait_endpoint *endpoint, const char **name);
 
 // What the n path outputs are called, the first of which are joint efforts, the others link angles: name[n] into
 // text[n].
-typedef char gait_name[24];
+typedef char gait_name[32];
 void gait_path_names(int n, int efforts, gait_name *text, const char **name);
 
 // Bounds of the amplitude event for a range of theta_max: (33) a / (L cos(delta/2)) = sin theta_max, or
