@@ -143,7 +143,7 @@ static void json_row(moray_json *json, const sensitivity_row *row, int n)
 
 static void json_forecast(moray_json *json, const sensitivity *run)
 {
-    static const char *const keys[SENSITIVITY_GAITS] = {"kept", "predicted", "solved_again"};
+    static const char *const keys[SENSITIVITY_GAITS] = {"gait_kept", "gait_predicted", "gait_solved_again"};
     const sensitivity_forecast *forecast = &run->forecast;
     moray_json_open(json, "forecast");
     moray_json_numbers(json, "current_m_s", forecast->current, 2);
