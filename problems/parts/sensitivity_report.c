@@ -108,6 +108,15 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
     say(f, "\n");
 }
 
+static void find_words(const sensitivity *run, sensitivity_findings *f)
+{
+    say_confirmation(run, f);
+    say_changes(run, f);
+    say_reservations(run, f);
+    if (run->forecast.asked)
+        say_forecast(run, f);
+}
+
 // ---- Files ---------------------------------------------------------------------------------------------------------
 
 static void json_values(moray_json *json, const char *key, const double *value, int n)
@@ -212,31 +221,22 @@ static void print(const sensitivity *run, const sensitivity_findings *found)
     printf("%s\n", text);
 }
 
-static moray_status tell(const sensitivity *run, const sensitivity_findings *found)
-{
-    moray_json *json = json_of(run);
-    moray_status status = run->job.common.output ? write_files(run, found, json) : moray_ok();
-    if (!moray_failed(status) && run->job.common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print(run, found);
-    moray_json_free(json);
-    return status;
-}
-
 moray_status sensitivity_report(gait_job *job)
 {
     const sensitivity *run = (const sensitivity *)job;
+    moray_json *json = json_of(run);
+    moray_status status = moray_error(MORAY_MEMORY, "no memory for a report");
     sensitivity_findings *found = calloc(1, sizeof *found);
-    if (!found)
-        return moray_error(MORAY_MEMORY, "no memory for a report");
-    sensitivity_tables(run, found);
-    say_confirmation(run, found);
-    say_changes(run, found);
-    say_reservations(run, found);
-    if (run->forecast.asked)
-        say_forecast(run, found);
-    const moray_status status = tell(run, found);
+    if (found) {
+        sensitivity_tables(run, found);
+        find_words(run, found);
+        status = job->common.output ? write_files(run, found, json) : moray_ok();
+        if (!moray_failed(status) && !job->common.json)
+            print(run, found);
+    }
+    if (!moray_failed(status) && job->common.json)
+        status = moray_json_write(json, stdout);
     free(found);
+    moray_json_free(json);
     return status;
 }
