@@ -48,7 +48,8 @@ check "every parameter is solved again and swum" eval \
     '[ "$(grep -c "^  solved again" out)" -ge 10 ] && [ "$(grep -c "^  swum, first-principles" out)" = "$(grep -c "^  solved again" out)" ]'
 check "the optimum is shown on both models" grep -q '^ *promised  swum, first-pr.' out
 check "the limit that is near is told" grep -q '^WARNING: the slopes hold only up to c_n .*: parameter delta would pass its upper bound' out
-check "the prediction is swum" grep -q 'Swum on the first-principles model, it makes [+-]0\.0' out
+check "the prediction is swum" grep -q 'Swum on the first-principles model, it is off by [+-]0\.0' out
+check "and where the model errs most is said" grep -q 'swum on the first-principles model are .* differ most for' out
 check "parameters of the other model are not there" eval '! grep -q lambda_ out && grep -q "^rot_damping" out'
 
 refuse 'predict_current = fast' --set predict_current=fast

@@ -36,6 +36,27 @@ static void say_confirmation(const sensitivity *run, sensitivity_findings *f)
         worst_deviation(run), unsteady > 0 ? ", those aside whose active set changes on the way" : "");
 }
 
+// Where the control-oriented model errs most about the speed.
+static void say_disagreement(const sensitivity *run, sensitivity_findings *f)
+{
+    const sensitivity_row *worst = NULL;
+    double most = 0;
+    for (int k = 0; k < run->rows; k++) {
+        const sensitivity_row *row = &run->row[k];
+        const double difference = fabs(row->slope[SLOPE_SPEED] - row->swum[SLOPE_SPEED]) * row->scale;
+        if (difference > most) {
+            most = difference;
+            worst = row;
+        }
+    }
+    if (worst)
+        say(f,
+            "These are slopes of the control-oriented model. The same changes of parameter and gait swum on the "
+            "first-principles model are in the lines and columns beside; they differ most for %s: %.4g and %.4g m/s "
+            "per %s.\n",
+            worst->name, worst->slope[SLOPE_SPEED], worst->swum[SLOPE_SPEED], worst->unit);
+}
+
 // The first changes of the active set, as far as tangents tell.
 static void say_changes(const sensitivity *run, sensitivity_findings *f)
 {
@@ -96,11 +117,12 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
     const double course = run->job.common.course, best = moray_course_speed(swum[2], course);
     if (held)
         say(f,
-            " Swum on the first-principles model, it makes %+.3f %% of that one's speed for %+.3f %% of its power; "
-            "the gait kept as it was, %+.3f %% for %+.3f %%.",
+            " Swum on the first-principles model, it is off by %+.3f %% in speed and %+.3f %% in power; the gait kept "
+            "as it "
+            "was, by %+.3f %% and %+.3f %%.",
             percent(moray_course_speed(swum[1], course), best), percent(swum[1]->power, swum[2]->power),
             percent(moray_course_speed(swum[0], course), best), percent(swum[0]->power, swum[2]->power));
-    say(f, " By the slopes alone it would make %+.2f %% of that speed.",
+    say(f, " The speed that the slopes alone promise is off by %+.2f %%.",
         percent(forecast->promise[1].course_speed, forecast->promise[2].course_speed));
     if (fabs(forecast->change.step) < 1)
         say(f, " WARNING: after %.2g %% of the way the active set changes: %s.", 100 * forecast->change.step,
@@ -111,6 +133,8 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
 static void find_words(const sensitivity *run, sensitivity_findings *f)
 {
     say_confirmation(run, f);
+    if (run->job.common.model == MORAY_CONTROL_ORIENTED)
+        say_disagreement(run, f);
     say_changes(run, f);
     say_reservations(run, f);
     if (run->forecast.asked)
