@@ -70,7 +70,7 @@ static heading_job defaults(void)
                        .replan_periods = 1,
                        .look_ahead_periods = 6,
                        .recede = true,
-                       .gait_evaluations = 30,
+                       .gait_evaluations = 12,
                        .evaluations = 15};
     job.common.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "radau5");
@@ -84,7 +84,12 @@ static moray_status work(heading_job *job)
     int stages;
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     MORAY_TRY(moray_reference_read(&job->reference, job->reference_text));
-    MORAY_TRY(heading_make_plans(job));
+    heading_choose_trials(job);
+    MORAY_TRY(heading_plan_first(job));
+    MORAY_TRY(heading_run_trials(job));
+    if (job->common.model == MORAY_CONTROL_ORIENTED)
+        return moray_ok();
+    MORAY_TRY(heading_plan_last(job));
     return heading_run_trials(job);
 }
 

@@ -18,11 +18,12 @@ enum { HEADING_TRIALS = 10, HEADING_GAITS = 3 }; // gaits: the paper's, those of
 typedef struct heading_trial {
     const char *name;
     heading_law law;
-    int gait;                     // swum
-    moray_model plan;             // whose plan
-    bool preview;                 // the reference is known ahead
-    double gain, lead;            // [m/rad of the control-oriented model], [s]
-    int evaluations;              // spent on tuning these
+    int gait;          // swum
+    moray_model plan;  // whose plan
+    bool preview;      // the reference is known ahead
+    double gain, lead; // [m/rad of the control-oriented model], [s]
+    int evaluations;   // spent on tuning these
+    bool run;
     moray_heading_score score[2]; // by the model swum on
     moray_recede_record record[2];
 } heading_trial;
@@ -55,9 +56,12 @@ static inline const moray_heading_plan *heading_last_plan(const heading_job *job
     return &job->plan[job->common.model];
 }
 
-// Plans: averaged, control-oriented, and with the complex model first-principles. Error: MORAY_NOT_SOLVED saying what
-// limits the robot, MORAY_INTERRUPTED, and those of moray_heading_plan_make.
-moray_status heading_make_plans(heading_job *job);
+#define HEADING_AVERAGED_SCHEME "radau3"
+
+// Plans: first the averaged and the control-oriented one, last the first-principles one. Error: MORAY_NOT_SOLVED saying
+// what limits the robot, MORAY_INTERRUPTED, and those of moray_heading_plan_make.
+moray_status heading_plan_first(heading_job *job);
+moray_status heading_plan_last(heading_job *job);
 
 // Limits of the model, with the gait that is swum where `gait` is not NULL.
 moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool averaged);
@@ -65,14 +69,17 @@ moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool 
 // Of a solve on the averaged plant or the full one, whose undulation has that period.
 moray_settings heading_settings(heading_job *job, bool averaged, double period);
 
-// From *gait to the one whose first-principles plan has the least objective on a coarse mesh, within the limits of gait
-// and straight-ahead power. Error: those of moray_search; MORAY_NOT_SOLVED when no gait gets by with the power.
-moray_status heading_search_gait(heading_job *job, moray_gait *gait);
+// The gait whose first-principles plan has the least objective on a coarse mesh, within the limits of gait and
+// straight-ahead power, from `start` on; its plan must be freed even after an error. Error: those of moray_search;
+// MORAY_NOT_SOLVED when no gait gets by with the power.
+moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_heading_plan *best);
 
 // What keeps the robot from following more closely, in one paragraph.
 void heading_explain(const heading_job *job, char *text, size_t size);
 
-// Tunes and swims every trial. Error: those of moray_voyage_run.
+void heading_choose_trials(heading_job *job);
+
+// Tunes and swims every trial not yet run whose gait and plan are known. Error: those of moray_voyage_run.
 moray_status heading_run_trials(heading_job *job);
 
 // Swims one of them again, to be drawn.

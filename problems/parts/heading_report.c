@@ -131,21 +131,21 @@ static void verdict(const heading_job *job, char *text, size_t size)
 static void receding_line(const heading_job *job, const heading_trial *trial, char *text, size_t size)
 {
     const moray_recede_record *r = &trial->record[MORAY_FIRST_PRINCIPLES];
-    snprintf(text, size,
-             "%s: %d plans of %.3g periods, each %.2g s on average (the longest after the first %.2g s) and %.1f "
-             "iterations; %.1f times faster than real time%s%s",
-             trial->name, r->plans, job->look_ahead_periods, r->seconds / r->plans, r->longest,
-             (double)r->iterations / r->plans, job->horizon / r->seconds, r->failures ? "; not solved at first: " : "",
-             r->failures ? r->first_failure : "");
+    snprintf(
+        text, size,
+        "%s: %d plans of %.3g periods, each %.2g s of processor time on average (the longest after the first %.2g s) "
+        "and %.1f iterations; %.1f times faster than real time on one core%s%s",
+        trial->name, r->plans, job->look_ahead_periods, r->seconds / r->plans, r->longest,
+        (double)r->iterations / r->plans, job->horizon / r->seconds, r->failures ? "; not solved at first: " : "",
+        r->failures ? r->first_failure : "");
 }
 
-static void solver_line(const char *what, const heading_job *job, const moray_heading_plan *plan, char *text,
-                        size_t size)
+static void solver_line(const char *what, const char *scheme, const moray_heading_plan *plan, char *text, size_t size)
 {
     char line[300];
     int meshes;
     const moray_mesh_record *record = moray_solution_history(plan->solution, &meshes);
-    moray_solver_line(plan->solution, job->common.scheme, record[meshes - 1].intervals, line, sizeof line);
+    moray_solver_line(plan->solution, scheme, record[meshes - 1].intervals, line, sizeof line);
     snprintf(text, size, "%s: %s", what, line);
 }
 
@@ -170,10 +170,10 @@ static void print_all(const heading_job *job, const report_tables *t)
             receding_line(job, &job->trial[k], text, sizeof text);
             printf("%s\n", text);
         }
-    solver_line("period-averaged plan", job, &job->averaged, text, sizeof text);
+    solver_line("period-averaged plan", HEADING_AVERAGED_SCHEME, &job->averaged, text, sizeof text);
     printf("%s\n", text);
     for (int model = 0; model <= (int)job->common.model; model++) {
-        solver_line(model_names[model], job, &job->plan[model], text, sizeof text);
+        solver_line(model_names[model], job->common.scheme, &job->plan[model], text, sizeof text);
         printf("%s\n", text);
         moray_certificate_line(&job->certificate[model], text, sizeof text);
         printf("    %s\n", text);
