@@ -149,7 +149,9 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
                               const moray_heading_plan *from)
 {
     const moray_heading_spec spec = heading_spec(job, model, false);
-    const moray_settings settings = heading_settings(job, false, 2 * M_PI / gait->omega);
+    moray_settings settings = heading_settings(job, false, 2 * M_PI / gait->omega);
+    if (from->cruise.model == model && from != &job->averaged)
+        settings.barrier = 1e-6;
     moray_heading_plan *plan = &job->plan[model];
     MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, gait, from));
     MORAY_TRY(find_turn_rate(job, plan));

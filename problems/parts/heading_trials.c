@@ -123,7 +123,7 @@ static moray_status set_receding(const heading_job *job, const heading_trial *tr
                               .horizon = horizon,
                               .interval = job->replan_periods * period,
                               .look = trial->preview ? 0 : look_every};
-    spec.settings.scheme = "radau4";
+    spec.settings.scheme = "radau3";
     spec.settings.intervals = (int)ceil(4 * job->look_ahead_periods);
     spec.settings.tolerance = 1e-6;
     spec.settings.max_iterations = 200;
@@ -213,7 +213,7 @@ static moray_status tune(const heading_job *job, heading_trial *trial)
 {
     const bool lead = trial->law == HEADING_FEEDBACK && trial->preview;
     const double lower[] = {log(0.002), 0}, upper[] = {log(2), 8};
-    double x[] = {log(0.06), 2.5};
+    double x[] = {log(0.12), 2.5};
     tuning t = {.job = job, .trial = trial, .status = moray_ok()};
     const moray_search_problem problem = {.n = 1 + lead, .lower = lower, .upper = upper, .self = &t, .evaluate = judge};
     moray_search_settings settings = moray_search_settings_default();
