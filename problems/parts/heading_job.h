@@ -31,7 +31,7 @@ typedef struct heading_trial {
 typedef struct heading_job {
     moray_common common; // model: of the last plan; with complex there is one on the control-oriented model before
     char reference_text[MORAY_PATH_SIZE];
-    double horizon; // [s]
+    double horizon; // [s]; NaN: by the reference
     steer_input input;
     double weight_power, weight_steering;
     double max_error;
@@ -63,6 +63,29 @@ static inline const moray_heading_plan *heading_last_plan(const heading_job *job
 moray_status heading_plan_first(heading_job *job);
 moray_status heading_plan_last(heading_job *job);
 
+// ---- Fig. 8
+// ---------------------------------------------------------------------------------------------------------
+
+// Whether the reference is the manoeuvre of Sec. V-C.
+bool heading_is_fig8(const heading_job *job);
+
+// Sets gait, reference, and the horizon unless it is given. Error: those of moray_cruise_find and moray_voyage_run.
+moray_status heading_fig8_prepare(heading_job *job);
+
+// The paper's offset at t [m or rad].
+double heading_fig8_offset(const heading_job *job, moray_model model, double t);
+
+// The offset that a plan found beside the paper's [m or rad].
+typedef struct heading_fig8_match {
+    double paper;                 // while it turns, there and, but for the sign, back
+    double there, back, straight; // means found, without 3 s behind and before every edge
+    double rms;                   // of the difference, over the whole horizon
+} heading_fig8_match;
+heading_fig8_match heading_fig8_compare(const heading_job *job, moray_model model);
+
+// ---- Plans
+// -----------------------------------------------------------------------------------------------------------
+
 // Limits of the model, with the gait that is swum where `gait` is not NULL.
 moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool averaged);
 
@@ -84,6 +107,9 @@ moray_status heading_run_trials(heading_job *job);
 
 // Swims one of them again, to be drawn.
 moray_status heading_swim(const heading_job *job, heading_trial *trial, moray_model model, moray_voyage *voyage);
+
+// Figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of moray_voyage_run.
+moray_status heading_draw(heading_job *job);
 
 moray_json *heading_json(const heading_job *job);
 

@@ -245,9 +245,12 @@ void heading_choose_trials(heading_job *job)
 {
     const moray_model first = MORAY_CONTROL_ORIENTED, last = job->common.model;
     const int found = 1 + (int)last;
-    add(job, (heading_trial){.name = "feedback, paper's gait"});
-    add(job, (heading_trial){.name = "feedback, gait found", .gait = found});
-    add(job, (heading_trial){.name = "feedback ahead, gait found", .gait = found, .preview = true});
+    const bool given = steer_gait_given(&job->input);
+    if (!given)
+        add(job, (heading_trial){.name = "feedback, paper's gait"});
+    add(job, (heading_trial){.name = given ? "feedback" : "feedback, gait found", .gait = found});
+    add(job, (heading_trial){
+                 .name = given ? "feedback ahead" : "feedback ahead, gait found", .gait = found, .preview = true});
     for (int model = first; model <= (int)last; model++) {
         const heading_trial blind = {.name = plan_names[model],
                                      .law = HEADING_PLAN,
