@@ -42,7 +42,9 @@ show() {
 show max_speed max_speed
 show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
-show paper paper all
-print benchmark_s1 benchmark --part s1
+show search_gait search_gait
+show search_gait_free search_gait --set theta_max_deg=1:60
 show pareto pareto
 show pareto_free pareto --set theta_max_deg=1:60
+show paper paper all
+print benchmark_s1 benchmark --part s1
