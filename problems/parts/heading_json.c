@@ -89,6 +89,8 @@ moray_json *heading_json(const heading_job *job)
     const bool control = job->common.model == MORAY_CONTROL_ORIENTED;
     const moray_heading_spec spec = heading_spec(job, job->common.model, false);
     const steer_saturation share = steer_saturation_of(heading_last_plan(job)->solution, &spec.limits);
+    char text[1200];
+    heading_explain(job, text, sizeof text);
     moray_json *json = moray_json_new();
     moray_json_text(json, "problem", "heading_tracking");
     moray_json_text(json, "version", moray_version());
@@ -111,6 +113,7 @@ moray_json *heading_json(const heading_job *job)
     moray_json_number(json, "reference_rate_deg_s", moray_reference_fastest(&job->reference, 0, job->horizon) / DEG);
     moray_json_number(json, "offset_at_limit_percent", 100 * share.offset);
     moray_json_number(json, "offset_rate_at_limit_percent", 100 * share.rate);
+    moray_json_text(json, "in_words", text);
     moray_json_close(json);
     return json;
 }

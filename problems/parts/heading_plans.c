@@ -80,7 +80,7 @@ static moray_status why_not(const heading_job *job, const moray_heading_plan *pl
     char text[700];
     const moray_nlp_info *info = moray_solution_info(plan->solution);
     if (info->outcome == MORAY_NLP_INTERRUPTED)
-        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations", info->iterations);
+        return moray_error(MORAY_INTERRUPTED, "interrupted while planning; nothing is written");
     const double jump = largest_jump(job), fastest = moray_reference_fastest(&job->reference, 0, job->horizon);
     if (isfinite(job->max_error) && jump > 2 * job->max_error)
         return moray_error(
@@ -105,7 +105,13 @@ static bool show_iteration(void *observer, const moray_progress *at)
     const heading_job *job = observer;
     moray_ticker_show(&job->ticker, "heading_tracking: iteration %d, objective %.6g, violation %.1e", at->iteration,
                       at->objective, at->infeasibility);
-    return true;
+    return !moray_interrupted();
+}
+
+bool heading_go_on(void *observer, const moray_search_progress *progress)
+{
+    (void)observer, (void)progress;
+    return !moray_interrupted();
 }
 
 moray_settings heading_settings(heading_job *job, bool averaged, double period)

@@ -122,13 +122,20 @@ static void make_tables(const heading_job *job, report_tables *t)
 // ---- In words
 // ---------------------------------------------------------------------------------------------------------
 
-// The best of the trials that pass the filter, by RMS on the first-principles model.
+// Whether the trial swims on the paper's gait, and that takes more than the power allowed.
+static bool beyond_power(const heading_job *job, const heading_trial *trial)
+{
+    const moray_cruise *paper = &job->cruise[0][job->common.model];
+    return trial->gait == 0 && paper->power > (1 + 1e-6) * heading_spec(job, paper->model, false).limits.power;
+}
+
+// The best of the trials that pass the filter and keep the limits, by RMS on the first-principles model.
 static const heading_trial *best_trial(const heading_job *job, bool feedback, bool preview)
 {
     const heading_trial *best = NULL;
     for (int k = 0; k < job->n_trials; k++) {
         const heading_trial *trial = &job->trial[k];
-        if ((trial->law == HEADING_FEEDBACK) == feedback && trial->preview == preview &&
+        if ((trial->law == HEADING_FEEDBACK) == feedback && trial->preview == preview && !beyond_power(job, trial) &&
             (!best || trial->score[1].rms < best->score[1].rms))
             best = trial;
     }
