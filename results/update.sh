@@ -43,6 +43,7 @@ show max_speed max_speed
 show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
 show paper paper all
+show classics classics all
 print benchmark_s1 benchmark --part s1
 show pareto pareto
 show pareto_free pareto --set theta_max_deg=1:60
