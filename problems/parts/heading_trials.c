@@ -3,9 +3,14 @@
 
 #include "heading_job.h"
 
-static const double look_every = 0.1;             // of a pilot [s]
-static const double rough = 1e-6, careful = 1e-8; // tolerances of simulations
-enum { per_second = 20 };
+static const double look_every = 0.1;     // of a pilot, or for a new command [s]
+static const double command_change = DEG; // that calls for a new plan
+
+// How a simulation is run: tolerance, samples a second.
+typedef struct accuracy {
+    double tolerance, per_second;
+} accuracy;
+static const accuracy rough = {1e-6, 10}, careful = {1e-8, 20};
 
 // ---- Helms
 // ------------------------------------------------------------------------------------------------------------
@@ -101,8 +106,10 @@ static moray_status set_receding(const heading_job *job, const heading_trial *tr
     const moray_cruise *cruise = &job->cruise[trial->gait][trial->plan];
     const double period = 2 * M_PI / cruise->gait.omega, horizon = job->look_ahead_periods * period;
     const double scale = offset_ratio(job, trial, trial->plan, model);
-    h->replanner = (moray_heading_replanner){
-        .spec = heading_spec(job, trial->plan, false), .horizon = horizon, .preview = trial->preview};
+    h->replanner = (moray_heading_replanner){.spec = heading_spec(job, trial->plan, false),
+                                             .horizon = horizon,
+                                             .preview = trial->preview,
+                                             .tolerance = command_change};
     h->replanner.spec.limits = replanning_limits(job, trial, model, scale);
     h->replanner.spec.max_error = MORAY_INFINITY;
     memcpy(h->replanner.spec.undulation, cruise->undulation, sizeof cruise->undulation);
@@ -114,8 +121,9 @@ static moray_status set_receding(const heading_job *job, const heading_trial *tr
                               .measured = &job->cruise[trial->gait][model],
                               .scale = scale,
                               .horizon = horizon,
-                              .interval = job->replan_periods * period};
-    spec.settings.scheme = "radau4";
+                              .interval = job->replan_periods * period,
+                              .look = trial->preview ? 0 : look_every};
+    spec.settings.scheme = "radau3";
     spec.settings.intervals = (int)ceil(4 * job->look_ahead_periods);
     spec.settings.tolerance = 1e-6;
     spec.settings.max_iterations = 200;
@@ -139,7 +147,7 @@ static moray_status set_helm(const heading_job *job, const heading_trial *trial,
 // ---- Swimming
 // ---------------------------------------------------------------------------------------------------------
 
-static moray_status swim(const heading_job *job, heading_trial *trial, moray_model model, double tolerance,
+static moray_status swim(const heading_job *job, heading_trial *trial, moray_model model, accuracy how,
                          moray_voyage *voyage)
 {
     helmsman h;
@@ -151,8 +159,8 @@ static moray_status swim(const heading_job *job, heading_trial *trial, moray_mod
                                     .current = {job->common.current[0], job->common.current[1]},
                                     .helm = &h.helm,
                                     .duration = job->horizon,
-                                    .intervals = (int)ceil(per_second * job->horizon),
-                                    .tolerance = tolerance};
+                                    .intervals = (int)ceil(how.per_second * job->horizon),
+                                    .tolerance = how.tolerance};
     const moray_status status = moray_voyage_run(voyage, &plan);
     if (h.recede)
         trial->record[model] = *moray_recede_record_of(h.recede);
@@ -165,10 +173,10 @@ moray_status heading_swim(const heading_job *job, heading_trial *trial, moray_mo
     return swim(job, trial, model, careful, voyage);
 }
 
-static moray_status score(const heading_job *job, heading_trial *trial, moray_model model, double tolerance)
+static moray_status score(const heading_job *job, heading_trial *trial, moray_model model, accuracy how)
 {
     moray_voyage voyage;
-    MORAY_TRY(swim(job, trial, model, tolerance, &voyage));
+    MORAY_TRY(swim(job, trial, model, how, &voyage));
     trial->score[model] = moray_voyage_heading_score(&voyage, &job->cruise[trial->gait][model], &job->reference);
     moray_voyage_free(&voyage);
     return moray_ok();
@@ -205,14 +213,14 @@ static moray_status tune(const heading_job *job, heading_trial *trial)
 {
     const bool lead = trial->law == HEADING_FEEDBACK && trial->preview;
     const double lower[] = {log(0.002), 0}, upper[] = {log(2), 8};
-    double x[] = {log(0.06), 2.5};
+    double x[] = {log(0.12), 2.5};
     tuning t = {.job = job, .trial = trial, .status = moray_ok()};
     const moray_search_problem problem = {.n = 1 + lead, .lower = lower, .upper = upper, .self = &t, .evaluate = judge};
     moray_search_settings settings = moray_search_settings_default();
     moray_search_info info;
     settings.method = MORAY_SEARCH_COBYLA;
-    settings.x_tolerance = 1e-3;
-    settings.f_tolerance = 1e-4;
+    settings.x_tolerance = 3e-3;
+    settings.f_tolerance = 3e-4;
     settings.max_evaluations = job->evaluations * (1 + lead);
     MORAY_TRY(moray_search(&problem, &settings, x, &info));
     trial->gain = exp(x[0]);
@@ -233,13 +241,16 @@ static void add(heading_job *job, heading_trial trial)
     job->trial[job->n_trials++] = trial;
 }
 
-static void choose_trials(heading_job *job)
+void heading_choose_trials(heading_job *job)
 {
     const moray_model first = MORAY_CONTROL_ORIENTED, last = job->common.model;
     const int found = 1 + (int)last;
-    add(job, (heading_trial){.name = "feedback, paper's gait"});
-    add(job, (heading_trial){.name = "feedback, gait found", .gait = found});
-    add(job, (heading_trial){.name = "feedback ahead, gait found", .gait = found, .preview = true});
+    const bool given = steer_gait_given(&job->input);
+    if (!given)
+        add(job, (heading_trial){.name = "feedback, paper's gait"});
+    add(job, (heading_trial){.name = given ? "feedback" : "feedback, gait found", .gait = found});
+    add(job, (heading_trial){
+                 .name = given ? "feedback ahead" : "feedback ahead, gait found", .gait = found, .preview = true});
     for (int model = first; model <= (int)last; model++) {
         const heading_trial blind = {.name = plan_names[model],
                                      .law = HEADING_PLAN,
@@ -262,16 +273,32 @@ static void choose_trials(heading_job *job)
         add(job, (heading_trial){.name = "receding, nothing known ahead", .law = HEADING_RECEDING, .gait = found});
 }
 
+static bool can_run(const heading_job *job, const heading_trial *trial)
+{
+    const bool gait_known = job->cruise[trial->gait][0].speed > 0;
+    const bool plan_known = trial->law == HEADING_FEEDBACK || job->plan[trial->plan].solution;
+    return !trial->run && gait_known && plan_known;
+}
+
+static moray_status run_trial(heading_job *job, heading_trial *trial)
+{
+    moray_ticker_show(&job->ticker, "heading_tracking: %s", trial->name);
+    if (trial->law == HEADING_FEEDBACK || trial->law == HEADING_BOTH)
+        MORAY_TRY(tune(job, trial));
+    for (int model = 0; model < 2; model++)
+        MORAY_TRY(score(job, trial, (moray_model)model, careful));
+    trial->run = true;
+    moray_ticker_note(&job->ticker,
+                      "%s: RMS heading error %.3f deg on the control-oriented model, %.3f deg on the "
+                      "first-principles model",
+                      trial->name, trial->score[0].rms / DEG, trial->score[1].rms / DEG);
+    return moray_ok();
+}
+
 moray_status heading_run_trials(heading_job *job)
 {
-    choose_trials(job);
-    for (int k = 0; k < job->n_trials; k++) {
-        heading_trial *trial = &job->trial[k];
-        moray_ticker_show(&job->ticker, "heading_tracking: %s", trial->name);
-        if (trial->law == HEADING_FEEDBACK || trial->law == HEADING_BOTH)
-            MORAY_TRY(tune(job, trial));
-        for (int model = 0; model < 2; model++)
-            MORAY_TRY(score(job, trial, (moray_model)model, careful));
-    }
+    for (int k = 0; k < job->n_trials; k++)
+        if (can_run(job, &job->trial[k]))
+            MORAY_TRY(run_trial(job, &job->trial[k]));
     return moray_ok();
 }
