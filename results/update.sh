@@ -47,6 +47,7 @@ show search_gait_free search_gait --set theta_max_deg=1:60
 show pareto pareto
 show pareto_free pareto --set theta_max_deg=1:60
 show paper paper all
+show classics classics all
 print benchmark_s1 benchmark --part s1
 print benchmark_horizon benchmark --part horizon --set repeats=3
 show heading_tracking heading_tracking --current 0.1,0.1
