@@ -16,6 +16,7 @@ struct gait_endpoint {
     bool revolute;    // amplitude by (27), else by (33) with links of length L
     double L;
     int links;
+    int series;      // parameters of a series, omega the first, which has no amplitude; 0: those of a gait
     bool head, tail; // a taper above and below 0 is allowed
     moray_gait_goal goal;
     bool power, rate, speed;
