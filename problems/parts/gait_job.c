@@ -110,7 +110,7 @@ moray_status gait_job_prepare(gait_job *job)
     return moray_gait_trial_run(&job->basin, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
 }
 
-static moray_status work(gait_job *job)
+moray_status gait_job_work(gait_job *job)
 {
     MORAY_TRY(gait_job_prepare(job));
     const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
@@ -160,7 +160,7 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
         return exit_code;
     job->ticker = moray_ticker_start(stderr, job->common.quiet);
     moray_interrupt_begin();
-    moray_status status = program->work ? program->work(job) : work(job);
+    moray_status status = program->work ? program->work(job) : gait_job_work(job);
     moray_interrupt_end();
     moray_ticker_end(&job->ticker);
     if (!moray_failed(status))
