@@ -42,7 +42,13 @@ show() {
 show max_speed max_speed
 show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
-show paper paper all
-print benchmark_s1 benchmark --part s1
+show search_gait search_gait
+show search_gait_free search_gait --set theta_max_deg=1:60
 show pareto pareto
 show pareto_free pareto --set theta_max_deg=1:60
+show paper paper all
+show classics classics all
+print benchmark_s1 benchmark --part s1
+print benchmark_horizon benchmark --part horizon --set repeats=3
+show heading_tracking heading_tracking --current 0.1,0.1
+show heading_fig8 heading_tracking --set reference=fig8 --current 0.1,0.1

@@ -164,8 +164,8 @@ typedef struct moray_samples {
 typedef struct moray_solution moray_solution;
 
 // A guess: samples of each phase (piecewise linear, stretched to the phase's own first and last time), parameters
-// s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, u in the middle
-// of its bounds. Fill it by hand, or by one of the functions below.
+// s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, or as at the one
+// end that has bounds; u in the middle of its bounds. Fill it by hand, or by one of the functions below.
 typedef struct moray_guess {
     const moray_samples *phase;
     const double *s;

@@ -120,6 +120,8 @@ static void times_row(struct sheet *sheet, const char *label, const cost *c)
     double ms[MORAY_TABLE_COLUMNS];
     for (int k = 0; k < PIECES; k++)
         ms[k] = 1000 * c->piece[k];
+    ms[PIECES] = c->iterations;
+    ms[PIECES + 1] = 1000 * (cost_evaluation(c) + c->piece[IPOPT] + c->piece[LINEAR]) / c->iterations;
     add(sheet, label, ms);
 }
 
@@ -139,6 +141,8 @@ static void totals_row(struct sheet *sheet, const char *label, const cost *c)
 
 static const char *const time_columns[MORAY_TABLE_COLUMNS] = {"set-up",  "function", "Jacobian",
                                                               "Hessian", "Ipopt",    "linear solver"};
+static const char *const growth_columns[MORAY_TABLE_COLUMNS] = {
+    "set-up", "function", "Jacobian", "Hessian", "Ipopt", "linear solver", "iterations", "an iteration"};
 static const char *const size_columns[MORAY_TABLE_COLUMNS] = {"iterations", "variables",    "constraints",
                                                               "nnz(J)",     "nnz(Hessian)", "objective"};
 static const char *const total_columns[MORAY_TABLE_COLUMNS] = {"total", "wall", "evaluation", "total/floor",
@@ -172,7 +176,7 @@ static void print_growth(const growth *g)
         times_row(&times, label, &g->cost[k]);
     }
     snprintf(title, sizeof title, "%s over %s: processor time [ms]", g->name, g->over);
-    print(&times, title, time_columns);
+    print(&times, title, growth_columns);
     growth_exponents(g, exponent);
     printf("grows with the power");
     for (int i = 0; i < EXPONENTS; i++)
