@@ -52,3 +52,5 @@ print benchmark_s1 benchmark --part s1
 print benchmark_horizon benchmark --part horizon --set repeats=3
 show heading_tracking heading_tracking --current 0.1,0.1
 show heading_fig8 heading_tracking --set reference=fig8 --current 0.1,0.1
+show sensitivity sensitivity
+show sensitivity_control sensitivity --model control

@@ -32,6 +32,7 @@ typedef struct sensitivity_row {
     const char *unit;
     double value;         // in the unit
     double scale, step;   // [unit] what it is measured by; of the differences
+    bool current;         // which is measured by the speed
     double slope[SLOPES]; // from the KKT system
     double again[SLOPES]; // from solving again at both sides; NaN where that fails
     double swum[2];       // first-principles speed and power of the gaits that the slopes promise, by simulation
@@ -119,6 +120,10 @@ typedef struct sensitivity_findings {
 } sensitivity_findings;
 
 void sensitivity_tables(const sensitivity *run, sensitivity_findings *found);
+
+// Change of the speed or power as swum on the first-principles model, as a share of what it is there, by the
+// parameter's share.
+double sensitivity_swum_share(const sensitivity *run, const sensitivity_row *row, int quantity);
 
 // Quantities that may move: the taper only where it is free.
 int sensitivity_quantities(const sensitivity *run);

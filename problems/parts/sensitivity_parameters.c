@@ -106,7 +106,8 @@ void sensitivity_parameter_describe(const sensitivity_parameter *parameter, cons
     snprintf(row->name, sizeof row->name, "%s%s", parameter->name, which);
     row->unit = parameter->unit;
     row->value = *place_in(parameter, &now) / parameter->factor;
-    row->scale = parameter->kind == CURRENT ? speed : fabs(row->value);
+    row->current = parameter->kind == CURRENT;
+    row->scale = row->current ? speed : fabs(row->value);
 }
 
 // The fields that follow from the geometry follow it; those that were given stay.

@@ -39,22 +39,24 @@ static void say_confirmation(const sensitivity *run, sensitivity_findings *f)
 // Where the control-oriented model errs most about the speed.
 static void say_disagreement(const sensitivity *run, sensitivity_findings *f)
 {
-    const sensitivity_row *worst = NULL;
-    double most = 0;
+    double most = 0, own = 0, swum = 0;
+    int worst = -1;
     for (int k = 0; k < run->rows; k++) {
         const sensitivity_row *row = &run->row[k];
-        const double difference = fabs(row->slope[SLOPE_SPEED] - row->swum[SLOPE_SPEED]) * row->scale;
-        if (difference > most) {
-            most = difference;
-            worst = row;
+        const double promised = row->slope[SLOPE_SPEED] * row->scale / run->size[SLOPE_SPEED];
+        const double found = sensitivity_swum_share(run, row, SLOPE_SPEED);
+        if (fabs(promised - found) > most) {
+            most = fabs(promised - found);
+            own = promised, swum = found;
+            worst = k;
         }
     }
-    if (worst)
+    if (worst >= 0)
         say(f,
             "These are slopes of the control-oriented model. The same changes of parameter and gait swum on the "
-            "first-principles model are in the lines and columns beside; they differ most for %s: %.4g and %.4g m/s "
-            "per %s.\n",
-            worst->name, worst->slope[SLOPE_SPEED], worst->swum[SLOPE_SPEED], worst->unit);
+            "first-principles model are in the lines and columns beside; in per cent of speed they differ most for %s: "
+            "%+.3f promised, %+.3f swum.\n",
+            run->row[worst].name, own, swum);
 }
 
 // The first changes of the active set, as far as tangents tell.

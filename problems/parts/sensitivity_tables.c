@@ -16,9 +16,17 @@ static double shown(const sensitivity *run, const sensitivity_row *row, double s
 }
 
 // Per cent of the quantity by per cent of the parameter.
-static double elasticity(const sensitivity *run, const sensitivity_row *row, double slope, int quantity, double noise)
+static double elasticity(const sensitivity *run, const sensitivity_row *row, int quantity)
 {
-    return shown(run, row, slope, quantity, noise) * row->scale / run->size[quantity];
+    return shown(run, row, row->slope[quantity], quantity, rounding) * row->scale / run->size[quantity];
+}
+
+double sensitivity_swum_share(const sensitivity *run, const sensitivity_row *row, int quantity)
+{
+    const moray_steady *swum = &last_stage(&run->job)->trial.steady[MORAY_FIRST_PRINCIPLES];
+    const double speed = moray_course_speed(swum, run->job.common.course);
+    const double size = quantity == SLOPE_SPEED ? speed : swum->power, scale = row->current ? speed : row->scale;
+    return shown(run, row, row->swum[quantity], quantity, steadiness) * scale / size;
 }
 
 int sensitivity_quantities(const sensitivity *run)
@@ -111,9 +119,9 @@ static void tell_shares(const sensitivity *run, sensitivity_findings *f)
         const sensitivity_row *from = &run->row[k];
         moray_table_row *row = add_row(f, from->name, NULL);
         for (int i = 0; i < n; i++)
-            row->value[i] = elasticity(run, from, from->slope[every[i]], every[i], rounding);
+            row->value[i] = elasticity(run, from, every[i]);
         for (int i = 0; i < 2; i++)
-            row->value[n + i] = elasticity(run, from, from->swum[i], i, steadiness);
+            row->value[n + i] = sensitivity_swum_share(run, from, i);
     }
 }
 
