@@ -49,5 +49,6 @@ int main(int argc, char **argv)
 {
     static sensitivity run; // large
     run = (sensitivity){.job = gait_job_defaults(&program), .predicted = {NAN, NAN}};
+    run.job.refinements = 4;
     return gait_job_main(&program, &run.job, argc, argv);
 }
