@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "classics/classics.h"
 #include "moray/moray.h"
 
 #define DEG (M_PI / 180)
@@ -83,13 +84,20 @@ moray_status s1_begin(s1_case *c);
 void s1_end(s1_case *c);
 subject s1_subject(s1_case *c);
 
+// A textbook problem on the mesh it begins with.
+typedef struct classic_case {
+    const struct classic *classic;
+    moray_ocp *ocp; // owned
+} classic_case;
+subject classic_subject(classic_case *c);
+
 // Simulated seconds per processor second, median of `repeats` simulations of 45 s of the paper's gait from rest.
 // Error: that of moray_swim_run.
 moray_status simulation_rate(moray_model model, int links, int repeats, double *rate);
 
 // ---- Results -------------------------------------------------------------------------------------------------------
 
-enum { MOST_CASES = 32, MOST_POINTS = 8 };
+enum { MOST_CASES = 64, MOST_GROWTHS = 4, MOST_POINTS = 8 };
 
 typedef struct named_cost {
     const char *name;
@@ -117,12 +125,15 @@ typedef struct benchmark {
     int part, repeats, most_intervals, most_links;
     int n_cases, n_growths;
     named_cost cases[MOST_CASES]; // S1 first, where it is among them
-    growth growths[4];
+    growth growths[MOST_GROWTHS];
     simulated simulation;
     moray_ticker ticker;
 } benchmark;
 
-// Tables or JSON on standard output. Error: MORAY_IO, MORAY_MEMORY.
+// Tables or JSON on standard output; JSON and figures of the growth in the directory of --out. Error: MORAY_IO,
+// MORAY_MEMORY.
 moray_status benchmark_report(const benchmark *run);
+moray_status benchmark_json(const benchmark *run, FILE *file);
+moray_status benchmark_files(const benchmark *run);
 
 #endif
