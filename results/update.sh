@@ -49,3 +49,4 @@ show pareto_free pareto --set theta_max_deg=1:60
 show paper paper all
 show classics classics all
 print benchmark_s1 benchmark --part s1
+show benchmark benchmark --set repeats=3 --set most_intervals=1000
