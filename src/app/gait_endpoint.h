@@ -34,7 +34,7 @@ void gait_event_names(const struct gait_endpoint *endpoint, const char **name);
 
 // What the n path outputs are called: joint efforts if any, then angles of the links, then rates of the joints. name[n]
 // into text[n].
-typedef char gait_name[24];
+typedef char gait_name[32];
 void gait_path_names(int n, int efforts, int links, gait_name *text, const char **name);
 
 // Bounds of the amplitude event for a range of theta_max: (33) a / (L cos(delta/2)) = sin theta_max, or
