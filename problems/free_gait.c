@@ -160,7 +160,7 @@ static motion *start_motion(free_gait *run, int harmonics, double taper)
     if (harmonics > 0)
         snprintf(m->name, sizeof m->name, "%d harmonic%s", harmonics, harmonics > 1 ? "s" : "");
     else
-        strcpy(m->name, taper > 0 ? "gait (25), tapered" : "gait (25)");
+        strcpy(m->name, taper > 0 ? "gait (25), tapered" : "gait (25) by link angles");
     moray_ticker_show(&run->job.ticker, "%s: %s", run->job.name, m->name);
     return m;
 }

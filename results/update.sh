@@ -46,3 +46,7 @@ show paper paper all
 print benchmark_s1 benchmark --part s1
 show pareto pareto
 show pareto_free pareto --set theta_max_deg=1:60
+show free_gait free_gait --set harmonics=5
+show free_gait_strict free_gait --set link_angle_deg=20
+show free_gait_wide free_gait --set theta_max_deg=1:60 --set harmonics=5
+show free_gait_control free_gait --model control
