@@ -84,10 +84,10 @@ moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, mora
 // left out): at[joints (1 + 2 harmonics)].
 void moray_series_of_gait(const moray_gait *gait, int joints, int harmonics, double *at);
 
-// A series of the control-oriented model for the first-principles model, into at as long as series->at: the links of
-// the one have the angles that (29) gives those of the other, each harmonic linearised about its amplitude. An
-// alternation along the body, to which (29) is blind, is that of a wave. Of a gait (25) it is moray_gait_map (tapered,
-// nearly); offsets go by the ratio of the first harmonics.
+// A series of the control-oriented model for the first-principles model, into at as long as series->at: every joint's
+// share in every harmonic keeps the wave of link angles that it has in its surroundings, of a phase shift delta taken
+// from its neighbours, with (27) and (33) for that delta. Of a gait (25) it is moray_gait_map; offsets go by the ratio
+// of the first harmonics.
 void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at);
 
 // ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------

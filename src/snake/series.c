@@ -68,74 +68,42 @@ static double complex amplitude_of(const moray_series *series, int harmonic, int
     return p[0] + I * p[series->joints];
 }
 
-// Phase shift from joint to joint, where the wave is.
-static double shift_of(const moray_series *series, int harmonic)
+// Phase shift from joint to joint, over both neighbours where there are two.
+static double shift_at(const moray_series *series, int harmonic, int joint)
 {
-    double complex sum = 0;
-    for (int i = 0; i + 1 < series->joints; i++)
-        sum += amplitude_of(series, harmonic, i + 1) * conj(amplitude_of(series, harmonic, i));
-    return carg(sum);
+    const int last = series->joints - 1, from = joint > 0 ? joint - 1 : 0, to = joint < last ? joint + 1 : last;
+    double shift = 0;
+    for (int i = from; i < to; i++)
+        shift += carg(amplitude_of(series, harmonic, i + 1) * conj(amplitude_of(series, harmonic, i)));
+    return to > from ? shift / (to - from) : 0;
 }
 
-static int sign_of(int link)
+// What turns an amplitude of the control-oriented model into that of the other where the wave of link angles has an
+// amplitude of `angle` and the phase shift delta; of either sign, as delta is.
+static double ratio(const moray_robot *robot, double delta, double angle)
 {
-    return link % 2 ? -1 : 1;
-}
-
-// Sine of a link's angle in one harmonic of (29), from that of the link before; all of them up to an alternation along
-// the body, to which (29) is blind.
-static double complex next_link(const moray_robot *robot, const moray_series *series, int harmonic, int link,
-                                double complex before)
-{
-    return link == 0 ? 0 : amplitude_of(series, harmonic, link - 1) / robot->l - before;
-}
-
-// The c of the alternation +-c that belongs to links 0, 1, ..: it leaves least of
-// theta_{i-1} - 2 cos(delta) theta_i + theta_{i+1}, which is 0 for a wave of phase shift delta.
-static double complex alternation(const moray_robot *robot, const moray_series *series, int harmonic)
-{
-    const int n = series->joints;
-    const double twice = 2 * cos(shift_of(series, harmonic));
-    double complex before = 0, here = next_link(robot, series, harmonic, 1, 0), sum = 0;
-    for (int i = 1; i < n; i++) {
-        const double complex next = next_link(robot, series, harmonic, i + 1, here);
-        sum += sign_of(i) * (before - twice * here + next);
-        before = here;
-        here = next;
-    }
-    return n > 1 ? sum / ((n - 1) * (2 + twice)) : here / 2;
-}
-
-// Mean amplitude of the links' angles over that of their sines, by the first harmonic.
-static double stretch_of(const moray_robot *robot, const moray_series *series)
-{
-    const double complex c = alternation(robot, series, 1);
-    double complex here = 0;
-    double mean = 0;
-    for (int i = 0; i <= series->joints; i++) {
-        here = next_link(robot, series, 1, i, here);
-        mean += cabs(here + sign_of(i) * c) / (series->joints + 1);
-    }
-    return mean > 0 && mean < 1 ? asin(mean) / mean : 1;
+    const double stretch = angle > 0 ? sin(angle) / angle : 1; // of (33) over (27)
+    return tan(delta / 2) / (robot->l * stretch);
 }
 
 void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at)
 {
-    // As with the gait (25), time starts where the first harmonics agree: a quarter of a period later.
-    static const double complex later[4] = {1, I, -1, -I};
+    // The wave of (1) is a quarter of a period behind that of (29), at each harmonic of its own; as with the gait (25),
+    // time starts where the first harmonics agree.
+    static const double complex quarter[4] = {-I, 1, I, -1};
     const int n = series->joints;
-    const double stretch = stretch_of(robot, series);
-    for (int i = 0; i < n; i++) // erratum E3
-        at[i] = -series->at[i] * stretch * fabs(tan(shift_of(series, 1) / 2)) / robot->l;
-    for (int k = 1; k <= series->harmonics; k++) {
-        const double complex c = alternation(robot, series, k);
-        double complex here = 0;
+    double middle = 0; // amplitude of link angles, of the joints' mean
+    for (int i = 0; i < n; i++)
+        middle += moray_theta_max_from_amplitude(robot, MORAY_CONTROL_ORIENTED, cabs(amplitude_of(series, 1, i)),
+                                                 shift_at(series, 1, i)) /
+                  n;
+    for (int i = 0; i < n; i++)
+        at[i] = -series->at[i] * ratio(robot, fabs(shift_at(series, 1, i)), middle); // erratum E3
+    for (int k = 1; k <= series->harmonics; k++)
         for (int i = 0; i < n; i++) {
-            const double complex next = next_link(robot, series, k, i + 1, here);
-            const double complex bend = (here - next + 2 * sign_of(i) * c) * later[k % 4] * stretch; // (1)
-            at[series_place(n, k, i)] = creal(bend);
-            at[series_place(n, k, i) + n] = cimag(bend);
-            here = next;
+            const double complex z = amplitude_of(series, k, i) * quarter[k % 4];
+            const double factor = ratio(robot, shift_at(series, k, i), middle);
+            at[series_place(n, k, i)] = creal(z) * factor;
+            at[series_place(n, k, i) + n] = cimag(z) * factor;
         }
-    }
 }
