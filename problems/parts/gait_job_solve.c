@@ -51,19 +51,24 @@ static bool show_iteration(void *observer, const moray_progress *at)
     return !moray_interrupted();
 }
 
+moray_settings gait_job_settings(gait_job *job)
+{
+    return (moray_settings){.scheme = job->common.scheme,
+                            .intervals = job->common.intervals,
+                            .tolerance = job->common.tol,
+                            .mesh_tolerance = 1e-6,
+                            .max_refinements = job->refinements,
+                            .max_iterations = 1000,
+                            .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
+                            .own_scaling = true,
+                            .progress = show_iteration,
+                            .observer = job};
+}
+
 moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,
                                  const moray_swim_track *orbit, moray_solution **solution)
 {
-    const moray_settings settings = {.scheme = job->common.scheme,
-                                     .intervals = job->common.intervals,
-                                     .tolerance = job->common.tol,
-                                     .mesh_tolerance = 1e-6,
-                                     .max_refinements = job->refinements,
-                                     .max_iterations = 1000,
-                                     .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
-                                     .own_scaling = true,
-                                     .progress = show_iteration,
-                                     .observer = job};
+    const moray_settings settings = gait_job_settings(job);
     return moray_gait_problem_solve(problem, &settings, gait, orbit, solution);
 }
 

@@ -12,7 +12,9 @@ struct moray_gait_problem {
     moray_plant_size size;
     moray_map plant, ends;
     struct gait_endpoint endpoint;
-    moray_bounds *block; // x, x0, c, e in turn
+    moray_bounds *block;   // x0, c, e in turn
+    const char **names;    // of e, then of c
+    gait_name *path_names; // that they point into
     moray_ocp *ocp;
 };
 
@@ -115,13 +117,18 @@ static moray_status make_endpoint(moray_gait_problem *problem)
     return gait_endpoint_map(&problem->ends, &problem->endpoint);
 }
 
+static int path_efforts(const moray_gait_problem *problem)
+{
+    return limited(problem->spec.limits.joint_effort) ? problem->spec.robot.links - 1 : 0;
+}
+
 static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
-    const int forces = limited(limits->joint_effort) ? problem->spec.robot.links - 1 : 0;
+    const int efforts = path_efforts(problem);
     for (int i = 0; i < problem->size.nc; i++)
-        c[i] = i < forces ? moray_between(-limits->joint_effort, limits->joint_effort)
-                          : moray_between(-limits->theta_max.upper, limits->theta_max.upper);
+        c[i] = i < efforts ? moray_between(-limits->joint_effort, limits->joint_effort)
+                           : moray_between(-limits->theta_max.upper, limits->theta_max.upper);
 }
 
 static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e)
@@ -155,13 +162,17 @@ static moray_status make_ocp(moray_gait_problem *problem)
     const int nx = problem->size.nx, nc = problem->size.nc, ne = problem->endpoint.events,
               at = problem->endpoint.position;
     problem->block = calloc((size_t)(nx + nc + ne), sizeof *problem->block);
-    if (!problem->block)
+    problem->names = calloc((size_t)(ne + nc), sizeof *problem->names);
+    problem->path_names = calloc((size_t)nc + 1, sizeof *problem->path_names);
+    if (!problem->block || !problem->names || !problem->path_names)
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
     moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc;
     for (int r = 0; r < nx; r++)
         x0[r] = r == at || r == at + 1 ? moray_fixed(0) : moray_free();
     fill_path_bounds(problem, c);
     fill_event_bounds(problem, e);
+    gait_event_names(&problem->endpoint, problem->names);
+    gait_path_names(nc, path_efforts(problem), problem->path_names, problem->names + ne);
     const bool control = problem->spec.model == MORAY_CONTROL_ORIENTED;
     const double largest = control ? 2 * problem->spec.robot.l * sin(limits->theta_max.upper) // of a, by (33)
                                    : 2 * limits->theta_max.upper;                             // of alpha, by (27)
@@ -173,9 +184,11 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .nq = problem->size.nq,
         .map = &problem->plant,
         .t0 = moray_fixed(0),
-        .tf = moray_between(2 * M_PI / limits->omega.upper, 2 * M_PI / limits->omega.lower),
+        .tf =
+            moray_between(1.8 * M_PI / limits->omega.upper, 2.2 * M_PI / limits->omega.lower), // omega alone is to bind
         .x0 = {x0, nx},
         .c = {c, nc},
+        .c_names = problem->names + ne,
         .x_names = problem->spec.joints == MORAY_JOINTS_ON_GAIT ? gait_states[problem->spec.model] : NULL,
     };
     return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = goals[problem->spec.goal],
@@ -186,6 +199,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
                                                           .s_names = s_names[problem->spec.model],
                                                           .ne = ne,
                                                           .e = {e, ne},
+                                                          .e_names = problem->names,
                                                           .endpoint_map = &problem->ends});
 }
 
@@ -217,6 +231,8 @@ void moray_gait_problem_free(moray_gait_problem *problem)
     moray_map_release(&problem->plant);
     gait_endpoint_free(&problem->endpoint);
     free(problem->block);
+    free(problem->names);
+    free(problem->path_names);
     free(problem);
 }
 
@@ -225,11 +241,13 @@ const moray_ocp *moray_gait_problem_ocp(const moray_gait_problem *problem)
     return problem->ocp;
 }
 
+enum { most_states = 6 + 2 * 512 };
+
 moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem, const moray_solution *solution)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
     const int at = problem->endpoint.position;
-    double t0, tf, x[6 + 2 * 512];
+    double t0, tf, x[most_states];
     moray_gait_promise promise = {.gait = moray_gait_from_parameters(moray_solution_parameters(solution))};
     moray_solution_times(solution, 0, &t0, &tf);
     moray_solution_at(solution, 0, tf, x, NULL);
@@ -241,6 +259,23 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
     if (problem->endpoint.power)
         promise.power_price = moray_solution_event_multipliers(solution)[problem->endpoint.power_event];
     return promise;
+}
+
+moray_gait_slope moray_gait_problem_slope(const moray_gait_problem *problem, const moray_solution *solution,
+                                          const moray_sensitivity *sensitivity)
+{
+    const moray_gait_promise promise = moray_gait_problem_promise(problem, solution);
+    const int at = problem->endpoint.position;
+    const double *course = problem->endpoint.course;
+    double t0, tf, d_t0, d_tf, d_x0[most_states], d_xf[most_states];
+    moray_solution_times(solution, 0, &t0, &tf);
+    moray_sensitivity_times(sensitivity, 0, &d_t0, &d_tf);
+    moray_sensitivity_ends(sensitivity, 0, d_x0, d_xf);
+    const double d_way = d_xf[at] * course[0] + d_xf[at + 1] * course[1];
+    const double d_work = moray_sensitivity_integrals(sensitivity, 0)[0];
+    return (moray_gait_slope){.gait = moray_gait_from_parameters(moray_sensitivity_parameters(sensitivity)),
+                              .course_speed = (d_way - promise.course_speed * d_tf) / tf,
+                              .power = (d_work - promise.power * d_tf) / tf};
 }
 
 // The plant's state from the swimmer's.
