@@ -16,6 +16,7 @@
 #include "moray/ocp.h"
 #include "moray/ode.h"
 #include "moray/orbit.h"
+#include "moray/path.h"
 #include "moray/recede.h"
 #include "moray/results.h"
 #include "moray/run.h"
