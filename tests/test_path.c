@@ -219,7 +219,7 @@ static void test_derivatives(moray_model model, bool averaged, int links, double
     moray_path path;
     moray_path_problem problem;
     moray_ocp_derivative_report report;
-    CHECK_OK(moray_path_read(&path, "0,0 3,0 5,3", 1), "a path");
+    CHECK_OK(moray_path_read(&path, "0,0 2,0 2,4 6,4", 1.9), "a path");
     moray_path_spec spec = spec_of(&path, links);
     spec.model = model;
     spec.averaged = averaged;

@@ -43,6 +43,13 @@ moray_path_point moray_path_at(const moray_path *path, moray_num along);
 // the path (x, y) lies.
 void moray_path_project(const moray_path *path, double x, double y, double *along, double *across);
 
+// Who keeps in mind where on the path the swimmer is; begin with where it starts.
+typedef struct moray_path_seeker {
+    const moray_path *path;
+    double along;
+} moray_path_seeker;
+bool moray_path_seek(const moray_swim_sample *sample, void *seeker); // an observer: false at the end of the path
+
 // Whether a swimmer of this speed through the water makes way along the whole path in the current. Error:
 // MORAY_NOT_SOLVED naming the leg and the numbers where it does not.
 moray_status moray_path_passable(const moray_path *path, double speed, const double current[2]);
@@ -76,7 +83,7 @@ typedef struct moray_path_spec {
 } moray_path_spec;
 
 // One control more than a steering problem has: the distance along the path. With a given duration the time gained is
-// what is made good along the path, at the typical speed.
+// what is made good at the end, along the course of the path where it should then be, at the typical speed.
 typedef struct moray_path_task moray_path_task;
 typedef struct moray_path_problem {
     moray_steering *steering;
@@ -100,6 +107,15 @@ moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *
                                   const moray_gait *gait, const double position[2], double heading,
                                   const moray_path_plan *from);
 void moray_path_plan_free(moray_path_plan *plan);
+
+// Plans of a given length from any state on, in receding horizon.
+typedef struct moray_path_replanner {
+    moray_path_spec spec; // start and times are set anew every time; along: near the start of the next
+    double horizon;       // [s]
+} moray_path_replanner;
+
+// Uses it, so that it must outlive the plans.
+moray_replanner moray_path_replan(moray_path_replanner *replanner);
 
 // ---- Guidance
 // ---------------------------------------------------------------------------------------------------------

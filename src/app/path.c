@@ -108,10 +108,10 @@ static double turn_at(const waypoints *points, int k, double radius, double *tak
 
 static moray_status lay(moray_path *path, const waypoints *points, double radius)
 {
-    double before = 0, taken;
+    double before = 0, taken, course = course_between(points->at[0], points->at[1]);
     for (int k = 0; k + 1 < points->n; k++) {
         const double *from = points->at[k], *to = points->at[k + 1];
-        const double leg = hypot(to[0] - from[0], to[1] - from[1]), course = course_between(from, to);
+        const double leg = hypot(to[0] - from[0], to[1] - from[1]);
         const double c = cos(course), s = sin(course), turn = turn_at(points, k + 1, radius, &taken);
         if (before + taken > leg * (1 + 1e-12))
             return moray_error(MORAY_INPUT,
@@ -123,6 +123,7 @@ static moray_status lay(moray_path *path, const waypoints *points, double radius
             add_piece(path, k + 1, to[0] - taken * c, to[1] - taken * s, course, radius * fabs(turn),
                       turn > 0 ? 1 / radius : -1 / radius);
         before = taken;
+        course += turn; // without jumps by a whole turn
     }
     return moray_ok();
 }
@@ -198,6 +199,14 @@ void moray_path_project(const moray_path *path, double x, double y, double *alon
         if (fabs(step) < 1e-10)
             break;
     }
+}
+
+bool moray_path_seek(const moray_swim_sample *sample, void *self)
+{
+    moray_path_seeker *seeker = self;
+    double across;
+    moray_path_project(seeker->path, sample->pose.p_x, sample->pose.p_y, &seeker->along, &across);
+    return seeker->along < seeker->path->length;
 }
 
 // Ground speed along a course against the current, by crabbing; NaN where there is none.

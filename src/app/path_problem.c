@@ -5,19 +5,20 @@
 
 #include "moray/path.h"
 
-enum { states = MORAY_STEERING_STATES, integrals = 2 };
+enum { states = MORAY_STEERING_STATES };
 
 struct moray_path_task {
     moray_path_spec spec;
     double first_across; // at the start
-    double weight[integrals];
-    moray_bounds along[1], c[2], e[2];
+    double weight;       // of the integral
+    moray_bounds along[1], c[2];
     bool tube;
+    double ahead[2], way,
+        rate; // of what is made good beyond the distance `way` along this unit vector, in the objective
 };
 
 static const char *const control_names[] = {"distance along the path"};
 static const char *const path_names[] = {"nearest point of the path", "distance to the path in the tube"};
-static const char *const event_names[] = {"way made along the path", "distance to the path at its end"};
 
 // Width of the tube, wide enough for the start at first.
 static moray_num tube_at(const struct moray_path_task *task, moray_num along)
@@ -30,7 +31,7 @@ static moray_num tube_at(const struct moray_path_task *task, moray_num along)
     return spec->tube + excess * (1 - part);
 }
 
-// [offset from the nearest point along the path, distance over tube], [weighted squares, rate of way made]
+// [offset from the nearest point along the path, distance over tube], [weighted squares]
 static void extra(void *self, const double complex *in, double complex *out)
 {
     const struct moray_path_task *task = self;
@@ -39,25 +40,18 @@ static void extra(void *self, const double complex *in, double complex *out)
     const moray_path_point at = moray_path_at(spec->path, along);
     const moray_num c = cos(at.course), s = sin(at.course), dx = in[1] - at.x, dy = in[2] - at.y;
     const moray_num across = c * dy - s * dx, steering = in[states] / spec->limits.offset;
-    const bool body_frame = spec->model == MORAY_CONTROL_ORIENTED;
-    const moray_num ch = body_frame ? cos(in[0]) : 1, sh = body_frame ? sin(in[0]) : 0;
-    const moray_num v_x = ch * in[4] - sh * in[5], v_y = sh * in[4] + ch * in[5];
     *out++ = c * dx + s * dy;
     if (task->tube)
         *out++ = across / tube_at(task, along);
-    *out++ = spec->weight.across * across * across + spec->weight.steering * steering * steering;
-    *out = (c * v_x + s * v_y) / (1 - at.curvature * across);
+    *out = spec->weight.across * across * across + spec->weight.steering * steering * steering;
 }
 
-// Way made along the path; at its end, if that is where the phase ends, the distance to it.
-static void events(const moray_ends *at, moray_verdict *out, const void *data)
+// Time gained by what is made good.
+static void gain(const moray_ends *at, moray_verdict *out, const void *data)
 {
     const struct moray_path_task *task = data;
-    const moray_path *path = task->spec.path;
-    const moray_path_point end = moray_path_at(path, path->length);
-    const double c = cos(creal(end.course)), s = sin(creal(end.course));
-    out->e[0] = at->phase->q[1];
-    out->e[1] = c * (at->phase->xf[2] - creal(end.y)) - s * (at->phase->xf[1] - creal(end.x));
+    const moray_num *p = at->phase->xf + 1;
+    out->objective = -task->rate * (task->ahead[0] * p[0] + task->ahead[1] * p[1] - task->way);
 }
 
 static moray_status check(const moray_path_spec *spec)
@@ -76,55 +70,70 @@ static moray_status check(const moray_path_spec *spec)
     return moray_ok();
 }
 
+// What is made good by the end of a plan of given length: along the course of the path where it would typically be.
+static void reward(struct moray_path_task *task, const moray_path_spec *spec)
+{
+    const moray_path_point end = moray_path_at(spec->path, spec->along + spec->speed * spec->duration);
+    task->rate = spec->weight.time / spec->speed;
+    task->ahead[0] = cos(creal(end.course));
+    task->ahead[1] = sin(creal(end.course));
+    task->way = task->ahead[0] * creal(end.x) + task->ahead[1] * creal(end.y);
+}
+
 static void set_task(struct moray_path_task *task, const moray_path_spec *spec)
 {
-    const bool to_end = spec->duration == 0;
-    const double rest = spec->path->length - spec->along;
+    const double beyond = spec->duration == 0 ? 2 : 3 * spec->speed * spec->duration;
     double along = spec->along;
-    *task = (struct moray_path_task){
-        .spec = *spec,
-        .weight = {1, to_end ? 0 : -spec->weight.time / spec->speed},
-        .along = {moray_between(spec->along - 2, spec->path->length + (to_end ? 2 : 3 * spec->speed * spec->duration))},
-        .c = {moray_fixed(0), moray_between(-1, 1)},
-        .e = {to_end ? moray_fixed(rest) : moray_between(-1e4, 1e4),
-              to_end ? moray_fixed(0) : moray_between(-1e4, 1e4)},
-        .tube = spec->tube < MORAY_INFINITY};
+    *task = (struct moray_path_task){.spec = *spec,
+                                     .weight = 1,
+                                     .along = {moray_between(spec->along - 2, spec->path->length + beyond)},
+                                     .c = {moray_fixed(0), moray_between(-1, 1)},
+                                     .tube = spec->tube < MORAY_INFINITY};
+    if (spec->duration > 0)
+        reward(task, spec);
     moray_path_project(spec->path, spec->start[1], spec->start[2], &along, &task->first_across);
+}
+
+static void set_ends(moray_steering_spec *steering, const moray_path_spec *spec)
+{
+    const moray_path_point end = moray_path_at(spec->path, spec->path->length);
+    const double seconds = (spec->path->length - spec->along) / spec->speed;
+    for (int r = 0; r < states; r++) {
+        steering->x0[r] = moray_fixed(spec->start[r]);
+        steering->xf[r] = moray_free();
+    }
+    steering->t0 = moray_fixed(spec->t0);
+    steering->tf = moray_fixed(spec->t0 + spec->duration);
+    if (spec->duration > 0)
+        return;
+    steering->tf = moray_between(spec->t0 + 0.3 * seconds, spec->t0 + 3 * seconds);
+    steering->xf[1] = moray_fixed(creal(end.x));
+    steering->xf[2] = moray_fixed(creal(end.y));
+    steering->xf[6] = steering->xf[7] = moray_fixed(0); // steering done
 }
 
 static moray_steering_spec steering_spec(const moray_path_spec *spec, struct moray_path_task *task)
 {
     const bool to_end = spec->duration == 0;
-    const double rest = spec->path->length - spec->along;
-    moray_steering_spec steering = {
-        .robot = spec->robot,
-        .model = spec->model,
-        .averaged = spec->averaged,
-        .current = {spec->current[0], spec->current[1]},
-        .limits = spec->limits,
-        .t0 = moray_fixed(spec->t0),
-        .tf = to_end ? moray_between(spec->t0 + 0.3 * rest / spec->speed, spec->t0 + 3 * rest / spec->speed)
-                     : moray_fixed(spec->t0 + spec->duration),
-        .task = {.name = "path",
-                 .nu = 1,
-                 .nc = 1 + task->tube,
-                 .nq = integrals,
-                 .extra = extra,
-                 .ne = 2,
-                 .events = events,
-                 .self = task,
-                 .u = task->along,
-                 .c = task->c,
-                 .e = task->e,
-                 .u_names = control_names,
-                 .c_names = path_names,
-                 .e_names = event_names,
-                 .weight = task->weight,
-                 .weight_time = to_end ? spec->weight.time : 0}};
-    for (int r = 0; r < states; r++) {
-        steering.x0[r] = moray_fixed(spec->start[r]);
-        steering.xf[r] = to_end && r >= 6 ? moray_fixed(0) : moray_free(); // steering done
-    }
+    moray_steering_spec steering = {.robot = spec->robot,
+                                    .model = spec->model,
+                                    .averaged = spec->averaged,
+                                    .current = {spec->current[0], spec->current[1]},
+                                    .limits = spec->limits,
+                                    .task = {.name = "path",
+                                             .nu = 1,
+                                             .nc = 1 + task->tube,
+                                             .nq = 1,
+                                             .extra = extra,
+                                             .events = to_end ? NULL : gain,
+                                             .self = task,
+                                             .u = task->along,
+                                             .c = task->c,
+                                             .u_names = control_names,
+                                             .c_names = path_names,
+                                             .weight = &task->weight,
+                                             .weight_time = to_end ? spec->weight.time : 0}};
+    set_ends(&steering, spec);
     return steering;
 }
 
