@@ -75,7 +75,7 @@ static path_job defaults(void)
                     .tube = INFINITY,
                     .reach = 3,
                     .intervals_per_period = 5,
-                    .refinements = 2,
+                    .refinements = 4,
                     .replan_periods = 1,
                     .look_ahead_periods = 6,
                     .recede = true,

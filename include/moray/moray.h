@@ -27,6 +27,7 @@
 #include "moray/status.h"
 #include "moray/steering.h"
 #include "moray/swim.h"
+#include "moray/turn.h"
 #include "moray/voyage.h"
 
 #endif
