@@ -80,7 +80,7 @@ static void test_turn(void)
         spec.limits.theta_max = moray_fixed(20 * DEG);
         turning.offset = spec.limits.offset;
         CHECK_OK(moray_turn_rate(&spec.robot, spec.model, &turning, &rate), "sustained turning");
-        CHECK_OK(moray_turn_plan_make(&plan, &spec, &settings, &gait, rate, NULL), "plan");
+        CHECK_OK(moray_turn_plan_make(&plan, &spec, &settings, &gait, rate, NULL, 1), "plan");
         CHECK(moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED, "solved");
         moray_solution_times(plan.solution, 0, &t0, &took[side]);
         moray_solution_at(plan.solution, 0, took[side], x, u);

@@ -45,7 +45,8 @@ typedef struct moray_turn_plan {
 // `start`, `undulation` and the times of the spec are set by this; the rest as moray_heading_plan_make. `turn_rate`:
 // how fast the robot turns with its offset at the limit, for the guess and the longest time [rad/s].
 moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec, const moray_settings *settings,
-                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from);
+                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from,
+                                  double stretch);
 void moray_turn_plan_free(moray_turn_plan *plan); // safe on a zeroed plan, and twice
 
 #endif

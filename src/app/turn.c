@@ -154,14 +154,14 @@ static moray_status pose_problem(moray_turn_plan *plan, moray_turn_spec *spec, d
 }
 
 static moray_status make(moray_turn_plan *plan, moray_turn_spec *spec, const moray_settings *settings,
-                         const moray_gait *gait, double turn_rate, const moray_turn_plan *from)
+                         const moray_gait *gait, double turn_rate, const moray_turn_plan *from, double stretch)
 {
     steering_guess samples;
     MORAY_TRY(moray_cruise_find(&plan->cruise, &spec->robot, spec->model, gait));
     MORAY_TRY(pose_problem(plan, spec, turn_rate));
     MORAY_TRY(steering_guess_new(&samples, 16 * settings->intervals + 1, 1));
     if (from)
-        steering_guess_from_other(&samples, &spec->robot, from->solution, &from->cruise, spec->model, 1);
+        steering_guess_from_other(&samples, &spec->robot, from->solution, &from->cruise, spec->model, stretch);
     else
         guess_steady(&samples, spec, &plan->cruise, likely(spec, plan->cruise.speed, turn_rate), turn_rate);
     const moray_guess guess = {.phase = &samples.samples, .s = samples.s};
@@ -176,13 +176,13 @@ static moray_status make(moray_turn_plan *plan, moray_turn_spec *spec, const mor
 }
 
 moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec, const moray_settings *settings,
-                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from)
+                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from, double stretch)
 {
     moray_turn_spec own = *spec;
     if (!own.averaged)
         steering_keep_gait(&own.limits, &own.robot, own.model, gait);
     *plan = (moray_turn_plan){0};
-    const moray_status status = make(plan, &own, settings, gait, turn_rate, from);
+    const moray_status status = make(plan, &own, settings, gait, turn_rate, from, stretch);
     if (moray_failed(status))
         moray_turn_plan_free(plan);
     return status;
