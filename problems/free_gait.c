@@ -39,8 +39,6 @@ static int coefficients_of(const free_gait *run, int harmonics)
 static moray_status make_problem(const free_gait *run, motion *m)
 {
     moray_gait_problem_spec spec = gait_job_spec(&run->job, &m->at, MORAY_GAIT_FASTEST, run->job.common.current);
-    spec.limits.link_angles = true;
-    spec.limits.theta_max.upper = run->limit;
     if (m->harmonics > 0) {
         spec.joints = MORAY_JOINTS_SERIES;
         spec.harmonics = m->harmonics;
@@ -64,34 +62,43 @@ static void guess_parameters(const free_gait *run, const motion *m, const moray_
         s[i] += size * sin(1 + 1.3 * i);
 }
 
-static bool solved(const stage *at)
+static moray_status solve_from(free_gait *run, motion *m, const stage *from, double share)
 {
-    return at->solution && moray_solution_info(at->solution)->outcome == MORAY_NLP_SOLVED;
+    const moray_settings settings = gait_job_settings(&run->job);
+    moray_solution *solution = NULL;
+    double *s = calloc(MORAY_GAIT_PARAMETERS + 1 + (size_t)coefficients_of(run, m->harmonics), sizeof *s);
+    if (!s)
+        return moray_error(MORAY_MEMORY, "no memory for a guess");
+    guess_parameters(run, m, &from->promise.gait, share, s);
+    const moray_status status = moray_gait_problem_continue(m->at.problem, &settings, from->solution, s, &solution);
+    free(s);
+    if (!moray_failed(status))
+        gait_job_keep_best(&m->at, solution);
+    m->at.starts++;
+    return moray_interrupted() ? moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written")
+                               : status;
 }
 
-// Solves from the stage before. A motion that may do all that the one before may must do as well: where the solver
-// strayed from there, it starts once more. *found: solved, and as good.
-static moray_status solve(free_gait *run, motion *m, const stage *from, bool nested, bool *found)
+// Solved, and as good as the motion before, which it may repeat.
+static bool as_good(const motion *m, const motion *before)
 {
-    static const double shares[] = {3e-3, 3e-2};
-    const moray_settings settings = gait_job_settings(&run->job);
-    double *s = calloc(MORAY_GAIT_PARAMETERS + 1 + (size_t)coefficients_of(run, m->harmonics), sizeof *s);
-    moray_status status = s ? make_problem(run, m) : moray_error(MORAY_MEMORY, "no memory for a guess");
-    *found = false;
-    for (int k = 0; k < 2 && !*found && !moray_failed(status) && !moray_interrupted(); k++) {
-        moray_solution_free(m->at.solution);
-        m->at.solution = NULL;
-        guess_parameters(run, m, &from->promise.gait, shares[k], s);
-        status = moray_gait_problem_continue(m->at.problem, &settings, from->solution, s, &m->at.solution);
-        const double same = 1e-7;
-        *found =
-            !moray_failed(status) && solved(&m->at) &&
-            (!nested || moray_solution_objective(m->at.solution) <= moray_solution_objective(from->solution) + same);
-    }
-    free(s);
-    if (moray_interrupted())
-        return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");
-    return status;
+    const double same = 1e-7;
+    return moray_solution_info(m->at.solution)->outcome == MORAY_NLP_SOLVED &&
+           moray_solution_objective(m->at.solution) <= moray_solution_objective(before->at.solution) + same;
+}
+
+// From the motion before and from the best gait (25), and where the solver strayed from both, once more.
+static moray_status solve(free_gait *run, motion *m, bool *found)
+{
+    const double little = 3e-3, more = 3e-2;
+    const motion *before = freest(run);
+    MORAY_TRY(make_problem(run, m));
+    MORAY_TRY(solve_from(run, m, &before->at, little));
+    MORAY_TRY(solve_from(run, m, last_stage(&run->job), little));
+    if (!as_good(m, before))
+        MORAY_TRY(solve_from(run, m, &before->at, more));
+    *found = as_good(m, before);
+    return moray_ok();
 }
 
 // The motion as series of both models, or as a gait of both.
@@ -143,27 +150,45 @@ double free_gait_disagreement(const motion *m)
 // ---- All of them
 // -----------------------------------------------------------------------------------------------------
 
-// Adds a motion freed from the last one, or from the best gait; run->vainly where that gains nothing.
-static moray_status add_motion(free_gait *run, int harmonics, double taper)
+static motion *start_motion(free_gait *run, int harmonics, double taper)
 {
+    const stage *best = last_stage(&run->job);
     motion *m = &run->motion[run->n];
-    const stage *best = last_stage(&run->job), *from = run->n > 0 ? &freest(run)->at : best;
-    bool found;
-    *m = (motion){.harmonics = harmonics, .at = {.model = best->model, .power = best->power, .speed = best->speed}};
-    memcpy(m->at.taper, harmonics == 0 && taper > 0 ? (double[]){-taper, taper} : run->job.taper, sizeof m->at.taper);
+    *m = (motion){.harmonics = harmonics,
+                  .at = {.model = best->model, .power = best->power, .speed = best->speed, .link_angle = run->limit}};
+    memcpy(m->at.taper, taper > 0 ? (double[]){-taper, taper} : run->job.taper, sizeof m->at.taper);
     if (harmonics > 0)
         snprintf(m->name, sizeof m->name, "%d harmonic%s", harmonics, harmonics > 1 ? "s" : "");
     else
-        strcpy(m->name, taper > 0 ? "gait (25), tapered" : "gait (25)");
+        strcpy(m->name, taper > 0 ? "gait (25), tapered" : "gait (25) by link angles");
     moray_ticker_show(&run->job.ticker, "%s: %s", run->job.name, m->name);
-    moray_status status = solve(run, m, from, run->n > 0, &found);
-    if (!moray_failed(status) && !found && run->n == 0)
-        status = moray_error(MORAY_NOT_SOLVED, "%.280s", moray_solution_diagnosis(m->at.solution));
-    if (!moray_failed(status) && found) {
-        run->n++;
-        status = keep_motion(run, m);
-        return moray_failed(status) ? status : prove(run, m);
-    }
+    return m;
+}
+
+static moray_status finish_motion(free_gait *run, motion *m)
+{
+    run->n++;
+    MORAY_TRY(keep_motion(run, m));
+    return prove(run, m);
+}
+
+// The best gait (25) within the limits of the links.
+static moray_status find_gait(free_gait *run)
+{
+    motion *m = start_motion(run, 0, 0);
+    const gait_starts starts = {{last_stage(&run->job)->promise.gait, run->job.paper.gait[m->at.model]}, 2};
+    MORAY_TRY(gait_job_optimise(&run->job, &m->at, &starts));
+    return finish_motion(run, m);
+}
+
+// A motion freer than the last one; run->vainly where that gains nothing.
+static moray_status free_further(free_gait *run, int harmonics, double taper)
+{
+    motion *m = start_motion(run, harmonics, taper);
+    bool found = false;
+    const moray_status status = solve(run, m, &found);
+    if (!moray_failed(status) && found)
+        return finish_motion(run, m);
     gait_job_stage_free(&m->at);
     run->vainly = harmonics;
     return status;
@@ -178,11 +203,11 @@ static moray_status work(gait_job *job)
     const stage *best = last_stage(job);
     run->limit = isnan(run->link_angle) ? fmax(job->theta_max[1], best->trial.steady[best->model].peak_link_angle)
                                         : run->link_angle;
-    MORAY_TRY(add_motion(run, 0, 0));
+    MORAY_TRY(find_gait(run));
     if (job->common.robot.links > 2)
-        MORAY_TRY(add_motion(run, 0, 1));
+        MORAY_TRY(free_further(run, 0, 1));
     for (int k = 1; k <= run->harmonics && run->vainly == 0; k++)
-        MORAY_TRY(add_motion(run, k, 0));
+        MORAY_TRY(free_further(run, k, 0));
     return moray_ok();
 }
 

@@ -68,7 +68,7 @@ static heading_job defaults(void)
                        .weight_steering = 0.003,
                        .max_error = INFINITY,
                        .intervals_per_period = 5,
-                       .refinements = 2,
+                       .refinements = 8,
                        .replan_periods = 1,
                        .look_ahead_periods = 6,
                        .recede = true,

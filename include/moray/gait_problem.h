@@ -40,9 +40,9 @@ typedef struct moray_gait_problem_spec {
     moray_joints joints; // MORAY_JOINTS_ON_GAIT; MORAY_JOINTS_CLOSED_LOOP, control-oriented model only; or
                          // MORAY_JOINTS_SERIES, with the limits of delta, taper and theta_max.lower unused, those of
                          // the offset for every c_i, and q_11 = 0, which decides when time starts
-    int harmonics;     // of a series
-    double current[2]; // [m/s]
-    double course;     // [rad]
+    int harmonics;       // of a series
+    double current[2];   // [m/s]
+    double course;       // [rad]
     moray_gait_limits limits;
 } moray_gait_problem_spec;
 

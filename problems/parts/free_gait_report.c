@@ -11,6 +11,13 @@ static const char *const model_names[] = {"control-oriented", "first-principles"
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
+// What rounding leaves is no difference.
+static double percent(const moray_gait_gain *gain)
+{
+    const double nothing = 5e-4;
+    return fabs(gain->speed_percent_at_equal_power) < nothing ? 0 : gain->speed_percent_at_equal_power;
+}
+
 static void fill_row(moray_table_row *row, const char *label, const stage *at, const moray_gait_gain *over_best)
 {
     const moray_steady *swum = &at->trial.steady[MORAY_FIRST_PRINCIPLES];
@@ -20,8 +27,8 @@ static void fill_row(moray_table_row *row, const char *label, const stage *at, c
                                     swum->power,
                                     swum->peak_link_angle / DEG,
                                     at->promise.gait.omega / DEG,
-                                    at->gain.speed_percent_at_equal_power,
-                                    over_best ? over_best->speed_percent_at_equal_power : NAN};
+                                    percent(&at->gain),
+                                    over_best ? percent(over_best) : NAN};
     *row = (moray_table_row){.label = label};
     memcpy(row->value, values, sizeof values);
 }

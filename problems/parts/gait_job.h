@@ -18,6 +18,7 @@ typedef struct stage {
     double power; // limit of the mean joint power [W], or infinite
     double speed; // least speed along the course [m/s], or 0
     double taper[2];
+    double link_angle; // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
     moray_gait_problem *problem;
     moray_solution *solution;
     int starts, agreeing; // how many, and how many of them ended at the best solution
@@ -124,6 +125,9 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
                             moray_solution **solution);
 
 moray_settings gait_job_settings(gait_job *job); // of every solve
+
+// Keeps the better of a solution, which it takes over, and of what the stage has; counts how many agree.
+void gait_job_keep_best(stage *at, moray_solution *solution);
 
 // Solves from an orbit of the gait. Error: those of moray_solve.
 moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,

@@ -25,7 +25,7 @@ static moray_status draw_over_time(const heading_job *job, heading_trial *const 
         return moray_error(MORAY_MEMORY, "no memory for figures");
     for (int k = 0; k < n; k++)
         reference[k] = moray_reference_at(&job->reference, t[k], &rate) / DEG;
-    heading[0] = (moray_curve){.label = "reference", .x = t, .y = reference, .n = n};
+    heading[shown] = (moray_curve){.label = "reference", .x = t, .y = reference, .n = n};
     for (int i = 0; i < shown; i++) {
         const moray_cruise *cruise = &job->cruise[trials[i]->gait][1];
         double *angle = data + 2 * i * n, *phi = angle + n;
@@ -33,7 +33,7 @@ static moray_status draw_over_time(const heading_job *job, heading_trial *const 
             angle[k] = moray_cruise_heading(cruise, t[k], voyages[i].track.pose[k].heading) / DEG;
             phi[k] = voyages[i].offset[k] / DEG;
         }
-        heading[1 + i] = (moray_curve){.label = trials[i]->name, .x = t, .y = angle, .n = n};
+        heading[i] = (moray_curve){.label = trials[i]->name, .x = t, .y = angle, .n = n};
         offset[i] = (moray_curve){.label = trials[i]->name, .x = t, .y = phi, .n = n};
     }
     moray_status status = steer_draw(job->common.output, job->common.quiet, "heading_tracking",

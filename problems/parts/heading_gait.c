@@ -9,7 +9,6 @@ typedef struct hunt {
     moray_heading_spec spec;
     moray_orbit *orbit;
     moray_heading_plan best; // from which the next begins
-    double objective;        // of the best
 } hunt;
 
 // The fastest gait of this theta_max and delta, within the limits of omega and straight-ahead power. False where even
@@ -60,9 +59,11 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     *f = moray_solution_objective(plan.solution);
     moray_ticker_show(&job->ticker, "heading_tracking: gait %d: %.1f deg, %.1f deg/s, %.1f deg: objective %.5g",
                       job->gaits_tried, x[0] / DEG, gait.omega / DEG, x[1] / DEG, *f);
-    if (solved && *f < h->objective) {
+    if (solved && job->gaits_tried == 1)
+        job->first_objective = *f;
+    if (solved && *f < job->best_objective) {
         const moray_heading_plan before = h->best;
-        h->objective = *f;
+        job->best_objective = *f;
         h->best = plan;
         plan = before;
     }
@@ -96,7 +97,8 @@ static moray_status search(hunt *h, const moray_gait *start)
 
 moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_heading_plan *best)
 {
-    hunt h = {.job = job, .spec = heading_spec(job, MORAY_FIRST_PRINCIPLES, false), .objective = INFINITY};
+    hunt h = {.job = job, .spec = heading_spec(job, MORAY_FIRST_PRINCIPLES, false)};
+    job->first_objective = job->best_objective = INFINITY;
     moray_orbit_spec spec = moray_orbit_spec_default(&job->common.robot, MORAY_FIRST_PRINCIPLES);
     spec.steered = false;
     MORAY_TRY(moray_orbit_new(&h.orbit, &spec));

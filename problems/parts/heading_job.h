@@ -47,7 +47,9 @@ typedef struct heading_job {
     double turn_rate; // sustained at the limit of the offset, by the model of the last plan [rad/s]
     heading_trial trial[HEADING_TRIALS];
     int n_trials;
-    int gaits_tried; // by the search for the gait of the first-principles plan
+    // by the search for the gait of the first-principles plan
+    int gaits_tried;
+    double first_objective, best_objective; // on its coarse mesh
     moray_ticker ticker;
 } heading_job;
 

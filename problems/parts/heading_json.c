@@ -108,6 +108,7 @@ moray_json *heading_json(const heading_job *job)
     json_trials(json, job);
     if (heading_is_fig8(job))
         json_fig8(json, job);
+    moray_json_number(json, "gaits_tried", job->gaits_tried);
     moray_json_open(json, "limits");
     moray_json_number(json, "turn_rate_deg_s", job->turn_rate / DEG);
     moray_json_number(json, "reference_rate_deg_s", moray_reference_fastest(&job->reference, 0, job->horizon) / DEG);

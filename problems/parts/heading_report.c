@@ -194,6 +194,10 @@ static void print_all(const heading_job *job, const report_tables *t)
     printf("%s\n\n", text);
     heading_explain(job, text, sizeof text);
     printf("%s\n\n", text);
+    if (job->gaits_tried > 0)
+        printf("gait of the first-principles plan: %d tried; the objective of the best is %.2f %% below that of the "
+               "first\n",
+               job->gaits_tried, 100 * (1 - job->best_objective / job->first_objective));
     for (int k = 0; k < job->n_trials; k++)
         if (job->trial[k].law == HEADING_RECEDING) {
             receding_line(job, &job->trial[k], text, sizeof text);
