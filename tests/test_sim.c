@@ -253,6 +253,31 @@ static void test_discontinuity(void)
     }
 }
 
+static const double push = 1e4;
+
+// An oscillator pushed from a time on that nobody stops at.
+static bool pushed(double t, const double *x, double *dx, void *self)
+{
+    const double *from = self;
+    oscillator(t, x, dx, NULL);
+    dx[1] += t > *from ? push : 0;
+    return true;
+}
+
+static void test_jumps_within_steps(void)
+{
+    const moray_sim_settings settings = with_tolerance(MORAY_SIM_EXPLICIT, 1e-6);
+    const double start[] = {1, 0};
+    double worst = 0;
+    for (int k = 0; k < 50; k++) {
+        double from = 16 + 0.0137 * k;
+        const double x = simulate(&(moray_ode){.n = 2, .rhs = pushed, .self = &from}, &settings, start, 17, NULL);
+        const double error = x - (cos(17) + push * (1 - cos(17 - from)));
+        worst = isnan(error) ? INFINITY : fmax(worst, fabs(error));
+    }
+    CHECK(worst < 1e-6 * push, "jumps are found and crossed: %.1e", worst);
+}
+
 static void test_short_ways(void)
 {
     const moray_ode ode = {.n = 1, .rhs = decay};
@@ -400,6 +425,7 @@ int main(void)
     test_order();
     test_tr_bdf2();
     test_discontinuity();
+    test_jumps_within_steps();
     test_short_ways();
     test_silence();
     test_integrator();

@@ -6,6 +6,7 @@
 #define MORAY_GAIT_PROBLEM_H
 
 #include "moray/ocp.h"
+#include "moray/sensitivity.h"
 #include "moray/snake.h"
 #include "moray/swim.h"
 
@@ -78,5 +79,13 @@ typedef struct moray_gait_promise {
     double power_price; // by how much the goal improves per watt more that is allowed [m/s or J/m, per W]
 } moray_gait_promise;
 moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem, const moray_solution *solution);
+
+// Derivatives of a promise by the parameter that was last taken of a sensitivity of the solution.
+typedef struct moray_gait_slope {
+    moray_gait gait;
+    double course_speed, power;
+} moray_gait_slope;
+moray_gait_slope moray_gait_problem_slope(const moray_gait_problem *problem, const moray_solution *solution,
+                                          const moray_sensitivity *sensitivity);
 
 #endif

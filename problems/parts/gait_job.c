@@ -123,7 +123,7 @@ moray_status gait_job_work(gait_job *job)
     return optimise_and_prove(job, MORAY_FIRST_PRINCIPLES, &two);
 }
 
-static bool certified(const gait_job *job)
+bool gait_job_certified(const gait_job *job)
 {
     bool pass = true;
     for (int model = 0; model <= (int)job->common.model; model++)
@@ -166,7 +166,7 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
     if (!moray_failed(status))
         status = program->report ? program->report(job) : gait_job_report(job);
     exit_code = moray_app_end(&app, job, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !(program->certified ? program->certified(job) : certified(job)))
+    if (exit_code == MORAY_EXIT_SOLVED && !(program->certified ? program->certified(job) : gait_job_certified(job)))
         exit_code = MORAY_EXIT_CERTIFICATE;
     if (program->release)
         program->release(job);

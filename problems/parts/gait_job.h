@@ -82,6 +82,10 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
 
 // ---- Pieces --------------------------------------------------------------------------------------------------------
 
+// What a program without its own does: both stages, or one, optimised and proved. Error: those of the below.
+moray_status gait_job_work(gait_job *job);
+bool gait_job_certified(const gait_job *job);
+
 enum { GAIT_JOB_OPTIONS = 10 }; // of every gait job
 extern const moray_option gait_job_options[GAIT_JOB_OPTIONS];
 
@@ -112,6 +116,9 @@ moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, mora
 // Builds it. Error: those of moray_gait_problem_new.
 moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
                               moray_gait_problem **problem);
+
+// How the job solves.
+moray_settings gait_job_settings(gait_job *job);
 
 // Solves from the steady orbit of the gait on the problem's model. Error: those of moray_swim_steady and moray_solve.
 moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,

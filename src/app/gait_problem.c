@@ -123,14 +123,19 @@ static moray_status make_endpoint(moray_gait_problem *problem)
     return gait_endpoint_map(&problem->ends, &problem->endpoint);
 }
 
+static int path_efforts(const moray_gait_problem *problem)
+{
+    return limited(problem->spec.limits.joint_effort) ? problem->spec.robot.links - 1 : 0;
+}
+
 static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
-    const int N = problem->spec.robot.links, forces = limited(limits->joint_effort) ? N - 1 : 0;
+    const int efforts = path_efforts(problem), angles = efforts + problem->spec.robot.links;
     for (int i = 0; i < problem->size.nc; i++) {
-        const double most = i < forces       ? limits->joint_effort
-                            : i < forces + N ? limits->theta_max.upper
-                                             : limits->joint_rate;
+        const double most = i < efforts  ? limits->joint_effort
+                            : i < angles ? limits->theta_max.upper
+                                         : limits->joint_rate;
         c[i] = moray_between(-most, most);
     }
 }
@@ -189,7 +194,9 @@ static moray_status make_ocp(moray_gait_problem *problem)
     const int nx = problem->size.nx, nc = problem->size.nc, ne = problem->endpoint.events, ns = problem->size.ns,
               at = problem->endpoint.position;
     problem->block = calloc((size_t)(nx + nc + ne + ns), sizeof *problem->block);
-    if (!problem->block)
+    problem->names = calloc((size_t)(ne + nc), sizeof *problem->names);
+    problem->path_names = calloc((size_t)nc + 1, sizeof *problem->path_names);
+    if (!problem->block || !problem->names || !problem->path_names)
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
     moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc, *s = e + ne;
     for (int r = 0; r < nx; r++)
@@ -197,6 +204,8 @@ static moray_status make_ocp(moray_gait_problem *problem)
     fill_path_bounds(problem, c);
     fill_event_bounds(problem, e);
     fill_parameter_bounds(problem, s);
+    gait_event_names(&problem->endpoint, problem->names);
+    gait_path_names(nc, path_efforts(problem), problem->spec.robot.links, problem->path_names, problem->names + ne);
     const moray_phase_spec phase = {
         .name = "period",
         .nx = nx,
@@ -204,9 +213,11 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .nq = problem->size.nq,
         .map = &problem->plant,
         .t0 = moray_fixed(0),
-        .tf = moray_between(2 * M_PI / limits->omega.upper, 2 * M_PI / limits->omega.lower),
+        .tf =
+            moray_between(1.8 * M_PI / limits->omega.upper, 2.2 * M_PI / limits->omega.lower), // omega alone is to bind
         .x0 = {x0, nx},
         .c = {c, nc},
+        .c_names = problem->names + ne,
         .x_names = problem->spec.joints == MORAY_JOINTS_CLOSED_LOOP ? NULL : gait_states[problem->spec.model],
     };
     return moray_ocp_new(&problem->ocp,
@@ -218,6 +229,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
                                            .s_names = on_series(problem) ? NULL : s_names[problem->spec.model],
                                            .ne = ne,
                                            .e = {e, ne},
+                                           .e_names = problem->names,
                                            .endpoint_map = &problem->ends});
 }
 
@@ -249,6 +261,8 @@ void moray_gait_problem_free(moray_gait_problem *problem)
     moray_map_release(&problem->plant);
     gait_endpoint_free(&problem->endpoint);
     free(problem->block);
+    free(problem->names);
+    free(problem->path_names);
     free(problem);
 }
 

@@ -5,15 +5,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { most_states = 6 + 2 * 512 };
+
+static moray_gait gait_of(const moray_gait_problem *problem, const double *s)
+{
+    return problem->spec.joints == MORAY_JOINTS_SERIES ? (moray_gait){.omega = s[0]} : moray_gait_from_parameters(s);
+}
+
 moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem, const moray_solution *solution)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
     const int at = problem->endpoint.position;
-    double t0, tf, x[6 + 2 * 512];
+    double t0, tf, x[most_states];
     const double *s = moray_solution_parameters(solution);
-    moray_gait_promise promise = {.gait = moray_gait_from_parameters(s)};
-    if (spec->joints == MORAY_JOINTS_SERIES)
-        promise.gait = (moray_gait){.omega = s[0]};
+    moray_gait_promise promise = {.gait = gait_of(problem, s)};
     moray_solution_times(solution, 0, &t0, &tf);
     moray_solution_at(solution, 0, tf, x, NULL);
     promise.v_x = x[at] / tf;
@@ -24,6 +29,23 @@ moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem,
     if (problem->endpoint.power)
         promise.power_price = moray_solution_event_multipliers(solution)[problem->endpoint.power_event];
     return promise;
+}
+
+moray_gait_slope moray_gait_problem_slope(const moray_gait_problem *problem, const moray_solution *solution,
+                                          const moray_sensitivity *sensitivity)
+{
+    const moray_gait_promise promise = moray_gait_problem_promise(problem, solution);
+    const int at = problem->endpoint.position;
+    const double *course = problem->endpoint.course, *s = moray_sensitivity_parameters(sensitivity);
+    double t0, tf, d_t0, d_tf, d_x0[most_states], d_xf[most_states];
+    moray_solution_times(solution, 0, &t0, &tf);
+    moray_sensitivity_times(sensitivity, 0, &d_t0, &d_tf);
+    moray_sensitivity_ends(sensitivity, 0, d_x0, d_xf);
+    const double d_way = d_xf[at] * course[0] + d_xf[at + 1] * course[1];
+    const double d_work = moray_sensitivity_integrals(sensitivity, 0)[0];
+    return (moray_gait_slope){.gait = gait_of(problem, s),
+                              .course_speed = (d_way - promise.course_speed * d_tf) / tf,
+                              .power = (d_work - promise.power * d_tf) / tf};
 }
 
 // The plant's state from the swimmer's.

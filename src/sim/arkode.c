@@ -81,6 +81,7 @@ static bool configure(moray_sim *sim)
            ARKStepSetUserData(sim->ark, sim) == ARK_SUCCESS &&
            ARKStepSStolerances(sim->ark, settings->rtol, settings->atol) == ARK_SUCCESS &&
            ARKStepSetMaxStep(sim->ark, settings->max_step) == ARK_SUCCESS &&
+           ARKStepSetMaxErrTestFails(sim->ark, 40) == ARK_SUCCESS && // down to a jump of the right-hand side; usually 7
            // The interpolant serves only at the ends of steps; a higher degree would ask for more derivatives.
            ARKStepSetInterpolantDegree(sim->ark, 3) == ARK_SUCCESS &&
            (settings->method == MORAY_SIM_EXPLICIT ? use_explicit(sim) : use_tr_bdf2(sim));
