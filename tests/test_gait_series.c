@@ -78,7 +78,7 @@ struct optimum {
 static moray_settings settings_of(void)
 {
     moray_settings settings = moray_settings_default();
-    settings.scheme = "lobatto5", settings.intervals = 36, settings.barrier = 1e-4;
+    settings.scheme = "lobatto5", settings.intervals = 36, settings.barrier = 1e-4, settings.tolerance = 1e-9;
     return settings;
 }
 
