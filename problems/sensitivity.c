@@ -12,7 +12,7 @@ static const moray_option options[] = {
      .type = MORAY_OPTION_PAIR,
      MORAY_AT(sensitivity, predicted),
      .unit = "m/s",
-     .help = "current for which the gait is predicted; by default 0.1 m/s across the course more than there is"},
+     .help = "current for which the gait is predicted; by default 0.1 m/s more on both axes"},
 };
 
 static moray_status work(gait_job *job)

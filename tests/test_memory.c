@@ -157,6 +157,7 @@ static moray_status solve_gait(const moray_gait_problem *problem, moray_swimmer 
     moray_steady steady;
     moray_swim_track track = {0};
     moray_solution *solution = NULL;
+    settings.scheme = "lobatto5";
     settings.intervals = 6;
     settings.max_iterations = iterations;
     moray_status status = moray_swim_steady(&setup, gait, 0, &steady, &track, 9);

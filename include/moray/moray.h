@@ -16,6 +16,7 @@
 #include "moray/ocp.h"
 #include "moray/ode.h"
 #include "moray/orbit.h"
+#include "moray/path.h"
 #include "moray/recede.h"
 #include "moray/results.h"
 #include "moray/run.h"
@@ -27,6 +28,7 @@
 #include "moray/status.h"
 #include "moray/steering.h"
 #include "moray/swim.h"
+#include "moray/turn.h"
 #include "moray/voyage.h"
 
 #endif

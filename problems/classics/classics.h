@@ -45,6 +45,11 @@ struct classic_result {
 // "solved" (where nothing was printed), "DIFFERS" or "NOT SOLVED".
 const char *classic_verdict(const struct classic *classic, const struct classic_result *result);
 
+// Builds the problem and solves it from its own start. Free both with moray_solution_free and moray_ocp_free, in this
+// order; what an error leaves unmade is NULL.
+moray_status classic_first_solution(const struct classic *classic, const moray_settings *settings, moray_ocp **ocp,
+                                    moray_solution **solution);
+
 // Recommended settings: the ones to start from.
 moray_settings classic_settings(const struct classic *classic);
 

@@ -55,6 +55,15 @@ static moray_status solve_from_start(const struct classic *classic, const moray_
     return status;
 }
 
+moray_status classic_first_solution(const struct classic *classic, const moray_settings *settings, moray_ocp **ocp,
+                                    moray_solution **solution)
+{
+    *ocp = NULL;
+    *solution = NULL;
+    MORAY_TRY(classic->build(ocp, classic->data));
+    return solve_from_start(classic, *ocp, settings, solution);
+}
+
 // Whether value becomes the printed decimal number when rounded or cut to its digits.
 static bool agrees_with(double value, const char *printed)
 {
@@ -110,9 +119,8 @@ moray_status classic_solve(const struct classic *classic, const moray_settings *
     const double start = processor_seconds();
     *result = (struct classic_result){0};
     moray_ocp *ocp;
-    MORAY_TRY(classic->build(&ocp, classic->data));
     moray_solution *solution;
-    moray_status status = solve_from_start(classic, ocp, settings, &solution);
+    moray_status status = classic_first_solution(classic, settings, &ocp, &solution);
     result->seconds = processor_seconds() - start;
     if (!moray_failed(status)) {
         read_solution(classic, solution, result);

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "classics/classics.h"
 #include "moray/moray.h"
 
 #define DEG (M_PI / 180)
@@ -97,6 +98,12 @@ typedef struct horizon_case {
 } horizon_case;
 moray_status horizon_begin(horizon_case *c); // the case must stay where it is. Error: MORAY_INPUT when it is too long
 subject horizon_subject(horizon_case *c);
+// A textbook problem on the mesh it begins with.
+typedef struct classic_case {
+    const struct classic *classic;
+    moray_ocp *ocp; // owned
+} classic_case;
+subject classic_subject(classic_case *c);
 
 // Simulated seconds per processor second, median of `repeats` simulations of 45 s of the paper's gait from rest.
 // Error: that of moray_swim_run.
@@ -104,7 +111,7 @@ moray_status simulation_rate(moray_model model, int links, int repeats, double *
 
 // ---- Results -------------------------------------------------------------------------------------------------------
 
-enum { MOST_CASES = 32, MOST_GROWTHS = 6, MOST_POINTS = 8 };
+enum { MOST_CASES = 72, MOST_GROWTHS = 6, MOST_POINTS = 8 };
 
 typedef struct named_cost {
     const char *name;
@@ -137,7 +144,10 @@ typedef struct benchmark {
     moray_ticker ticker;
 } benchmark;
 
-// Tables or JSON on standard output. Error: MORAY_IO, MORAY_MEMORY.
+// Tables or JSON on standard output; JSON and figures of the growth in the directory of --out. Error: MORAY_IO,
+// MORAY_MEMORY.
 moray_status benchmark_report(const benchmark *run);
+moray_status benchmark_json(const benchmark *run, FILE *file);
+moray_status benchmark_files(const benchmark *run);
 
 #endif

@@ -18,6 +18,7 @@ typedef struct stage {
     double power; // limit of the mean joint power [W], or infinite
     double speed; // least speed along the course [m/s], or 0
     double taper[2];
+    double link_angle; // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
     moray_gait_problem *problem;
     moray_solution *solution;
     int starts, agreeing; // how many, and how many of them ended at the best solution
@@ -91,6 +92,10 @@ extern const moray_option gait_job_options[GAIT_JOB_OPTIONS];
 // Swims the paper's gait. Error: that of moray_scheme_parse, moray_basin_new or moray_gait_trial_run.
 moray_status gait_job_prepare(gait_job *job);
 
+// What a program without own work does: swims the paper's gait, then optimises, certifies and proves the
+// control-oriented stage and, with the model complex, from there the other. Error: those of the pieces.
+moray_status gait_job_work(gait_job *job);
+
 // Sets model, power and speed of a stage. Error: MORAY_NOT_SOLVED where the paper's gait, which makes the default
 // speed, fails.
 moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at);
@@ -118,6 +123,11 @@ moray_settings gait_job_settings(gait_job *job);
 // Solves from the steady orbit of the gait on the problem's model. Error: those of moray_swim_steady and moray_solve.
 moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
                             moray_solution **solution);
+
+moray_settings gait_job_settings(gait_job *job); // of every solve
+
+// Keeps the better of a solution, which it takes over, and of what the stage has; counts how many agree.
+void gait_job_keep_best(stage *at, moray_solution *solution);
 
 // Solves from an orbit of the gait. Error: those of moray_solve.
 moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,

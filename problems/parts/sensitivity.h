@@ -30,17 +30,17 @@ typedef struct variant {
 typedef struct sensitivity_row {
     char name[40];
     const char *unit;
-    double value;              // in the unit
-    double scale, step;        // [unit] what it is measured by; of the differences
-    double slope[SLOPES];      // from the KKT system
-    double again[SLOPES];      // from solving again at both sides; NaN where that fails
-    double swum[2];            // first-principles speed and power of the gaits that the slopes promise, by simulation
-    double deviation;          // largest |slope - again| scale / size of the quantity
+    double value;         // in the unit
+    double scale, step;   // [unit] what it is measured by; of the differences
+    double slope[SLOPES]; // from the KKT system
+    double again[SLOPES]; // from solving again at both sides; NaN where that fails
+    double swum[2];       // first-principles speed and power of the gaits that the slopes promise, by simulation
+    double deviation;     // largest |slope - again| scale / size of the quantity
     moray_active_change up, down; // steps in the unit
-    bool unsteady;             // the active set changes within the differences
+    bool unsteady;                // the active set changes within the differences
 } sensitivity_row;
 
-enum { SENSITIVITY_ROWS = 32, SENSITIVITY_GAITS = 3 };
+enum { SENSITIVITY_ROWS = 32, SENSITIVITY_GAITS = 3, SENSITIVITY_LIST = 1000 };
 
 // The gait kept, predicted, and solved again, in another current.
 typedef struct sensitivity_forecast {
@@ -49,16 +49,17 @@ typedef struct sensitivity_forecast {
     moray_gait_promise promise[SENSITIVITY_GAITS]; // that kept promises nothing
     moray_gait_trial trial[SENSITIVITY_GAITS];
     moray_active_change change; // step as a share of the way
-    double kkt;                 // error of the prediction as an optimum
     bool solved;                // again
+    moray_status why;           // there is no prediction
 } sensitivity_forecast;
 
 typedef struct sensitivity {
-    gait_job job;         // first, for its options
-    double predicted[2];  // current
-    double size[SLOPES];  // of what moves
-    char weak[400];       // constraints that may be active or not
-    char unreached[400];  // limits that nothing depends on
+    gait_job job;                     // first, for its options
+    double predicted[2];              // current
+    double size[SLOPES];              // of what moves
+    char weak[SENSITIVITY_LIST];      // constraints that may be active or not
+    char unreached[SENSITIVITY_LIST]; // limits that nothing depends on
+    char left_out[SENSITIVITY_LIST];  // parameters that cannot be displaced, and why
     sensitivity_row row[SENSITIVITY_ROWS];
     int rows;
     sensitivity_forecast forecast;
@@ -86,13 +87,43 @@ void sensitivity_displace(const sensitivity_parameter *parameter, const gait_job
 
 void sensitivity_values(const gait_job *job, const moray_gait *gait, double speed, double power, double value[SLOPES]);
 
-// Of the job's last stage, solved and certified. Error: those of moray_sensitivity_new, moray_sensitivity_by,
-// moray_gait_problem_new; MORAY_INTERRUPTED.
+// A solution of a problem like the job's, tightly, from another. Error: those of moray_solve; MORAY_INTERRUPTED.
+moray_status sensitivity_solve(sensitivity *run, const moray_gait_problem *problem, const moray_solution *from,
+                               moray_solution **solution);
+bool sensitivity_solved(const moray_solution *solution);
+
+// All, of the job's last stage, which is solved. Error: as above, and those of moray_sensitivity_new,
+// moray_sensitivity_by, moray_gait_problem_new.
 moray_status sensitivity_run(sensitivity *run);
 
 // The gait for another current. Error: as above, and those of moray_gait_trial_run.
 moray_status sensitivity_predict(sensitivity *run, moray_sensitivity *slopes);
 
+// ---- The report ----------------------------------------------------------------------------------------------------
+
+enum {
+    SENSITIVITY_TEXT = 6000,
+    SENSITIVITY_LABEL = 80,
+    SENSITIVITY_LINES = 3 * SENSITIVITY_ROWS,
+    SENSITIVITY_TABLES = 4
+};
+
+// What a report consists of.
+typedef struct sensitivity_findings {
+    char text[SENSITIVITY_TEXT];
+    int tables;
+    moray_table table[SENSITIVITY_TABLES];
+    char title[SENSITIVITY_TABLES][200];
+    moray_table_row row[SENSITIVITY_TABLES][SENSITIVITY_LINES];
+    char label[SENSITIVITY_TABLES][SENSITIVITY_LINES][SENSITIVITY_LABEL];
+} sensitivity_findings;
+
+void sensitivity_tables(const sensitivity *run, sensitivity_findings *found);
+
+// Quantities that may move: the taper only where it is free.
+int sensitivity_quantities(const sensitivity *run);
+
+// Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status sensitivity_report(gait_job *job);
 
 #endif

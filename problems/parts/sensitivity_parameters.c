@@ -9,7 +9,7 @@ enum kind { CURRENT, ROBOT, GEOMETRY, LIMIT, LOWER, UPPER }; // LOWER, UPPER: en
 struct sensitivity_parameter {
     enum kind kind;
     const char *name, *unit;
-    size_t place; // in a variant, of the value or of the range
+    size_t place;  // in a variant, of the value or of the range
     double factor; // from the unit to that of the job
     bool model[2]; // that have it
 };
@@ -28,7 +28,10 @@ struct sensitivity_parameter {
         false, true                                                                                                    \
     }
 #define RANGE(name, unit, field, factor, models)                                                                       \
-    {LOWER, name, unit, PLACE(field), factor, models}, {UPPER, name, unit, PLACE(field), factor, models}
+    {LOWER, name, unit, PLACE(field), factor, models},                                                                 \
+    {                                                                                                                  \
+        UPPER, name, unit, PLACE(field), factor, models                                                                \
+    }
 
 static const sensitivity_parameter parameters[] = {
     {CURRENT, "current V_x", "m/s", PLACE(job.common.current[0]), 1, BOTH},

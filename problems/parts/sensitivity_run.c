@@ -57,8 +57,8 @@ struct displaced {
     moray_gait_problem *problem[SIDES];
 };
 
-static moray_status displace(const sensitivity *run, const sensitivity_parameter *parameter,
-                             const sensitivity_row *row, struct displaced *to)
+static moray_status displace(const sensitivity *run, const sensitivity_parameter *parameter, const sensitivity_row *row,
+                             struct displaced *to)
 {
     for (int k = 0; k < SIDES; k++) {
         sensitivity_displace(parameter, &run->job, side_steps[k] * row->step, &to->moved[k]);
@@ -76,29 +76,30 @@ static void fill_slopes(const sensitivity *run, const struct displaced *at, cons
     memset(row->slope, 0, sizeof row->slope);
     for (int k = 0; k < SIDES; k++) {
         double value[SLOPES];
-        const moray_gait_promise there =
-            promise_at(&last_stage(&run->job)->promise, slope, side_steps[k] * row->step);
+        const moray_gait_promise there = promise_at(&last_stage(&run->job)->promise, slope, side_steps[k] * row->step);
         promise_values(&at->moved[k].job, &there, value);
         for (int i = 0; i < SLOPES; i++)
             row->slope[i] += stencil[k] * value[i] / row->step;
     }
 }
 
-// Solves a displaced problem from the solution of the job.
-static moray_status solve_again(sensitivity *run, const moray_gait_problem *problem, moray_gait_promise *promise,
-                                bool *solved)
+moray_status sensitivity_solve(sensitivity *run, const moray_gait_problem *problem, const moray_solution *from,
+                               moray_solution **solution)
 {
     const double tight = 1e-10;
     moray_settings settings = gait_job_settings(&run->job);
+    const moray_guess guess = moray_guess_from_solution(from);
     settings.intervals = 0;
+    settings.max_refinements = 0;
     settings.tolerance = fmin(settings.tolerance, tight);
-    const moray_guess guess = moray_guess_from_solution(last_stage(&run->job)->solution);
-    moray_solution *solution;
-    MORAY_TRY(moray_solve(moray_gait_problem_ocp(problem), &settings, &guess, &solution));
-    *solved = moray_solution_info(solution)->outcome <= MORAY_NLP_ACCEPTABLE;
-    *promise = moray_gait_problem_promise(problem, solution);
-    moray_solution_free(solution);
+    MORAY_TRY(moray_solve(moray_gait_problem_ocp(problem), &settings, &guess, solution));
     return moray_interrupted() ? moray_error(MORAY_INTERRUPTED, "interrupted; nothing is written") : moray_ok();
+}
+
+bool sensitivity_solved(const moray_solution *solution)
+{
+    const moray_nlp_outcome outcome = moray_solution_info(solution)->outcome;
+    return outcome == MORAY_NLP_SOLVED || outcome == MORAY_NLP_ACCEPTABLE;
 }
 
 static moray_status fill_again(sensitivity *run, const struct displaced *at, sensitivity_row *row)
@@ -107,11 +108,12 @@ static moray_status fill_again(sensitivity *run, const struct displaced *at, sen
     bool all = true;
     for (int side = 0; side < 2; side++) {
         const int k = 1 + side;
-        moray_gait_promise promise;
-        bool solved;
-        MORAY_TRY(solve_again(run, at->problem[k], &promise, &solved));
+        moray_solution *solution;
+        MORAY_TRY(sensitivity_solve(run, at->problem[k], last_stage(&run->job)->solution, &solution));
+        const moray_gait_promise promise = moray_gait_problem_promise(at->problem[k], solution);
         promise_values(&at->moved[k].job, &promise, value[side]);
-        all = all && solved;
+        all = all && sensitivity_solved(solution);
+        moray_solution_free(solution);
     }
     row->deviation = 0;
     for (int i = 0; i < SLOPES; i++) {
@@ -145,8 +147,7 @@ static moray_status fill_swum(const sensitivity *run, const struct displaced *at
     double value[2][2];
     for (int side = 0; side < 2; side++) {
         const int k = side * (SIDES - 1);
-        const moray_gait_promise there =
-            promise_at(&last_stage(&run->job)->promise, slope, side_steps[k] * row->step);
+        const moray_gait_promise there = promise_at(&last_stage(&run->job)->promise, slope, side_steps[k] * row->step);
         MORAY_TRY(swim(&at->moved[k].job, &there.gait, value[side]));
     }
     for (int i = 0; i < 2; i++)
@@ -162,10 +163,10 @@ static bool nothing_moves(const sensitivity *run, const sensitivity_row *row)
     return still;
 }
 
-static void note_unreached(sensitivity *run, const char *name)
+static void note(char list[SENSITIVITY_LIST], const char *item)
 {
-    const size_t used = strlen(run->unreached);
-    snprintf(run->unreached + used, sizeof run->unreached - used, "%s%s", used > 0 ? "; " : "", name);
+    const size_t used = strlen(list);
+    snprintf(list + used, SENSITIVITY_LIST - used, "%s%s", used > 0 ? "; " : "", item);
 }
 
 static moray_status measure(sensitivity *run, moray_sensitivity *slopes, const struct displaced *at, bool limit,
@@ -182,7 +183,7 @@ static moray_status measure(sensitivity *run, moray_sensitivity *slopes, const s
     row->down = moray_sensitivity_change(slopes, -1);
     row->unsteady = row->up.step < 2 * row->step || row->down.step > -2 * row->step;
     if (limit && nothing_moves(run, row)) {
-        note_unreached(run, row->name);
+        note(run->unreached, row->name);
         return moray_ok();
     }
     MORAY_TRY(fill_again(run, at, row));
@@ -204,7 +205,12 @@ static moray_status by_parameter(sensitivity *run, moray_sensitivity *slopes, co
         status = measure(run, slopes, &at, sensitivity_parameter_is_limit(parameter), row);
     for (int k = 0; k < SIDES; k++)
         moray_gait_problem_free(at.problem[k]);
-    return status;
+    if (status.code != MORAY_NUMERIC && status.code != MORAY_INPUT)
+        return status;
+    char why[sizeof row->name + sizeof status.text];
+    snprintf(why, sizeof why, "%s (%s)", row->name, status.text);
+    note(run->left_out, why);
+    return moray_ok();
 }
 
 // ---- All -----------------------------------------------------------------------------------------------------------
@@ -221,18 +227,39 @@ static void fill_sizes(sensitivity *run)
     run->size[SLOPE_TAPER] = 1;
 }
 
+// Solves more tightly, so that what is active stands out from what is only near.
+static moray_status polish(sensitivity *run)
+{
+    stage *best = &run->job.stage[run->job.common.model];
+    moray_solution *solution;
+    MORAY_TRY(sensitivity_solve(run, best->problem, best->solution, &solution));
+    if (!sensitivity_solved(solution)) {
+        moray_solution_free(solution);
+        return moray_ok();
+    }
+    moray_solution_free(best->solution);
+    best->solution = solution;
+    best->promise = moray_gait_problem_promise(best->problem, solution);
+    return gait_job_certify(&run->job, best);
+}
+
+static moray_status take_all(sensitivity *run, moray_sensitivity *slopes)
+{
+    const sensitivity_parameter *parameter;
+    note(run->weak, moray_sensitivity_weak(slopes));
+    for (int k = 0; (parameter = sensitivity_parameter_at(k)); k++)
+        if (sensitivity_parameter_applies(parameter, &run->job))
+            MORAY_TRY(by_parameter(run, slopes, parameter));
+    return sensitivity_predict(run, slopes);
+}
+
 moray_status sensitivity_run(sensitivity *run)
 {
     moray_sensitivity *slopes;
-    moray_status status = moray_sensitivity_new(&slopes, last_stage(&run->job)->solution);
-    if (moray_failed(status))
-        return status;
+    MORAY_TRY(polish(run));
+    MORAY_TRY(moray_sensitivity_new(&slopes, last_stage(&run->job)->solution));
     fill_sizes(run);
-    snprintf(run->weak, sizeof run->weak, "%.390s", moray_sensitivity_weak(slopes));
-    const sensitivity_parameter *parameter;
-    for (int k = 0; (parameter = sensitivity_parameter_at(k)) && !moray_failed(status); k++)
-        if (sensitivity_parameter_applies(parameter, &run->job))
-            status = by_parameter(run, slopes, parameter);
+    const moray_status status = take_all(run, slopes);
     moray_sensitivity_free(slopes);
     return status;
 }

@@ -66,6 +66,24 @@ typedef struct steer_saturation {
 } steer_saturation;
 steer_saturation steer_saturation_of(const moray_solution *solution, const moray_steering_limits *limits);
 
+// ---- Gaits and models
+// ----------------------------------------------------------------------------------------------------
+
+// From *gait to the fastest one of the first-principles model straight ahead, within the ranges and the power [W].
+// Error: those of moray_gait_search_new and _run; MORAY_NOT_SOLVED when no gait gets by with the power.
+moray_status steer_fastest_gait(const steer_input *input, const moray_robot *robot, double power, moray_gait *gait);
+
+// Of one gait on both models.
+moray_status steer_cruises(moray_cruise cruise[2], const moray_robot *robot, const moray_gait *gait, moray_model from);
+
+// Offsets of the one model per offset of the other, with erratum E3.
+double steer_offset_ratio(const moray_cruise cruise[2], moray_model from, moray_model to);
+
+// Limits of plans on the gait of the cruise that keep both their own offset limits and, times `scale`, the swimmer's.
+moray_steering_limits steer_replanning_limits(const moray_robot *robot, const moray_cruise *cruise,
+                                              const moray_steering_limits *own, const moray_steering_limits *swum,
+                                              double scale);
+
 // ---- Figures
 // ----------------------------------------------------------------------------------------------------------
 

@@ -9,7 +9,8 @@ void gait_event_names(const struct gait_endpoint *e, const char **name)
         *name++ = "periodicity";
     *name++ = "way across the course";
     *name++ = "omega T";
-    *name++ = "theta_max";
+    if (!e->series)
+        *name++ = "theta_max";
     if (e->head)
         *name++ = "theta_max of the head";
     if (e->tail)
@@ -22,12 +23,16 @@ void gait_event_names(const struct gait_endpoint *e, const char **name)
         *name++ = "course speed";
 }
 
-void gait_path_names(int n, int efforts, gait_name *text, const char **name)
+void gait_path_names(int n, int efforts, int links, gait_name *text, const char **name)
 {
-    for (int i = 0; i < n; i++) {
-        const bool effort = i < efforts;
-        snprintf(text[i], sizeof *text, "%s %d", effort ? "joint effort" : "link angle",
-                 i + 1 - (effort ? 0 : efforts));
-        name[i] = text[i];
-    }
+    const struct {
+        const char *what;
+        int count;
+    } kinds[] = {{"joint effort", efforts}, {"link angle", links}, {"joint rate", n}};
+    int i = 0;
+    for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds; kind++)
+        for (int k = 0; k < kinds[kind].count && i < n; k++, i++) {
+            snprintf(text[i], sizeof *text, "%s %d", kinds[kind].what, k + 1);
+            name[i] = text[i];
+        }
 }

@@ -3,32 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/steering_guess.h"
 #include "moray/heading.h"
 
 enum { states = MORAY_STEERING_STATES };
 
-// ---- Guesses
-// ----------------------------------------------------------------------------------------------------------
-
-// Samples in one block: time, x, u.
-typedef struct guess_samples {
-    moray_samples samples;
-    double *time, *x, *u;
-    double s[MORAY_STEERING_PARAMETERS];
-} guess_samples;
-
-static moray_status guess_new(guess_samples *guess, int n)
-{
-    double *block = calloc((size_t)(n * (1 + states + 1)), sizeof *block);
-    if (!block)
-        return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", n);
-    *guess = (guess_samples){.time = block, .x = block + n, .u = block + n * (1 + states)};
-    guess->samples = (moray_samples){.n = n, .time = guess->time, .x = guess->x, .u = guess->u};
-    return moray_ok();
-}
-
 // The reference as though it were followed at the cruise's speed.
-static void guess_from_reference(guess_samples *guess, const moray_heading_spec *spec, const moray_cruise *cruise)
+static void guess_from_reference(steering_guess *guess, const moray_heading_spec *spec, const moray_cruise *cruise)
 {
     double p[2] = {0, 0}, rate;
     const int n = guess->samples.n;
@@ -42,44 +23,6 @@ static void guess_from_reference(guess_samples *guess, const moray_heading_spec 
         p[1] += step * (cruise->speed * sin(x[0]) + spec->current[1]);
     }
     moray_steering_parameters(&cruise->gait, guess->s);
-}
-
-// A solution of one model as the other sees it: velocities in the other frame, offsets in the ratio of the amplitudes.
-static void guess_from_other(guess_samples *guess, const moray_robot *robot, const moray_heading_plan *from,
-                             moray_model to)
-{
-    const moray_gait gait = moray_steering_gait(moray_solution_parameters(from->solution));
-    const moray_gait mapped = moray_gait_map(robot, &gait, from->cruise.model, to);
-    const double scale = -mapped.amplitude / gait.amplitude; // erratum E3
-    const int n = guess->samples.n;
-    double t0, t1;
-    moray_solution_times(from->solution, 0, &t0, &t1);
-    for (int k = 0; k < n; k++) {
-        double *x = guess->x + k * states;
-        guess->time[k] = t0 + (t1 - t0) * k / (n - 1);
-        moray_solution_at(from->solution, 0, guess->time[k], x, guess->u + k);
-        const double turn = to == MORAY_FIRST_PRINCIPLES ? x[0] : -x[0], v[2] = {x[4], x[5]};
-        x[4] = v[0] * cos(turn) - v[1] * sin(turn);
-        x[5] = v[0] * sin(turn) + v[1] * cos(turn);
-        x[6] *= scale;
-        x[7] *= scale;
-        guess->u[k] *= scale;
-    }
-    moray_steering_parameters(&mapped, guess->s);
-}
-
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
-
-// Leaves no choice of a gait.
-static void keep_gait(moray_heading_spec *spec, const moray_gait *gait)
-{
-    moray_steering_limits *limits = &spec->limits;
-    const double theta_max = moray_theta_max_from_amplitude(&spec->robot, spec->model, gait->amplitude, gait->delta);
-    limits->theta_max = moray_fixed(theta_max);
-    limits->omega = moray_fixed(gait->omega);
-    limits->delta = moray_fixed(gait->delta);
-    limits->power = MORAY_INFINITY;
 }
 
 // Begins in the plan's cruise; averaged, without its undulation.
@@ -105,10 +48,10 @@ static moray_status solve(moray_heading_plan *plan, const moray_heading_spec *sp
         const moray_guess guess = moray_guess_from_solution(from->solution);
         return moray_solve(ocp, settings, &guess, &plan->solution);
     }
-    guess_samples samples;
-    MORAY_TRY(guess_new(&samples, 16 * settings->intervals + 1));
+    steering_guess samples;
+    MORAY_TRY(steering_guess_new(&samples, 16 * settings->intervals + 1, 1));
     if (from)
-        guess_from_other(&samples, &spec->robot, from, spec->model);
+        steering_guess_from_other(&samples, &spec->robot, from->solution, &from->cruise, spec->model, 1);
     else
         guess_from_reference(&samples, spec, &plan->cruise);
     const moray_guess guess = {.phase = &samples.samples, .s = samples.s};
@@ -136,7 +79,7 @@ moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_headi
     moray_heading_spec own = *spec;
     own.t0 = 0;
     if (!own.averaged)
-        keep_gait(&own, gait);
+        steering_keep_gait(&own.limits, &own.robot, own.model, gait);
     *plan = (moray_heading_plan){0};
     const moray_status status = make(plan, &own, settings, gait, from);
     if (moray_failed(status))

@@ -3,19 +3,21 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct recorder {
     moray_voyage *voyage;
-    const moray_helm *helm;
+    const moray_voyage_plan *plan;
 };
 
 static bool record(const moray_swim_sample *sample, void *self)
 {
     const struct recorder *recorder = self;
-    const moray_helm *helm = recorder->helm;
+    const moray_voyage_plan *plan = recorder->plan;
+    const moray_helm *helm = plan->helm;
     moray_voyage *voyage = recorder->voyage;
     voyage->offset[voyage->track.n] = helm ? helm->offset(sample->t, helm->self).value : 0;
-    return moray_swim_track_add(sample, &voyage->track);
+    return moray_swim_track_add(sample, &voyage->track) && (!plan->observe || plan->observe(sample, plan->observer));
 }
 
 // The joints begin on the gait, with the offset that the helm begins with.
@@ -24,6 +26,7 @@ static void start(const moray_voyage_plan *plan, const moray_swimmer *swimmer, d
     double state[MORAY_STEERING_STATES];
     moray_gait gait = plan->cruise->gait;
     moray_cruise_start(plan->cruise, plan->heading, plan->current, state);
+    memcpy(state + 1, plan->position, sizeof plan->position);
     if (plan->helm) {
         const moray_offset offset = plan->helm->offset(0, plan->helm->self);
         gait.offset = offset.value;
@@ -35,7 +38,7 @@ static void start(const moray_voyage_plan *plan, const moray_swimmer *swimmer, d
 static moray_status sail(moray_voyage *voyage, const moray_voyage_plan *plan, double *times, double *x)
 {
     const int n = plan->intervals + 1;
-    struct recorder recorder = {voyage, plan->helm};
+    struct recorder recorder = {voyage, plan};
     const moray_gait_change change = {0, plan->cruise->gait};
     moray_sim_settings settings = moray_sim_settings_default();
     const moray_swim_plan swim = {.t1 = plan->duration,
@@ -98,5 +101,31 @@ moray_heading_score moray_voyage_heading_score(const moray_voyage *voyage, const
         score.final = error;
     }
     score.rms = sqrt(score.rms);
+    return score;
+}
+
+moray_path_score moray_voyage_path_score(const moray_voyage *voyage, const moray_path *path, double reach)
+{
+    const moray_swim_track *track = &voyage->track;
+    moray_path_score score = {.time = NAN};
+    double along = 0, across, first = NAN, before = NAN;
+    int k = 0, settled = 0;
+    for (; k < track->n && isnan(score.time); k++) {
+        moray_path_project(path, track->pose[k].p_x, track->pose[k].p_y, &along, &across);
+        if (k == 0)
+            first = along;
+        score.rms += across * across;
+        if (along > first + reach) {
+            score.settled_rms += across * across;
+            score.settled_largest = fmax(score.settled_largest, fabs(across));
+            settled++;
+        }
+        if (along >= path->length && k > 0)
+            score.time = track->t[k] - (track->t[k] - track->t[k - 1]) * (along - path->length) / (along - before);
+        before = along;
+    }
+    score.rms = sqrt(score.rms / k);
+    score.settled_rms = sqrt(score.settled_rms / settled);
+    score.power = track->energy[k - 1] / track->t[k - 1];
     return score;
 }

@@ -3,7 +3,13 @@
 
 #include "nlp/sensitivity.h"
 
-static const double small = 1e-4; // of a multiplier or slack in the scale of the solver
+// Of a multiplier and a slack in the scale of the solver that do not tell which of them is to be 0: neither is large,
+// nor much larger than the other (at an interior point their product is the same everywhere), or both are nothing.
+static bool in_doubt(double slack, double multiplier)
+{
+    const double large = 1e-4, much = 10, nothing = 1e-8, larger = fmax(slack, multiplier);
+    return larger < large && larger <= fmax(nothing, much * sqrt(fmax(slack * multiplier, 0)));
+}
 
 // ---- Active set ----------------------------------------------------------------------------------------------------
 
@@ -48,7 +54,7 @@ void find_activity(moray_nlp_sensitivity *s)
             else if (side.bounded && multiplier > slack)
                 s->activity[i] = upper ? AT_UPPER : AT_LOWER;
             if (!side.fixed && side.bounded)
-                s->weak[i] = s->weak[i] || (slack < small && multiplier < small);
+                s->weak[i] = s->weak[i] || in_doubt(slack, multiplier);
         }
 }
 
