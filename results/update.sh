@@ -46,3 +46,5 @@ show paper paper all
 print benchmark_s1 benchmark --part s1
 show pareto pareto
 show pareto_free pareto --set theta_max_deg=1:60
+show path_following path_following
+show min_time_turn min_time_turn
