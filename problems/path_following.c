@@ -80,7 +80,7 @@ static path_job defaults(void)
                     .look_ahead_periods = 6,
                     .recede = true,
                     .find_gait = true,
-                    .evaluations = 15};
+                    .evaluations = 10};
     job.common.model = MORAY_FIRST_PRINCIPLES;
     memcpy(job.common.current, (const double[]){-0.05, 0.1}, sizeof job.common.current);
     strcpy(job.common.scheme, "radau5");

@@ -2,12 +2,12 @@
 # The program min_time_turn as a user meets it. Arguments: the program, the source directory.
 . "$2/tests/program.sh"
 
-run --quiet --json --out results --angle 60 --set evaluations=6
+run --quiet --json --out results --angle 45 --set evaluations=2
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
 for file in summary.json report.html trajectory.csv heading.svg offset.svg path.svg joints.svg; do
     check "--out has $file" [ -s results/$file ]
 done
-steady=$(awk -v rate="$(number first_principles_plan turn_rate_deg_s)" 'BEGIN { print 60 / rate }')
+steady=$(awk -v rate="$(number first_principles_plan turn_rate_deg_s)" 'BEGIN { print 45 / rate }')
 check "the turn takes about as long as steady turning, and the ramps" near "$(number first_principles_plan time_s)" "$steady" 4
 heading=$(grep -n '"plan":[[:space:]]*"complex"' out | head -n 1 | cut -d : -f 1)
 final=$(tail -n "+$heading" out | grep -A 6 '"validated"' | awk '/final_deg/ { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }')
@@ -15,12 +15,12 @@ check "swum blindly on its own model the plan comes to its heading" near "$final
 check "the offset keeps its limit" eval \
     'awk -F , "NR > 1 && (\$7 > 0.0797 || \$7 < -0.0797) { bad = 1 } END { exit bad }" results/trajectory.csv'
 
-run --quiet --model control --current 0,0 --angle -60 --set evaluations=2
+run --quiet --model control --current 0,0 --angle -30 --set evaluations=1
 check "the other way round: $(cat err)" [ $code -eq 0 ]
 check "it says what limits the turn" grep -q 'limit of the offset decides\|rate of the offset decides\|decide together' out
 check "and how the undulation counts" grep -q 'heading swings with every stroke' out
 
-run --quiet --model control --current 0,0 --angle 90 --set end_m=6,4 --set evaluations=1
+run --quiet --model control --current 0,0 --angle 45 --set end_m=4,1.5 --set evaluations=1
 check "from pose to pose: $(cat err)" [ $code -eq 0 ]
 check "near the end position" grep -q 'control-oriented plan comes within\|plan + feedback comes within' out
 

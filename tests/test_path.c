@@ -7,6 +7,7 @@
 
 #include "moray/gait_trial.h"
 #include "moray/path.h"
+#include "moray/voyage.h"
 
 #define DEG (M_PI / 180)
 
@@ -66,7 +67,7 @@ static void test_continuity(void)
             const double at = path.piece[k].start, step = 1e-9;
             const moray_path_point a = moray_path_at(&path, at - step), b = moray_path_at(&path, at + step);
             worst = fmax(worst, hypot(creal(b.x - a.x), creal(b.y - a.y)));
-            worst_course = fmax(worst_course, fabs(remainder(creal(b.course - a.course), 2 * M_PI)));
+            worst_course = fmax(worst_course, fabs(creal(b.course - a.course)));
         }
         for (int k = 0; k < 40; k++) { // complex step along the path
             const double at = tap_random(&seed, -1, path.length + 1), step = 1e-30;
@@ -311,6 +312,81 @@ static void test_crab(void)
     moray_path_free(&path);
 }
 
+// A plan of given length goes on along the path from where it is, and starts at the time it is made.
+static void test_replanning(void)
+{
+    const double t = 5, horizon = 12;
+    moray_path path;
+    moray_cruise cruise;
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution = NULL;
+    const moray_ocp *ocp;
+    void *problem = NULL;
+    CHECK_OK(moray_path_read(&path, "0,0 12,0", 1), "a leg");
+    moray_path_replanner replanner = {.spec = spec_of(&path, 10), .horizon = horizon};
+    const moray_gait *gait = paper_gait(&replanner.spec.robot);
+    replanner.spec.averaged = true;
+    replanner.spec.current[0] = replanner.spec.current[1] = 0;
+    replanner.spec.limits.theta_max = moray_fixed(20 * DEG);
+    replanner.spec.limits.delta = moray_fixed(gait->delta);
+    CHECK_OK(moray_cruise_find(&cruise, &replanner.spec.robot, MORAY_CONTROL_ORIENTED, gait), "cruise");
+    replanner.spec.speed = cruise.speed;
+    const double state[MORAY_STEERING_STATES] = {0, 3, 0, 0, cruise.speed};
+    const moray_replanner plans = moray_path_replan(&replanner);
+    CHECK_OK(plans.make(plans.self, t, state, &problem, &ocp), "made");
+    CHECK_NEAR(replanner.spec.along, 3, 1e-9, "where on the path it is");
+    settings.scheme = "radau3";
+    settings.intervals = 8;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solve");
+    double t0, tf, x[MORAY_STEERING_STATES], u[2];
+    moray_solution_times(solution, 0, &t0, &tf);
+    moray_solution_at(solution, 0, tf, x, u);
+    CHECK(t0 == t && tf == t + horizon, "from %g s to %g s", t0, tf);
+    CHECK_NEAR(x[1], 3 + cruise.speed * horizon, 0.02, "as far as it swims");
+    CHECK_NEAR(x[2], 0, 1e-6, "on the leg");
+    moray_solution_free(solution);
+    plans.free(problem);
+    moray_path_free(&path);
+}
+
+// ---- Scores
+// -----------------------------------------------------------------------------------------------------------
+
+// Beside a leg of 10 m at 0.25 m/s, a sample a second: 0.3 m off on the first 2 m, 0.1 m thereafter.
+static void test_score(void)
+{
+    enum { n = 60 };
+    double t[n], energy[n];
+    moray_pose pose[n] = {{0}};
+    const moray_voyage voyage = {.track = {.n = n, .t = t, .energy = energy, .pose = pose}};
+    moray_path path;
+    CHECK_OK(moray_path_read(&path, "0,0 10,0", 1), "a leg");
+    for (int k = 0; k < n; k++) {
+        t[k] = k;
+        energy[k] = 0.2 * k;
+        pose[k].p_x = 0.25 * k - 0.1;
+        pose[k].p_y = k < 8 ? 0.3 : -0.1;
+    }
+    const moray_path_score score = moray_voyage_path_score(&voyage, &path, 2);
+    CHECK_NEAR(score.time, 10.1 / 0.25, 1e-12, "past the end, between two samples");
+    CHECK_NEAR(score.power, 0.2, 1e-14, "power");
+    CHECK_NEAR(score.settled_rms, 0.1, 1e-14, "settled");
+    CHECK_NEAR(score.settled_largest, 0.1, 1e-14, "at most");
+    CHECK_NEAR(score.rms, sqrt((8 * 0.09 + 34 * 0.01) / 42), 1e-14, "all the way");
+    moray_path_seeker seeker = {&path, 0};
+    for (int k = 0; k < 42; k++) {
+        const moray_swim_sample sample = {.t = t[k], .pose = pose[k]};
+        const bool on = moray_path_seek(&sample, &seeker);
+        if (on != (k < 41))
+            CHECK(false, "sample %d: %s", k, on ? "goes on" : "ends");
+    }
+    CHECK_NEAR(seeker.along, 0.25 * 41 - 0.1, 1e-9, "where it was last");
+    const moray_path_score short_of =
+        moray_voyage_path_score(&(moray_voyage){.track = {.n = 30, .t = t, .energy = energy, .pose = pose}}, &path, 2);
+    CHECK(isnan(short_of.time), "no time where the end is not reached");
+    moray_path_free(&path);
+}
+
 // ---- Guidance
 // ---------------------------------------------------------------------------------------------------------
 
@@ -354,6 +430,8 @@ int main(void)
     }
     test_refusals();
     test_crab();
+    test_replanning();
+    test_score();
     test_guidance();
     return tap_done();
 }

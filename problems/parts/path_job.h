@@ -48,7 +48,8 @@ typedef struct path_job {
     moray_cruise cruise[PATH_GAITS][2]; // by the model swum on
     moray_path_plan averaged, plan[2];
     moray_certificate certificate[2];
-    double turn_rate; // sustained at the limit of the offset, by the model of the last plan [rad/s]
+    double speed;     // straight ahead through the water, by the model of the last plan made [m/s]
+    double turn_rate; // sustained at the limit of the offset, likewise [rad/s]
     path_trial trial[PATH_TRIALS];
     int n_trials;
     moray_ticker ticker;

@@ -37,7 +37,7 @@ static double way(const path_job *job, double speed, double course)
 
 double path_turning(const path_job *job, const moray_path_piece *piece)
 {
-    const double speed = path_last_plan(job)->cruise.speed, turned = piece->curvature * piece->length;
+    const double speed = job->speed, turned = piece->curvature * piece->length;
     return fabs(piece->curvature) * fmax(way(job, speed, piece->course), way(job, speed, piece->course + turned));
 }
 
@@ -168,6 +168,7 @@ static moray_status find_turn_rate(path_job *job, const moray_cruise *cruise)
     gait.offset = spec.limits.offset;
     MORAY_TRY(moray_turn_rate(&job->common.robot, cruise->model, &gait, &job->turn_rate));
     job->turn_rate = fabs(job->turn_rate);
+    job->speed = cruise->speed;
     return moray_ok();
 }
 
@@ -177,9 +178,9 @@ static moray_status solve(path_job *job, const moray_path_spec *spec, const mora
     moray_cruise cruise;
     MORAY_TRY(moray_cruise_find(&cruise, &spec->robot, spec->model, gait));
     MORAY_TRY(moray_path_passable(spec->path, cruise.speed, spec->current));
+    MORAY_TRY(find_turn_rate(job, &cruise));
     const moray_settings settings = settings_of(job, spec->averaged, &cruise);
     MORAY_TRY(moray_path_plan_make(plan, spec, &settings, gait, job->start, job->heading, from));
-    MORAY_TRY(find_turn_rate(job, &plan->cruise));
     return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED ? moray_ok() : why_not(job, plan);
 }
 

@@ -147,7 +147,6 @@ enum { most = 4 };
 typedef struct tuning {
     const path_job *job;
     path_trial *trial;
-    moray_status status; // of a simulation that failed
 } tuning;
 
 // Gain and lookahead on logarithmic scales, of line of sight the distance ahead too, and the integral gain.
@@ -170,26 +169,20 @@ static bool judge(void *self, const double *x, double *f, double *c, double *gra
     (void)c, (void)gradient, (void)jacobian;
     read(t->trial, x);
     const moray_status status = score(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
-    if (moray_failed(status))
-        t->status = status;
     *f = t->trial->cost[MORAY_FIRST_PRINCIPLES];
     moray_ticker_show(&t->job->ticker, "path_following: tuning %s: gain %.3g m/rad, lookahead %.2f m: cost %.5g",
                       t->trial->name, t->trial->gain, t->trial->lookahead, *f);
     return !moray_failed(status);
 }
 
-// From what `like` was tuned to, if not NULL.
-static moray_status tune(const path_job *job, path_trial *trial, const path_trial *like)
+// From a start on; keeps what is better than what the trial has.
+static moray_status tune_from(const path_job *job, path_trial *trial, double *x)
 {
     const double lower[most] = {log(0.002), log(0.1), 0, 0}, upper[most] = {log(2), log(20), 5, 0.3};
-    double x[most] = {log(0.06), log(1.5), 0.3, 0.02};
-    if (like) {
-        const double tuned[] = {log(like->gain), log(like->lookahead), like->ahead};
-        memcpy(x, tuned, sizeof tuned);
-    }
-    tuning t = {.job = job, .trial = trial, .status = moray_ok()};
+    path_trial own = *trial;
+    tuning t = {.job = job, .trial = &own};
     const moray_search_problem problem = {
-        .n = read(trial, x), .lower = lower, .upper = upper, .self = &t, .evaluate = judge};
+        .n = read(&own, x), .lower = lower, .upper = upper, .self = &t, .evaluate = judge};
     moray_search_settings settings = moray_search_settings_default();
     moray_search_info info;
     settings.method = MORAY_SEARCH_COBYLA;
@@ -197,9 +190,24 @@ static moray_status tune(const path_job *job, path_trial *trial, const path_tria
     settings.f_tolerance = 1e-4;
     settings.max_evaluations = job->evaluations * problem.n;
     MORAY_TRY(moray_search(&problem, &settings, x, &info));
-    read(trial, x);
-    trial->evaluations = info.evaluations;
+    read(&own, x);
+    own.cost[MORAY_FIRST_PRINCIPLES] = info.objective;
+    own.evaluations = trial->evaluations + info.evaluations;
+    if (trial->evaluations == 0 || info.objective < trial->cost[MORAY_FIRST_PRINCIPLES])
+        *trial = own;
+    trial->evaluations = own.evaluations;
     return moray_ok();
+}
+
+// Too, if not NULL, from what `like` was tuned to.
+static moray_status tune(const path_job *job, path_trial *trial, const path_trial *like)
+{
+    double x[most] = {log(0.06), log(trial->law == PATH_SIGHT ? 0.4 : 1.5), 0.4, 0.02};
+    MORAY_TRY(tune_from(job, trial, x));
+    if (!like)
+        return moray_ok();
+    double again[most] = {log(like->gain), log(like->lookahead), like->ahead, 0.02};
+    return tune_from(job, trial, again);
 }
 
 // ---- All

@@ -106,7 +106,7 @@ static bool solved(const moray_turn_plan *plan)
 static moray_status solve(turn_job *job, moray_model model, const moray_gait *gait, const moray_turn_plan *from,
                           moray_turn_plan *plan)
 {
-    enum { starts = 4 };
+    enum { starts = 2 };
     const moray_turn_spec spec = spec_of(job, model, from == NULL);
     const double period = 2 * M_PI / gait->omega;
     const moray_settings settings = settings_of(job, from, period);
@@ -114,7 +114,7 @@ static moray_status solve(turn_job *job, moray_model model, const moray_gait *ga
     turning.offset = spec.limits.offset;
     MORAY_TRY(moray_turn_rate(&spec.robot, model, &turning, &job->turn_rate[model]));
     for (int k = 0; k < (from ? starts : 1); k++) {
-        const double seconds = from ? turn_duration(from) : 1, later = from ? period * (k - 2) / starts : 0;
+        const double seconds = from ? turn_duration(from) : 1, later = from ? period * (k - 0.5) / starts : 0;
         moray_turn_plan next;
         MORAY_TRY(
             moray_turn_plan_make(&next, &spec, &settings, gait, job->turn_rate[model], from, 1 + later / seconds));
