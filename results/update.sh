@@ -54,5 +54,5 @@ show heading_tracking heading_tracking --current 0.1,0.1
 show heading_fig8 heading_tracking --set reference=fig8 --current 0.1,0.1
 show paper paper all
 show classics classics all
-print benchmark_s1 benchmark --part s1
+print benchmark_s1 benchmark --part s1 --set repeats=9
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
