@@ -58,5 +58,5 @@ show path_following path_following
 show min_time_turn min_time_turn
 show paper paper all
 show classics classics all
-print benchmark_s1 benchmark --part s1
+print benchmark_s1 benchmark --part s1 --set repeats=9
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
