@@ -204,7 +204,7 @@ static moray_status swim_complex_in_vain(void)
 }
 
 // A directory of results.
-static char directory[] = "moray_memory_XXXXXX";
+static char directory[] = "/tmp/moray_memory_XXXXXX";
 
 static moray_status write_results(moray_output *output)
 {
@@ -255,6 +255,7 @@ static void fail_each(const char *what, bool may_do_without, moray_status (*run)
 
 int main(void)
 {
+    char summary[60];
     if (!CHECK(mkdtemp(directory) != NULL, "a directory"))
         return 1;
     fail_each("problem, solution, certificate", false, turn);
@@ -262,5 +263,7 @@ int main(void)
     fail_each("gait on the control-oriented model", false, swim_control);
     fail_each("diagnosis on the first-principles model", true, swim_complex_in_vain);
     fail_each("results", false, results);
+    remove(strcat(strcpy(summary, directory), "/summary.json"));
+    rmdir(directory);
     return tap_done();
 }
