@@ -161,6 +161,10 @@ static void test_simulated(void)
     moray_solution_at(solution, 0, 0.5, x, NULL);
     CHECK_NEAR(x[0], 0.5, 1e-3, "and reach the solver");
     moray_solution_free(solution);
+    solution = solve(ocp, &settings, NULL);
+    moray_solution_at(solution, 1, 0.5, x, NULL);
+    CHECK_NEAR(x[0], 1, 1e-6, "without a guess, a state known at one end is that at the other");
+    moray_solution_free(solution);
     moray_guess_free(&guess);
     CHECK_OK(moray_guess_simulate(&guess, ocp, drive, s, NULL, NULL, &rk4), "without a control");
     CHECK_NEAR(guess.phase[0].u[0], -0.4, 1e-15, "the middle of its bounds");
@@ -299,6 +303,7 @@ static void test_damaged(void)
     moray_solution *solution = solve(ocp, &settings, NULL);
     CHECK_OK(moray_solution_save(solution, kept), "saved");
     check_damaged(ocp, 1, "other\n", "line 1: moray-solution 1 expected");
+    check_damaged(ocp, 1, "moray-solution 1 arms\n", "is of problem arms, not of legs");
     check_damaged(ocp, 2, "scheme gauss phases 1 parameters 1 events 2\n",
                   "has 1 phases, 1 parameters and 2 events; "
                   "problem legs has 2, 1 and 2");

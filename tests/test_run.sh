@@ -73,6 +73,25 @@ run --json --set raise=1 --out interrupted
 check "SIGINT: exit 130: $(cat err)" eval '[ $code -eq 130 ] && says "interrupted after"'
 check "SIGINT: what there is is written" eval 'cmp out interrupted/summary.json && grep -q "\"status\":.\"interrupted\"" out &&
     [ -s interrupted/trajectory.csv ] && [ -s interrupted/report.html ]'
+check "SIGINT: the best iterate is written, and how to go on is told" eval 'says "to go on: --continue interrupted/run_demo.iterate" &&
+    [ -s interrupted/run_demo.iterate ] && [ -z "$(find . -name "*.part")" ]'
+stopped=$(number iterations)
+run --json --continue interrupted/run_demo.iterate
+check "--continue goes on to the optimum, on the mesh of the file: $(number iterations) iterations after $stopped" \
+    eval '[ $code -eq 0 ] && has objective 3 1e-6 && grep -q "\"scheme\":.\"continued\"" out && has intervals 0 0 && has nodes 82 0'
+run --json --continue interrupted/run_demo.iterate --intervals 7 --scheme radau4
+check "or on another" eval '[ $code -eq 0 ] && has objective 3 1e-6 && has intervals 7 0 && grep -q radau4 out'
+run --set raise=1 --intervals 30
+check "without --out the iterate is in the working directory, and it has its mesh" \
+    eval '[ $code -eq 130 ] && says "--continue run_demo.iterate" && run --json --continue run_demo.iterate &&
+          [ $code -eq 0 ] && has objective 3 1e-6 && has nodes 122 0'
+refuse "nowhere: No such file" --continue nowhere
+head -n 20 run_demo.iterate >cut
+refuse "line 21: more expected" --continue cut
+echo "x,y" >other
+refuse "line 1: moray-solution 1 expected" --continue other
+sed "1s/run_demo/brachistochrone/" run_demo.iterate >other
+refuse "is of problem brachistochrone, not of run_demo" --continue other
 run --set raise=2 --out twice
 check "SIGINT twice: ends at once, nothing is left" eval '[ $code -eq 130 ] && [ ! -s out ] && [ ! -e twice ]'
 run --set undefined=1

@@ -8,6 +8,8 @@
 #ifndef MORAY_OCP_H
 #define MORAY_OCP_H
 
+#include <stdio.h>
+
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"
@@ -232,6 +234,7 @@ void moray_solution_free(moray_solution *solution);
 // Keeps a solution, solved or not, in a text file, with its meshes and in full precision; the file is complete or not
 // there. Error: MORAY_IO, MORAY_INPUT (path too long).
 moray_status moray_solution_save(const moray_solution *solution, const char *path);
+void moray_solution_write(const moray_solution *solution, FILE *file); // the same into an open file
 
 // The solution of the same problem in such a file, as it was but for the history, of which the last mesh is left. To go
 // on from it, solve with the guess moray_guess_from_solution, and intervals = 0 for its meshes. settings: what the

@@ -36,9 +36,10 @@ enum { MORAY_APP_CONSTANTS = 32 };
 
 // Reads the options, solves, certifies by re-simulation, prints a table or (--json) one JSON object on standard output,
 // and leaves with --out summary.json, trajectory.csv, figures of states and controls over time, and report.html.
-// Ctrl-C ends the solve at the next iteration, a second one at once. What the solver left is shown and written in any
-// case: solved (exit code 0, or 3 where the certificate failed), not solved (1) or interrupted (130); the codes are
-// those of moray_exit. A problem that cannot be stated ends with a line on standard error and 2.
+// Ctrl-C ends the solve at the next iteration and leaves the best iterate in a file, from which --continue FILE starts,
+// on the mesh it has unless --scheme or --intervals name another; a second Ctrl-C ends at once. What the solver left is
+// shown and written in any case: solved (exit code 0, or 3 where the certificate failed), not solved (1) or interrupted
+// (130); the codes are those of moray_exit. A problem that cannot be stated ends with a line on standard error and 2.
 int moray_app_run(const moray_app *app, int argc, char **argv);
 
 // ---- Pieces of results ---------------------------------------------------------------------------------------------
@@ -60,5 +61,20 @@ void moray_certificate_line(const moray_certificate *certificate, char *text, si
 void moray_interrupt_begin(void);
 void moray_interrupt_end(void);
 bool moray_interrupted(void);
+
+// The row of --continue FILE; field: char[MORAY_PATH_SIZE] of the settings.
+#define MORAY_CONTINUE(settings, field)                                                                                \
+    {                                                                                                                  \
+        .flag = "continue", .argument = "FILE", .type = MORAY_OPTION_TEXT, MORAY_AT(settings, field),                  \
+        .help = "start from what Ctrl-C left in this file"                                                             \
+    }
+
+// Writes what an interrupted solver left to NAME.iterate, beside the other files of --out (which the caller commits) or
+// else in the working directory, and its path to path. Error: MORAY_IO, MORAY_INPUT (path too long).
+moray_status moray_iterate_keep(const moray_common *common, const char *name, const moray_solution *solution,
+                                char path[MORAY_PATH_SIZE]);
+
+// "interrupted after 12 iterations; to go on: --continue NAME.iterate" as an error, MORAY_INTERRUPTED.
+moray_status moray_interruption(const moray_solution *solution, const char *path);
 
 #endif

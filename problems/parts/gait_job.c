@@ -89,11 +89,24 @@ moray_status gait_job_prove(gait_job *job, stage *at)
     return moray_ok();
 }
 
+// Leaves the best solution so far for --continue.
+static moray_status keep_iterate(gait_job *job, const stage *at)
+{
+    char path[MORAY_PATH_SIZE];
+    MORAY_TRY(moray_iterate_keep(&job->common, job->name, at->solution, path));
+    if (job->common.output)
+        MORAY_TRY(moray_output_commit(job->common.output));
+    return moray_interruption(at->solution, path);
+}
+
 static moray_status optimise_and_prove(gait_job *job, moray_model model, const gait_starts *known)
 {
     stage *at = &job->stage[model];
     MORAY_TRY(gait_job_demand(job, model, at));
-    MORAY_TRY(gait_job_optimise(job, at, known));
+    moray_status status = gait_job_optimise(job, at, known);
+    if (status.code == MORAY_INTERRUPTED && at->solution)
+        return keep_iterate(job, at);
+    MORAY_TRY(status);
     return gait_job_prove(job, at);
 }
 
@@ -134,8 +147,9 @@ bool gait_job_certified(const gait_job *job)
 void gait_job_stage_free(stage *at)
 {
     moray_solution_free(at->solution);
+    moray_solution_free(at->from);
     moray_gait_problem_free(at->problem);
-    at->solution = NULL;
+    at->solution = at->from = NULL;
     at->problem = NULL;
 }
 
@@ -149,12 +163,13 @@ void gait_job_free(gait_job *job)
 int gait_job_main(const gait_program *program, gait_job *job, int argc, char **argv)
 {
     moray_option options[most_options];
+    int n = GAIT_JOB_OPTIONS;
     memcpy(options, gait_job_options, sizeof gait_job_options);
-    memcpy(options + GAIT_JOB_OPTIONS, program->options, (size_t)program->n_options * sizeof *options);
-    const moray_program app = {.name = program->name,
-                               .summary = program->summary,
-                               .options = options,
-                               .n_options = GAIT_JOB_OPTIONS + program->n_options};
+    memcpy(options + n, program->options, (size_t)program->n_options * sizeof *options);
+    n += program->n_options;
+    if (!program->work)
+        options[n++] = (moray_option)MORAY_CONTINUE(gait_job, from_file);
+    const moray_program app = {.name = program->name, .summary = program->summary, .options = options, .n_options = n};
     int exit_code;
     if (!moray_app_start(&app, argc, argv, job, &exit_code))
         return exit_code;

@@ -20,8 +20,8 @@ typedef struct stage {
     double taper[2];
     double link_angle; // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
     moray_gait_problem *problem;
-    moray_solution *solution;
-    int starts, agreeing; // how many, and how many of them ended at the best solution
+    moray_solution *solution, *from; // from: of --continue, where it is of this stage
+    int starts, agreeing;            // how many, and how many of them ended at the best solution
     moray_certificate certificate;
     moray_gait_promise promise;
     moray_gait_trial trial;
@@ -36,7 +36,8 @@ struct gait_job {
     double power, speed; // NaN: what the paper's gait uses and makes
     double joint_rate, joint_effort;
     moray_joints joints;
-    int random_starts, refinements; // refinements: finer meshes tried where the first does not pass the certificate
+    int random_starts, refinements;  // refinements: finer meshes tried where the first does not pass the certificate
+    char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
     moray_basin basin;
     moray_gait_trial paper;
     stage stage[2]; // by model

@@ -155,13 +155,36 @@ moray_status gait_job_continue(gait_job *job, stage *at, const stage *from)
     return moray_ok();
 }
 
-// From the known gaits, then, on the model asked for, from random ones.
+// The solution of --continue, if it is of this stage; it must be of one of them.
+static moray_status load(const gait_job *job, stage *at)
+{
+    if (!job->from_file[0] || job->stage[MORAY_CONTROL_ORIENTED].from)
+        return moray_ok();
+    const moray_status status =
+        moray_solution_load(&at->from, moray_gait_problem_ocp(at->problem), NULL, job->from_file);
+    return at->model < job->common.model && status.code == MORAY_INPUT ? moray_ok() : status;
+}
+
+static moray_status solve_continued(gait_job *job, stage *at)
+{
+    const moray_settings settings = gait_job_settings(job);
+    const moray_guess guess = moray_guess_from_solution(at->from);
+    moray_solution *solution = NULL;
+    MORAY_TRY(moray_solve(moray_gait_problem_ocp(at->problem), &settings, &guess, &solution));
+    keep_best(at, solution);
+    return moray_ok();
+}
+
+// From --continue or the known gaits, then, on the model asked for, from random ones.
 static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known)
 {
     const int random = at->model == job->common.model ? job->random_starts : 0;
+    const int first = at->from ? known->n : 0;
     srand48(1);
-    at->starts = known->n + random;
-    for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
+    at->starts = (at->from ? 1 : known->n) + random;
+    if (at->from)
+        MORAY_TRY(solve_continued(job, at));
+    for (int k = first; k < known->n + random && !moray_interrupted(); k++) {
         const moray_gait gait = tapered(at, k < known->n ? known->gait[k] : gait_job_random(job, at));
         moray_solution *solution = NULL;
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
@@ -229,6 +252,7 @@ moray_status gait_job_certify(gait_job *job, stage *at)
 moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known)
 {
     MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
+    MORAY_TRY(load(job, at));
     MORAY_TRY(solve_all(job, at, known));
     if (moray_interrupted())
         return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");

@@ -161,7 +161,9 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
         *e++ = moray_at_least(least_speed(&problem->spec));
 }
 
-static const char *const goals[] = {"fastest gait", "thriftiest gait"};
+static const char *const goals[][2] = {
+    [MORAY_GAIT_FASTEST] = {"fastest gait, control-oriented", "fastest gait, first principles"},
+    [MORAY_GAIT_THRIFTIEST] = {"thriftiest gait, control-oriented", "thriftiest gait, first principles"}};
 static const char *const s_names[][MORAY_GAIT_PARAMETERS] = {{"a", "omega", "delta", "phi_0", "taper"},
                                                              {"alpha", "omega", "delta", "phi_0", "taper"}};
 static const char *const gait_states[][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
@@ -221,7 +223,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .x_names = problem->spec.joints == MORAY_JOINTS_CLOSED_LOOP ? NULL : gait_states[problem->spec.model],
     };
     return moray_ocp_new(&problem->ocp,
-                         &(moray_ocp_spec){.name = goals[problem->spec.goal],
+                         &(moray_ocp_spec){.name = goals[problem->spec.goal][problem->spec.model],
                                            .phases = 1,
                                            .phase = &phase,
                                            .ns = ns,

@@ -35,6 +35,7 @@ static const moray_option own_rows[] = {
      .max = INFINITY,
      .open = true,
      .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"},
+    MORAY_CONTINUE(app_run, from_file),
     {.flag = "check",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(app_run, check),
@@ -112,16 +113,34 @@ static moray_status certify(app_run *run)
     return status;
 }
 
+// Goes on from --continue, on the mesh of the file unless the options name another than by default.
+static moray_status load(app_run *run, moray_settings *settings)
+{
+    app_run usual = {.app = run->app};
+    if (!run->from_file[0])
+        return moray_ok();
+    start_from_defaults(&usual);
+    if (run->common.intervals == usual.common.intervals && strcmp(run->common.scheme, usual.common.scheme) == 0)
+        settings->intervals = 0;
+    return moray_solution_load(&run->from, run->ocp, settings, run->from_file);
+}
+
 static moray_status solve(app_run *run)
 {
-    const moray_settings settings = settings_of(run);
+    moray_settings settings = settings_of(run);
+    MORAY_TRY(load(run, &settings));
+    const moray_guess from = moray_guess_from_solution(run->from), *guess = run->from ? &from : run->app->guess;
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
     moray_interrupt_begin();
-    moray_status status = moray_solve(run->ocp, &settings, run->app->guess, &run->solution);
+    moray_status status = moray_solve(run->ocp, &settings, guess, &run->solution);
     moray_interrupt_end();
     if (!moray_failed(status) && moray_solution_info(run->solution)->outcome == MORAY_NLP_SOLVED)
         status = certify(run);
     moray_ticker_end(&run->ticker);
+    if (settings.intervals == 0) { // for the results
+        run->common.intervals = 0;
+        strcpy(run->common.scheme, "continued");
+    }
     return status;
 }
 
@@ -135,7 +154,7 @@ static moray_status judge(const app_run *run)
     if (info->outcome == MORAY_NLP_SOLVED)
         return moray_ok();
     if (info->outcome == MORAY_NLP_INTERRUPTED)
-        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations", info->iterations);
+        return moray_interruption(run->solution, run->kept);
     snprintf(said, sizeof said, "%s", moray_solution_diagnosis(run->solution));
     for (size_t i = strlen(said); i > 0 && said[i - 1] == '\n'; i--)
         said[i - 1] = 0;
@@ -211,6 +230,7 @@ int moray_app_run(const moray_app *app, int argc, char **argv)
         exit_code = MORAY_EXIT_CERTIFICATE;
     }
     moray_solution_free(run.solution);
+    moray_solution_free(run.from);
     moray_ocp_free(run.ocp);
     return exit_code;
 }

@@ -11,13 +11,15 @@ typedef struct app_run {
     double mesh_tol, barrier;
     int refinements, max_iterations;
     bool check;
+    char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
     double constant[MORAY_APP_CONSTANTS];
     const moray_app *app;
     const char *name;
     // found along the way
     moray_ocp *ocp;
-    moray_solution *solution;
-    bool certified; // whether there is a certificate at all
+    moray_solution *solution, *from;
+    char kept[MORAY_PATH_SIZE]; // where the best iterate is after an interruption
+    bool certified;             // whether there is a certificate at all
     moray_certificate certificate;
     moray_ticker ticker;
 } app_run;

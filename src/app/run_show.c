@@ -236,6 +236,8 @@ static void print_tables(const app_run *run, const run_tables *tables)
 moray_status moray_run_show(app_run *run)
 {
     run_tables tables;
+    if (moray_solution_info(run->solution)->outcome == MORAY_NLP_INTERRUPTED)
+        MORAY_TRY(moray_iterate_keep(&run->common, run->name, run->solution, run->kept));
     MORAY_TRY(moray_run_tables_new(&tables, run));
     moray_json *json = make_json(run);
     moray_status status = run->common.output ? write_files(run, &tables, json) : moray_ok();

@@ -12,6 +12,13 @@
 
 static const char *const families[] = {[MORAY_LOBATTO] = "lobatto", [MORAY_RADAU] = "radau", [MORAY_GAUSS] = "gauss"};
 
+// Of the name of a problem that is kept: its first line, if not too long.
+static int name_length(const moray_ocp *ocp)
+{
+    const size_t longest = 200, length = strcspn(ocp->name, "\n");
+    return (int)(length < longest ? length : longest);
+}
+
 // ---- Saving ----
 
 static void write_meshes(FILE *file, const struct layout *layout, const moray_ocp *ocp)
@@ -25,12 +32,12 @@ static void write_meshes(FILE *file, const struct layout *layout, const moray_oc
     }
 }
 
-static void write_solution(FILE *file, const moray_solution *solution)
+void moray_solution_write(const moray_solution *solution, FILE *file)
 {
     const struct transcription *t = solution->transcription;
     const moray_iterate *it = &solution->iterate;
-    fprintf(file, "moray-solution 1\nscheme %s phases %d parameters %d events %d\n", families[t->layout.family],
-            t->ocp->phases, t->ocp->ns, t->ocp->ne);
+    fprintf(file, "moray-solution 1 %.*s\nscheme %s phases %d parameters %d events %d\n", name_length(t->ocp),
+            t->ocp->name, families[t->layout.family], t->ocp->phases, t->ocp->ns, t->ocp->ne);
     write_meshes(file, &t->layout, t->ocp);
     fprintf(file, "outcome %d iterations %d seconds %.17g\n", solution->info.outcome, solution->info.iterations,
             solution->info.seconds);
@@ -50,7 +57,7 @@ moray_status moray_solution_save(const moray_solution *solution, const char *pat
     FILE *file = fopen(temporary, "w");
     if (!file)
         return moray_error(MORAY_IO, "%s: %s", temporary, strerror(errno));
-    write_solution(file, solution);
+    moray_solution_write(solution, file);
     const bool written = !ferror(file), closed = fclose(file) == 0;
     if (written && closed && rename(temporary, path) == 0)
         return moray_ok();
@@ -94,13 +101,25 @@ static moray_status read_numbers(struct reader *r, int n, double *numbers)
     return moray_ok();
 }
 
+// "moray-solution 1" and the name of the problem.
+static moray_status read_name(struct reader *r, const moray_ocp *ocp)
+{
+    int version, used = 0;
+    MORAY_TRY(next_line(r));
+    if (sscanf(r->text, "moray-solution %d %n", &version, &used) != 1 || version != 1)
+        return damaged(r, "moray-solution 1");
+    r->text[strcspn(r->text, "\n")] = 0;
+    const char *name = r->text + used;
+    if ((int)strlen(name) != name_length(ocp) || strncmp(name, ocp->name, strlen(name)) != 0)
+        return moray_error(MORAY_INPUT, "%s: is of problem %.80s, not of %.80s", r->path, name, ocp->name);
+    return moray_ok();
+}
+
 static moray_status read_head(struct reader *r, const moray_ocp *ocp, moray_family *family)
 {
     char scheme[20];
-    int version, phases, parameters, events;
-    MORAY_TRY(next_line(r));
-    if (sscanf(r->text, "moray-solution %d", &version) != 1 || version != 1)
-        return damaged(r, "moray-solution 1");
+    int phases, parameters, events;
+    MORAY_TRY(read_name(r, ocp));
     MORAY_TRY(next_line(r));
     if (sscanf(r->text, "scheme %19s phases %d parameters %d events %d", scheme, &phases, &parameters, &events) != 4)
         return damaged(r, "scheme, phases, parameters and events");

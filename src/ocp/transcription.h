@@ -40,6 +40,8 @@ moray_status transcription_new(struct transcription **result, const moray_ocp *o
                                const struct mesh *meshes);
 void transcription_free(struct transcription *t);
 
+void transcription_callbacks(struct transcription *t); // sets those of t->nlp
+
 // Brings the caches to x. False where a value is not finite (t->failure says which).
 bool transcription_values(struct transcription *t, const double *x);
 bool transcription_jacobians(struct transcription *t, const double *x);

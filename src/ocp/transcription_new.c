@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include <stdlib.h>
+
+#include "ocp/transcription.h"
+
+static void set_row(struct transcription *t, int row, moray_bounds bounds)
+{
+    ((double *)t->nlp.g_lower)[row] = bounds.lower;
+    ((double *)t->nlp.g_upper)[row] = bounds.upper;
+}
+
+static void set_column(struct transcription *t, int column, moray_bounds bounds)
+{
+    ((double *)t->nlp.x_lower)[column] = bounds.lower;
+    ((double *)t->nlp.x_upper)[column] = bounds.upper;
+}
+
+static void set_phase_bounds(struct transcription *t, int p)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    for (int n = 0; n < layout->nodes; n++) {
+        const struct node *node = &layout->node[n];
+        const moray_bounds *x = n == 0 ? phase->x0 : n == layout->nodes - 1 ? phase->xf : phase->x;
+        for (int r = 0; r < phase->nx; r++)
+            set_column(t, node->x + r, x[r]);
+        for (int r = 0; r < phase->nu && node->collocated; r++)
+            set_column(t, node->x + phase->nx + r, phase->u[r]);
+        for (int r = 0; r < phase->nc && node->collocated; r++)
+            set_row(t, node->path + r, phase->c[r]);
+    }
+    for (int r = 0; r < phase->nq; r++)
+        set_column(t, layout->q + r, phase->q[r]); // rows of defects and integrals stay at zero
+    if (layout->t0 >= 0)
+        set_column(t, layout->t0, phase->t0);
+    if (layout->tf >= 0)
+        set_column(t, layout->tf, phase->tf);
+}
+
+static void set_bounds(struct transcription *t)
+{
+    for (int p = 0; p < t->ocp->phases; p++)
+        set_phase_bounds(t, p);
+    for (int i = 0; i < t->ocp->ns; i++)
+        set_column(t, t->layout.s + i, t->ocp->s[i]);
+    for (int i = 0; i < t->ocp->ne; i++)
+        set_row(t, t->layout.events + i, t->ocp->e[i]);
+}
+
+static void set_end_columns(struct transcription *t)
+{
+    int *column = t->end_column;
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const struct phase *phase = &t->ocp->phase[p];
+        const struct phase_layout *layout = &t->layout.phase[p];
+        for (int r = 0; r < phase->nx; r++)
+            *column++ = layout->node[0].x + r;
+        *column++ = layout->t0;
+        for (int r = 0; r < phase->nx; r++)
+            *column++ = layout->node[layout->nodes - 1].x + r;
+        *column++ = layout->tf;
+        for (int r = 0; r < phase->nq; r++)
+            *column++ = layout->q + r;
+    }
+    for (int r = 0; r < t->ocp->ns; r++)
+        *column++ = t->layout.s + r;
+}
+
+static moray_status allocate_phase_cache(struct transcription *t, int p)
+{
+    const moray_map *map = t->ocp->phase[p].map;
+    struct phase_cache *cache = &t->phase[p];
+    const size_t nodes = (size_t)t->layout.phase[p].nodes;
+    cache->in = calloc(nodes * map->n_in, sizeof(double));
+    cache->out = calloc(nodes * map->n_out, sizeof(double));
+    cache->jac = calloc(nodes * map->jac.nnz + 1, sizeof(double));
+    cache->lambda = calloc(nodes * t->ocp->phase[p].nx, sizeof(double));
+    cache->column = calloc((size_t)map->n_in, sizeof(int));
+    if (cache->in && cache->out && cache->jac && cache->lambda && cache->column)
+        return moray_ok();
+    return moray_error(MORAY_MEMORY, "no memory for the %d nodes of phase %s", t->layout.phase[p].nodes,
+                       t->ocp->phase[p].name);
+}
+
+static moray_status allocate(struct transcription *t)
+{
+    const moray_map *end = t->ocp->endpoint;
+    const size_t columns = (size_t)t->layout.columns, rows = (size_t)t->layout.rows;
+    int outs = end->n_out, nnz = end->hess.nnz;
+    t->phase = calloc((size_t)t->ocp->phases, sizeof *t->phase);
+    if (!t->phase)
+        return moray_error(MORAY_MEMORY, "no memory for %d phases", t->ocp->phases);
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const moray_map *map = t->ocp->phase[p].map;
+        MORAY_TRY(allocate_phase_cache(t, p));
+        outs = map->n_out > outs ? map->n_out : outs;
+        nnz = map->hess.nnz > nnz ? map->hess.nnz : nnz;
+    }
+    t->bounds = calloc(2 * (columns + rows), sizeof(double));
+    t->x = calloc(columns, sizeof(double));
+    t->end_in = calloc((size_t)end->n_in + 1, sizeof(double));
+    t->end_out = calloc((size_t)end->n_out, sizeof(double));
+    t->end_jac = calloc((size_t)end->jac.nnz + 1, sizeof(double));
+    t->end_column = calloc((size_t)end->n_in + 1, sizeof(int));
+    t->weight = calloc((size_t)outs, sizeof(double));
+    t->map_hess = calloc((size_t)nnz + 1, sizeof(double));
+    if (t->bounds && t->x && t->end_in && t->end_out && t->end_jac && t->end_column && t->weight && t->map_hess)
+        return moray_ok();
+    return moray_error(MORAY_MEMORY, "no memory for %zu variables", columns);
+}
+
+static moray_status record_patterns(struct transcription *t)
+{
+    triplets_record(&t->jac);
+    walk_jacobian(t, &t->jac);
+    MORAY_TRY(triplets_close(&t->jac));
+    triplets_record(&t->hess);
+    walk_hessian(t, 0, t->bounds, &t->hess); // while recording, any vector does for the multipliers
+    return triplets_close(&t->hess);
+}
+
+static void describe_programme(struct transcription *t)
+{
+    const int columns = t->layout.columns, rows = t->layout.rows;
+    t->nlp = (moray_nlp){.n = columns,
+                         .m = rows,
+                         .x_lower = t->bounds,
+                         .x_upper = t->bounds + columns,
+                         .g_lower = t->bounds + 2 * columns,
+                         .g_upper = t->bounds + 2 * columns + rows};
+    transcription_callbacks(t);
+}
+
+moray_status transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
+                               const struct mesh *meshes)
+{
+    *result = NULL;
+    struct transcription *t = calloc(1, sizeof *t);
+    if (!t)
+        return moray_error(MORAY_MEMORY, "no memory for the transcription");
+    t->ocp = ocp;
+    moray_status status = layout_new(&t->layout, ocp, family, meshes);
+    if (!moray_failed(status))
+        status = allocate(t);
+    if (!moray_failed(status)) {
+        describe_programme(t);
+        set_bounds(t);
+        set_end_columns(t);
+        status = record_patterns(t);
+    }
+    if (moray_failed(status)) {
+        transcription_free(t);
+        return status;
+    }
+    t->nlp.nnz_jac = t->jac.pattern.nnz, t->nlp.jac_row = t->jac.pattern.row, t->nlp.jac_col = t->jac.pattern.col;
+    t->nlp.nnz_hess = t->hess.pattern.nnz, t->nlp.hess_row = t->hess.pattern.row, t->nlp.hess_col = t->hess.pattern.col;
+    *result = t;
+    return moray_ok();
+}
+
+void transcription_free(struct transcription *t)
+{
+    if (!t)
+        return;
+    for (int p = 0; t->phase && p < t->ocp->phases; p++) {
+        free(t->phase[p].in);
+        free(t->phase[p].out);
+        free(t->phase[p].jac);
+        free(t->phase[p].lambda);
+        free(t->phase[p].column);
+    }
+    free(t->phase);
+    free(t->bounds);
+    free(t->scale);
+    free(t->x);
+    free(t->end_in);
+    free(t->end_out);
+    free(t->end_jac);
+    free(t->end_column);
+    free(t->weight);
+    free(t->map_hess);
+    triplets_free(&t->jac);
+    triplets_free(&t->hess);
+    layout_free(&t->layout);
+    free(t);
+}
