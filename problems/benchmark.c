@@ -5,9 +5,10 @@
 // in this run.
 #include "parts/benchmark.h"
 
-enum part { ALL, S1, PROBLEMS, INTERVALS, LINKS, SIMULATION };
-static const char *const parts[] = {"all", "s1", "problems", "intervals", "links", "simulation", NULL};
-static const char *const unused[] = {"scheme", "intervals", "tol", "out", NULL};
+enum part { ALL, S1, PROBLEMS, CLASSICS, INTERVALS, LINKS, HORIZON, SIMULATION };
+static const char *const parts[] = {"all",   "s1",      "problems",   "classics", "intervals",
+                                    "links", "horizon", "simulation", NULL};
+static const char *const unused[] = {"scheme", "intervals", "tol", NULL};
 
 static const moray_option options[] = {
     {.section = "benchmark",
@@ -17,8 +18,9 @@ static const moray_option options[] = {
      .type = MORAY_OPTION_CHOICE,
      MORAY_AT(benchmark, part),
      .choices = parts,
-     .help = "what to measure: a programme that other tools can be given, the shipped problems, growth over intervals "
-             "and over links, simulation"},
+     .help =
+         "what to measure: a programme that other tools can be given, optimal gaits, textbook problems, growth over "
+         "intervals, over links and over the horizon of heading tracking, simulation"},
     {.section = "benchmark",
      .key = "repeats",
      .type = MORAY_OPTION_INT,
@@ -31,8 +33,8 @@ static const moray_option options[] = {
      .type = MORAY_OPTION_INT,
      MORAY_AT(benchmark, most_intervals),
      .min = 10,
-     .max = 1000,
-     .help = "where growth over intervals ends"},
+     .max = 2000,
+     .help = "where growth over intervals ends; textbook problems that begin with more are left out"},
     {.section = "benchmark",
      .key = "most_links",
      .type = MORAY_OPTION_INT,
@@ -40,6 +42,13 @@ static const moray_option options[] = {
      .min = 5,
      .max = 100,
      .help = "where growth over links ends"},
+    {.section = "benchmark",
+     .key = "most_seconds",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(benchmark, most_seconds),
+     .min = 60,
+     .max = 800,
+     .help = "where growth over the horizon ends"},
 };
 
 static const moray_program program = {
@@ -108,6 +117,18 @@ static moray_status measure_problems(benchmark *run)
     return status;
 }
 
+static moray_status measure_classics(benchmark *run)
+{
+    moray_status status = moray_ok();
+    for (int k = 0; classics[k] && !moray_failed(status); k++) {
+        classic_case one = {.classic = classics[k]};
+        const subject it = classic_subject(&one);
+        if (one.classic->intervals <= run->most_intervals)
+            status = add_case(run, one.classic->name, &it);
+    }
+    return status;
+}
+
 // Sizes up to `most`; `pick` tells the case which.
 static moray_status measure_growth(benchmark *run, const gait_case *of, const char *over, const int *sizes, int most)
 {
@@ -145,7 +166,7 @@ static moray_status measure_intervals(benchmark *run)
     closed_loop.name = "max_speed, control-oriented, closed loop";
     closed_loop.joints = MORAY_JOINTS_CLOSED_LOOP;
     MORAY_TRY(measure_growth(run, &on_gait, "intervals", interval_sizes, run->most_intervals));
-    return measure_growth(run, &closed_loop, "intervals", interval_sizes, run->most_intervals / 5);
+    return measure_growth(run, &closed_loop, "intervals", interval_sizes, run->most_intervals);
 }
 
 static moray_status measure_links(benchmark *run)
@@ -155,6 +176,28 @@ static moray_status measure_links(benchmark *run)
     const int most = run->most_links < most_in_loop ? run->most_links : most_in_loop;
     MORAY_TRY(measure_growth(run, &on_gait, "links", link_sizes, run->most_links));
     return measure_growth(run, &closed_loop, "links", link_sizes, most);
+}
+
+static moray_status measure_horizon_of(benchmark *run, const char *name, moray_model model)
+{
+    static const int horizons[] = {60, 120, 240, 600, 0};
+    growth *g = &run->growths[run->n_growths++];
+    *g = (growth){.name = name, .over = "seconds"};
+    for (const int *seconds = horizons; *seconds && *seconds <= run->most_seconds; seconds++) {
+        horizon_case one = {.model = model, .seconds = *seconds};
+        moray_ticker_show(&run->ticker, "benchmark: %s, %d seconds", name, *seconds);
+        MORAY_TRY(horizon_begin(&one));
+        const subject it = horizon_subject(&one);
+        MORAY_TRY(measure(&it, run->repeats, &g->cost[g->n]));
+        g->size[g->n++] = *seconds;
+    }
+    return moray_ok();
+}
+
+static moray_status measure_horizon(benchmark *run)
+{
+    MORAY_TRY(measure_horizon_of(run, "heading_tracking, control-oriented", MORAY_CONTROL_ORIENTED));
+    return measure_horizon_of(run, "heading_tracking, first-principles", MORAY_FIRST_PRINCIPLES);
 }
 
 static moray_status measure_simulation(benchmark *run)
@@ -176,8 +219,10 @@ static moray_status work(benchmark *run)
         moray_status (*measure)(benchmark *);
     } all[] = {{S1, measure_s1},
                {PROBLEMS, measure_problems},
+               {CLASSICS, measure_classics},
                {INTERVALS, measure_intervals},
                {LINKS, measure_links},
+               {HORIZON, measure_horizon},
                {SIMULATION, measure_simulation}};
     moray_status status = moray_ok();
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
@@ -192,7 +237,11 @@ int main(int argc, char **argv)
 {
     static benchmark run;
     int exit_code;
-    run = (benchmark){.common = moray_common_defaults(), .repeats = 5, .most_intervals = 1000, .most_links = 100};
+    run = (benchmark){.common = moray_common_defaults(),
+                      .repeats = 5,
+                      .most_intervals = 1000,
+                      .most_links = 100,
+                      .most_seconds = 600};
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;
     return moray_app_end(&program, &run, work(&run));

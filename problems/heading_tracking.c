@@ -13,8 +13,8 @@ static const moray_option options[] = {
      .argument = "TEXT",
      .type = MORAY_OPTION_TEXT,
      MORAY_AT(heading_job, reference_text),
-     .help = "steps:T=H,... or ramps:T=H,... (s, deg), sine:AMPLITUDE,PERIOD, or a CSV file with the columns "
-             "t_s,heading_deg"},
+     .help = "steps:T=H,... or ramps:T=H,... (s, deg), sine:AMPLITUDE,PERIOD, a CSV file with the columns "
+             "t_s,heading_deg, or fig8: the manoeuvre and gait of Sec. V-C"},
     {.section = "problem",
      .key = "horizon_s",
      .flag = "horizon",
@@ -23,7 +23,7 @@ static const moray_option options[] = {
      .min = 1,
      .max = 1e5,
      .unit = "s",
-     .help = "how long the reference is followed"},
+     .help = "how long the reference is followed; by default 100, fig8 190"},
     STEER_OPTIONS(heading_job, input),
     STEER_LIMIT(heading_job, max_error, "max_error_deg", "deg", "largest heading error allowed of the plan"),
     STEER_REAL(heading_job, weight_power, "problem", "weight_power", 0, 1e6, NULL,
@@ -57,20 +57,22 @@ static const moray_program program = {
     .n_options = sizeof options / sizeof *options,
 };
 
+static const double usual_horizon = 100;
+
 static heading_job defaults(void)
 {
     heading_job job = {.common = moray_common_defaults(),
                        .reference_text = "steps:20=30,60=0",
-                       .horizon = 100,
+                       .horizon = NAN,
                        .input = steer_input_default(),
                        .weight_steering = 0.003,
                        .max_error = INFINITY,
                        .intervals_per_period = 5,
-                       .refinements = 2,
+                       .refinements = 8,
                        .replan_periods = 1,
                        .look_ahead_periods = 6,
                        .recede = true,
-                       .gait_evaluations = 30,
+                       .gait_evaluations = 12,
                        .evaluations = 15};
     job.common.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "radau5");
@@ -83,8 +85,18 @@ static moray_status work(heading_job *job)
     moray_family family;
     int stages;
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
-    MORAY_TRY(moray_reference_read(&job->reference, job->reference_text));
-    MORAY_TRY(heading_make_plans(job));
+    if (heading_is_fig8(job))
+        MORAY_TRY(heading_fig8_prepare(job));
+    else
+        MORAY_TRY(moray_reference_read(&job->reference, job->reference_text));
+    if (isnan(job->horizon))
+        job->horizon = usual_horizon;
+    heading_choose_trials(job);
+    MORAY_TRY(heading_plan_first(job));
+    MORAY_TRY(heading_run_trials(job));
+    if (job->common.model == MORAY_CONTROL_ORIENTED)
+        return moray_ok();
+    MORAY_TRY(heading_plan_last(job));
     return heading_run_trials(job);
 }
 
@@ -108,7 +120,9 @@ int main(int argc, char **argv)
     if (!moray_app_start(&program, argc, argv, &job, &exit_code))
         return exit_code;
     job.ticker = moray_ticker_start(stderr, job.common.quiet);
+    moray_interrupt_begin();
     moray_status status = work(&job);
+    moray_interrupt_end();
     moray_ticker_end(&job.ticker);
     if (!moray_failed(status))
         status = heading_report(&job);

@@ -42,9 +42,21 @@ show() {
 show max_speed max_speed
 show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
-show paper paper all
-print benchmark_s1 benchmark --part s1
+show search_gait search_gait
+show search_gait_free search_gait --set theta_max_deg=1:60
 show pareto pareto
 show pareto_free pareto --set theta_max_deg=1:60
+show free_gait free_gait --set harmonics=5
+show free_gait_strict free_gait --set link_angle_deg=20
+show free_gait_wide free_gait --set theta_max_deg=1:60 --set harmonics=5
+show free_gait_control free_gait --model control
+show sensitivity sensitivity
+show sensitivity_control sensitivity --model control
+show heading_tracking heading_tracking --current 0.1,0.1
+show heading_fig8 heading_tracking --set reference=fig8 --current 0.1,0.1
 show path_following path_following
 show min_time_turn min_time_turn
+show paper paper all
+show classics classics all
+print benchmark_s1 benchmark --part s1
+show benchmark benchmark --set repeats=3 --set most_intervals=1000

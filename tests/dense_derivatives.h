@@ -23,7 +23,9 @@ static moray_plant_spec random_spec(int links, moray_joints joints, bool forces,
                               .joints = joints,
                               .current = {draw(-1, 1), draw(-1, 1)},
                               .path_forces = forces,
-                              .path_angles = angles};
+                              .path_angles = angles,
+                              .path_rates = joints == MORAY_JOINTS_SERIES && angles,
+                              .harmonics = joints == MORAY_JOINTS_SERIES ? DENSE_HARMONICS : 0};
 }
 
 // For every input a range to draw from and the step of a difference quotient of order eight along it; the step in
@@ -42,7 +44,8 @@ static void input_kinds(const moray_plant_spec *spec, input_kind *kinds)
         {0.05, 0.2, 2e-3}, {1, 3, 5e-3}, {0.3, 1.2, 1e-3}, {-0.05, 0.05, 2e-3}, {-0.8, 0.8, 1e-2}};
     input_kind *next = kinds;
     const bool steered = spec->joints == MORAY_JOINTS_STEERED;
-    const bool joints = spec->joints != MORAY_JOINTS_ON_GAIT && !steered;
+    const bool series = spec->joints == MORAY_JOINTS_SERIES;
+    const bool joints = spec->joints == MORAY_JOINTS_FREE || spec->joints == MORAY_JOINTS_CLOSED_LOOP;
     for (int i = 0; i < n && joints; i++)
         *next++ = phi;
     *next++ = angle, *next++ = position, *next++ = position;
@@ -54,7 +57,7 @@ static void input_kinds(const moray_plant_spec *spec, input_kind *kinds)
     for (int i = 0; i < size.nu; i++)
         *next++ = ubar;
     for (int i = 0; i < size.ns; i++)
-        *next++ = gait[i];
+        *next++ = !series ? gait[i] : i == 0 ? gait[1] : phi;
     *next = (input_kind){0, 3, 5e-3};
 }
 

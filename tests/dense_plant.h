@@ -13,7 +13,12 @@
 #include "moray/snake.h"
 #include "random_robot.h"
 
-enum { DENSE_LINKS = MAX_LINKS, DENSE_INPUTS = 3 * DENSE_LINKS + 8, DENSE_OUTPUTS = 4 * DENSE_LINKS + 8 };
+enum {
+    DENSE_LINKS = MAX_LINKS,
+    DENSE_HARMONICS = 2,
+    DENSE_INPUTS = (1 + 2 * DENSE_HARMONICS) * DENSE_LINKS + 8,
+    DENSE_OUTPUTS = 4 * DENSE_LINKS + 8
+};
 
 typedef double complex num;
 
@@ -55,6 +60,20 @@ typedef struct dense_state {
     int at_theta, at_v_theta;
 } dense_state;
 
+// phi_i, phi_i' and phi_i'' of a series with s = (omega, coefficients as in moray_series), joint i from 0.
+static void dense_series(int n, int harmonics, const num *s, num t, int i, num motion[3])
+{
+    const num omega = s[0], *c = s + 1;
+    motion[0] = c[i];
+    motion[1] = motion[2] = 0;
+    for (int k = 1; k <= harmonics; k++) {
+        const num p = c[n * (2 * k - 1) + i], q = c[n * 2 * k + i];
+        motion[0] += p * csin(k * omega * t) + q * ccos(k * omega * t);
+        motion[1] += k * omega * (p * ccos(k * omega * t) - q * csin(k * omega * t));
+        motion[2] -= k * k * omega * omega * (p * csin(k * omega * t) + q * ccos(k * omega * t));
+    }
+}
+
 static dense_state dense_unpack(const dense_plant *self, const num *in)
 {
     dense_state x = {.at_theta = 0, .at_v_theta = 3};
@@ -62,14 +81,19 @@ static dense_state dense_unpack(const dense_plant *self, const num *in)
     const num *s = in + size.nx + size.nu, t = s[size.ns];
     const int n = self->n;
     const bool steered = self->spec.joints == MORAY_JOINTS_STEERED;
-    const bool on_gait = steered || self->spec.joints == MORAY_JOINTS_ON_GAIT;
+    const bool series = self->spec.joints == MORAY_JOINTS_SERIES;
+    const bool on_gait = steered || series || self->spec.joints == MORAY_JOINTS_ON_GAIT;
     if (!on_gait) {
         x.at_theta = n;
         x.at_v_theta = 2 * n + 3;
     }
     for (int i = 0; i < n; i++) {
         num ref = 0, dref = 0, ddref = 0; // (25)
-        if (self->spec.joints != MORAY_JOINTS_FREE) {
+        if (series) {
+            num motion[3];
+            dense_series(n, self->spec.harmonics, s, t, i, motion);
+            ref = motion[0], dref = motion[1], ddref = motion[2];
+        } else if (self->spec.joints != MORAY_JOINTS_FREE) {
             const num argument = s[1] * t + i * s[2];
             const num taper = steered ? 0 : s[4];
             const num a = s[0] * (1 + taper * (n > 1 ? (2.0 * i - (n - 1)) / (n - 1) : 0));
@@ -139,7 +163,7 @@ static void dense_value(const dense_plant *self, const num *in, num *out)
     if (self->spec.joints == MORAY_JOINTS_STEERED) {
         out[6] = in[7];
         out[7] = in[8];
-    } else if (self->spec.joints != MORAY_JOINTS_ON_GAIT)
+    } else if (theta > 0)
         for (int i = 0; i < n; i++) {
             out[i] = x.v_phi[i];
             out[n + 3 + i] = x.ubar[i];
@@ -156,6 +180,8 @@ static void dense_value(const dense_plant *self, const num *in, num *out)
     apply(self->shape.A, true, x.phi, angles); // (12)
     for (int i = 0; i <= n && self->spec.path_angles; i++)
         *next++ = angles[i] / (4 * self->spec.robot.l);
+    for (int i = 0; i < n && self->spec.path_rates; i++)
+        *next++ = x.v_phi[i];
     *next = inner(n, rates.u, x.v_phi);
 }
 

@@ -14,14 +14,17 @@ static int tap_run, tap_failed;
 __attribute__((format(printf, 4, 5))) static inline bool tap_check(bool ok, const char *file, int line,
                                                                    const char *format, ...)
 {
+    char text[2000];
     va_list arguments;
     va_start(arguments, format);
-    printf("%s %d - ", ok ? "ok" : "not ok", ++tap_run);
-    vprintf(format, arguments);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    for (char *c = text; *c; c++)
+        *c = *c == '\n' ? ' ' : *c; // a test is one line
+    printf("%s %d - %s", ok ? "ok" : "not ok", ++tap_run, text);
     if (!ok)
         printf(" (%s:%d)", file, line);
     printf("\n");
-    va_end(arguments);
     tap_failed += !ok;
     return ok;
 }

@@ -10,7 +10,7 @@
 #include "moray/ocp.h"
 
 // A cart x' = v, v' = u with one integral and up to two events of the final place.
-enum plant { motor, clock_state, unreal, root, greedy };
+enum plant { motor, clock_state, unreal, root, greedy, timid };
 
 static void move(const moray_node *at, moray_rates *out, const void *data)
 {
@@ -23,6 +23,8 @@ static void move(const moray_node *at, moray_rates *out, const void *data)
         out->g[0] += sqrt(0.2 - v); // the mean speed must be 1
     if (plant == greedy)
         out->g[0] = -x;
+    if (plant == timid)
+        out->g[0] = x;
 }
 
 static void coast(const moray_node *at, moray_rates *out, const void *data)
@@ -140,12 +142,15 @@ static const moray_settings *usual(void)
 
 static void test_bounds_in_the_way(void)
 {
-    static const moray_bounds weak[] = {{-1, 1}}, slow[] = {{-10, 10}, {-1e20, 0.8}}; // the mean speed must be 1
+    static const moray_bounds weak[] = {{-1, 1}}, brake[] = {{-1, 1e20}}, // the mean speed must be 1
+        slow[] = {{-10, 10}, {-1e20, 0.8}};
     enum plant plant = motor;
     moray_phase_spec phase = cart();
     moray_ocp_spec spec = task(&plant, &phase);
     phase.u = (moray_bounds_list){weak, 1};
     check_suggestion(&spec, *usual(), GAVE_UP, "Try: a looser upper bound for control force of phase cart");
+    phase.u = (moray_bounds_list){brake, 1};
+    check_suggestion(&spec, *usual(), GAVE_UP, "Try: a looser lower bound for control force of phase cart");
     phase.u = (moray_bounds_list){0};
     phase.x = (moray_bounds_list){slow, 2};
     check_suggestion(&spec, *usual(), GAVE_UP, "Try: a looser upper bound for state speed of phase cart");
@@ -177,6 +182,33 @@ static void test_dependent(void)
                      "Try: free an end value or a time, or add a control: there are 81 equations for 79 variables.");
 }
 
+enum { goals = 6 };
+
+static void scatter(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+    for (int i = 0; i < goals; i++)
+        out->e[i] = at->phase[0].xf[0];
+}
+
+static void test_many_dependent(void)
+{
+    static const char *const names[goals] = {"a", "b", "c", "d", "e", "f"};
+    static moray_bounds apart[goals];
+    enum plant plant = motor;
+    moray_phase_spec phase = cart();
+    moray_ocp_spec spec = task(&plant, &phase);
+    for (int i = 0; i < goals; i++)
+        apart[i] = moray_fixed(i);
+    phase.xf.at = free_end;
+    spec.endpoint = scatter;
+    spec.ne = goals;
+    spec.e = (moray_bounds_list){apart, goals};
+    spec.e_names = names;
+    check_suggestion(&spec, *usual(), GAVE_UP, "; and 2 more.");
+}
+
 static void test_another_guess(void)
 {
     static const moray_bounds unreal_end[] = {{0, 0}, {-1e20, 1e20}};
@@ -198,6 +230,9 @@ static void test_runs_away(void)
     settings.max_iterations = 200;
     check_suggestion(&spec, settings, MORAY_NLP_ITERATION_LIMIT,
                      "Try: an upper bound for control force of phase cart, which went to ");
+    plant = timid;
+    check_suggestion(&spec, settings, MORAY_NLP_ITERATION_LIMIT,
+                     "Try: a lower bound for control force of phase cart, which went to -");
 }
 
 static void test_leaves_domain(void)
@@ -311,6 +346,55 @@ static void test_wrong_derivatives(void)
                      "(state speed) is ");
 }
 
+// ---- What is allowed, and lists cut short ----
+
+static void many_controls(const moray_node *at, moray_rates *out, const void *data)
+{
+    move(at, out, data);
+    for (int i = 1; i < 14; i++)
+        out->g[0] += (at->u[i] - 2) * (at->u[i] - 2);
+}
+
+// Two units of place to go: with a constraint that stands in the way, of every form.
+static void test_allowed(void)
+{
+    static const moray_bounds forms[][2] = {
+        {{2, 2}, {-1e20, 1e20}}, {{2, 1e20}, {-1e20, 1e20}}, {{-1e20, 0.1}, {-1e20, 1e20}}, {{2, 3}, {-1e20, 1e20}}};
+    static const char *const texts[] = {"event goal, 1 where 2 is allowed", "event goal, 1 where at least 2 is allowed",
+                                        "event goal, 1 where at most 0.1 is allowed",
+                                        "event goal, 1 where 2 to 3 is allowed"};
+    enum plant plant = motor;
+    moray_phase_spec phase = cart();
+    moray_ocp_spec spec = task(&plant, &phase);
+    for (int k = 0; k < 4; k++) {
+        spec.e.at = forms[k];
+        moray_solution *solution = solve(&spec, *usual());
+        check_says(moray_solution_diagnosis(solution), texts[k]);
+        moray_solution_free(solution);
+    }
+}
+
+static void test_long_lists(void)
+{
+    static moray_bounds low[14];
+    enum plant plant = motor;
+    moray_phase_spec phase = cart();
+    moray_ocp_spec spec = task(&plant, &phase);
+    for (int i = 0; i < 14; i++)
+        low[i] = i > 0 ? moray_between(0, 1) : moray_free();
+    phase.nu = 14;
+    phase.u = (moray_bounds_list){low, 14};
+    phase.u_names = NULL;
+    phase.continuous = many_controls;
+    moray_solution *solution = solve(&spec, *usual());
+    const char *text = moray_solution_diagnosis(solution);
+    check_says(text, "solved after ");
+    check_says(text, "No constraint is violated by more than 1.0e-08 (scaled).");
+    check_says(text, "And 1 more at their bounds.");
+    CHECK(lines_with(text, "Active: control u[") == 12, "after twelve that are listed");
+    moray_solution_free(solution);
+}
+
 // ---- What is active ----
 
 static void test_active(void)
@@ -351,12 +435,15 @@ int main(void)
 {
     test_bounds_in_the_way();
     test_dependent();
+    test_many_dependent();
     test_another_guess();
     test_runs_away();
     test_leaves_domain();
     test_stopped();
     test_noise();
     test_wrong_derivatives();
+    test_allowed();
+    test_long_lists();
     test_active();
     solve(NULL, moray_settings_default());
     return tap_done();

@@ -183,6 +183,8 @@ static void test_refusals(void)
     moray_gait_problem_spec spec = good;
     spec.joints = MORAY_JOINTS_CLOSED_LOOP;
     refuses(spec, "joints");
+    spec = good, spec.limits.link_angles = true;
+    refuses(spec, "link_angles");
     spec = good, spec.limits.offset = moray_between(0.001, 0.02);
     refuses(spec, "phi0 = 0.001:0.02");
     spec = good, spec.limits.delta = moray_between(1, 0.5);

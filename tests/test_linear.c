@@ -105,6 +105,7 @@ static void test_pivots(void)
     double B[] = {2, 3};
     CHECK_OK(sparse_lu_new(&lu, 2, &pattern), "order");
     CHECK(sparse_lu_solve(lu, 1, B).code == MORAY_NUMERIC, "nothing to solve with before values are given");
+    CHECK(sparse_lu_condition(lu) == 0, "nor anything to measure");
     CHECK_OK(sparse_lu_factor(lu, (double[]){4, 1, 1, 1e-3}), "factor");
     CHECK_OK(sparse_lu_factor(lu, (double[]){0, 1, 1, 0}), "other values that need other pivots");
     CHECK_OK(sparse_lu_solve(lu, 1, B), "solve");

@@ -221,6 +221,22 @@ static void test_figure(void)
     free(svg);
 }
 
+static void test_log_axes(void)
+{
+    const double power[] = {0.03, 0.3, 4}, speed[] = {0.19, 0.5, 2.1};
+    const moray_curve curve = {.label = "c", .x = power, .y = speed, .n = 3};
+    const moray_figure drawn = {
+        .name = "log", .title = "t", .log_x = true, .log_y = true, .curves = &curve, .n_curves = 1};
+    moray_output *output = open_in("log");
+    CHECK_OK(moray_output_figure(output, &drawn), "drawn");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *svg = content("log/log.svg");
+    CHECK(strstr(svg, "> 0.05<") && strstr(svg, "> 0.2<") && strstr(svg, "> 0.5<"), "numbers at 1, 2 and 5");
+    CHECK(!strstr(svg, "> 0.01<") && !strstr(svg, "> 10<"), "no more decades than are used");
+    free(svg);
+}
+
 static void test_failed_figure(void)
 {
     moray_output *output = open_in("without");
@@ -325,6 +341,7 @@ int main(void)
     test_full_disk();
     test_unwritable();
     test_figure();
+    test_log_axes();
     test_failed_figure();
     test_report();
     test_report_sections();

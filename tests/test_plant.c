@@ -3,7 +3,7 @@
 // The maps of the control-oriented model against the dense model and its derivatives.
 #include "dense_derivatives.h"
 
-static const char *const form_names[] = {"on the gait", "closed loop", "free", "steered"};
+static const char *const form_names[] = {"on the gait", "closed loop", "free", "steered", "series"};
 
 // A map, its dense counterpart, a point, and what either says there.
 typedef struct fixture {
@@ -135,6 +135,12 @@ static void test_sizes(void)
     spec.joints = MORAY_JOINTS_STEERED;
     size = moray_plant_sizes(&spec);
     CHECK(size.nx == 8 && size.nu == 1 && size.ns == 3 && size.nc == 19 && size.nq == 1, "sizes of the steered form");
+    spec.joints = MORAY_JOINTS_SERIES;
+    spec.harmonics = 3;
+    spec.path_rates = true;
+    size = moray_plant_sizes(&spec);
+    CHECK(size.nx == 6 && size.nu == 0 && size.ns == 64 && size.nc == 28 && size.nq == 1, "sizes of a series");
+    spec.path_rates = false;
     spec.joints = MORAY_JOINTS_FREE;
     moray_map map;
     CHECK_OK(moray_control_plant(&map, &spec), "the map");
@@ -183,8 +189,10 @@ int main(void)
 {
     test_sizes();
     test_bad_robot();
-    for (int form = 0; form <= MORAY_JOINTS_STEERED; form++) {
+    for (int form = 0; form <= MORAY_JOINTS_SERIES; form++) {
         for (int k = 0; k < ROBOT_SIZES; k++) {
+            if (form == MORAY_JOINTS_SERIES && robot_links[k] > 5) // their dense Hessians take long
+                break;
             test_against_dense(robot_links[k], form, false, false);
             test_against_dense(robot_links[k], form, true, true);
             if (robot_links[k] > 2) { // with two links A Dbar is zero and delta moves nothing

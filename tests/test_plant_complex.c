@@ -121,8 +121,8 @@ int main(void)
         }
         moray_map_release(&map);
     }
-    spec.joints = MORAY_JOINTS_FREE;
-    CHECK(moray_complex_plant(&map, &spec).code == MORAY_INPUT, "other joint forms are refused");
+    spec.joints = MORAY_JOINTS_CLOSED_LOOP;
+    CHECK(moray_complex_plant(&map, &spec).code == MORAY_INPUT, "joints in closed loop are refused");
     spec.joints = MORAY_JOINTS_ON_GAIT;
     spec.robot.links = 1;
     CHECK(moray_complex_plant(&map, &spec).code == MORAY_INPUT, "one link is refused");

@@ -232,7 +232,7 @@ static void read_all(int reader, char *seen, size_t size)
 
 static void test_progress(void)
 {
-    const char expected[] = "\riteration 7\033[K\ra line longer than t\033[K\r\033[K";
+    const char expected[] = "\riteration 7\033[K\ra line longer than t\033[K\r\033[Kfound 3\r\n\r\033[K";
     char seen[sizeof expected] = "";
     int reader;
     FILE *terminal = open_terminal(&reader);
@@ -243,9 +243,10 @@ static void test_progress(void)
     moray_ticker ticker = moray_ticker_start(terminal, false);
     moray_ticker_show(&ticker, "iteration %d", 7);
     moray_ticker_show(&ticker, "%s", "a line longer than the terminal is wide");
+    moray_ticker_note(&ticker, "found %d", 3);
     moray_ticker_end(&ticker);
     read_all(reader, seen, sizeof seen - 1);
-    CHECK(strcmp(seen, expected) == 0, "a terminal shows one line, cut to its width, then none");
+    CHECK(strcmp(seen, expected) == 0, "a terminal shows one line, cut to its width, a note that stays, then none");
     ticker = moray_ticker_start(terminal, true);
     CHECK(!ticker.live, "quiet is silent on a terminal");
     fclose(terminal);
@@ -253,6 +254,7 @@ static void test_progress(void)
     FILE *plain = tmpfile();
     ticker = moray_ticker_start(plain, false);
     moray_ticker_show(&ticker, "iteration %d", 7);
+    moray_ticker_note(&ticker, "found %d", 3);
     moray_ticker_end(&ticker);
     CHECK(ftell(plain) == 0, "a file gets no progress");
     fclose(plain);

@@ -6,6 +6,7 @@
 #define MORAY_GAIT_PROBLEM_H
 
 #include "moray/ocp.h"
+#include "moray/sensitivity.h"
 #include "moray/snake.h"
 #include "moray/swim.h"
 
@@ -14,7 +15,8 @@ typedef struct moray_gait_limits {
     moray_bounds theta_max; // [rad] amplitude of (24), through (33) or (27); with a taper that of every link may be
                             // no larger (moray_theta_max_of_link), that in the middle no smaller. Control-oriented
                             // model: where the offset is free, the upper bound holds for every link angle (12) too, at
-                            // the nodes of the mesh
+                            // the nodes of the mesh. With link_angles, and for a series, that is what the upper bound
+                            // holds for, on both models: |link angle - heading| at the nodes, not for amplitudes
     moray_bounds omega;     // [rad/s]
     moray_bounds delta;     // [rad]
     moray_bounds offset;    // phi_0 of the model [m or rad]
@@ -23,6 +25,7 @@ typedef struct moray_gait_limits {
     double joint_rate;      // amplitude of every phi_i' [m/s or rad/s]
     double joint_effort;    // |u_i| [N or N m], at the nodes of the mesh
     double course_speed;    // least speed along the course [m/s]; 0: none
+    bool link_angles;       // theta_max.upper bounds what the links do, not the amplitude of (24)
 } moray_gait_limits;
 
 typedef enum {
@@ -34,7 +37,10 @@ typedef struct moray_gait_problem_spec {
     moray_robot robot;
     moray_model model;
     moray_gait_goal goal;
-    moray_joints joints; // MORAY_JOINTS_ON_GAIT; or MORAY_JOINTS_CLOSED_LOOP, control-oriented model only
+    moray_joints joints; // MORAY_JOINTS_ON_GAIT; MORAY_JOINTS_CLOSED_LOOP, control-oriented model only; or
+                         // MORAY_JOINTS_SERIES, with the limits of delta, taper and theta_max.lower unused, those of
+                         // the offset for every c_i, and q_11 = 0, which decides when time starts
+    int harmonics;       // of a series
     double current[2];   // [m/s]
     double course;       // [rad]
     moray_gait_limits limits;
@@ -59,13 +65,27 @@ void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAME
 moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
                                       const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution);
 
+// Solves from another solution over one period on the same model, of a problem with six states as this one's, at
+// parameters s; those of a series are (omega, coefficients as in moray_series). Errors and result: those of
+// moray_solve.
+moray_status moray_gait_problem_continue(const moray_gait_problem *problem, const moray_settings *settings,
+                                         const moray_solution *from, const double *s, moray_solution **solution);
+
 // What a solution promises, over one period: velocity over ground, speed through the water, speed along the course,
 // mean power.
 typedef struct moray_gait_promise {
-    moray_gait gait;
+    moray_gait gait; // of a series omega alone: its coefficients are among moray_solution_parameters
     double v_x, v_y, speed, course_speed, power;
     double power_price; // by how much the goal improves per watt more that is allowed [m/s or J/m, per W]
 } moray_gait_promise;
 moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem, const moray_solution *solution);
+
+// Derivatives of a promise by the parameter that was last taken of a sensitivity of the solution.
+typedef struct moray_gait_slope {
+    moray_gait gait;
+    double course_speed, power;
+} moray_gait_slope;
+moray_gait_slope moray_gait_problem_slope(const moray_gait_problem *problem, const moray_solution *solution,
+                                          const moray_sensitivity *sensitivity);
 
 #endif

@@ -14,7 +14,8 @@ typedef struct moray_gait_search moray_gait_search; // not for two threads at on
 // Variables theta_max, omega, delta within their limits; the offset is the one that holds the heading. Joint effort is
 // limited at every degree of phase. (The control-oriented model's limit of single link angles stays with the
 // collocation.) On the mesh of `scheme` and `intervals`. Error: MORAY_INPUT naming what is wrong, where joints are not
-// MORAY_JOINTS_ON_GAIT too, a taper is allowed, or the offset's limits leave out 0 in still water; MORAY_MEMORY.
+// MORAY_JOINTS_ON_GAIT too, a taper is allowed, link_angles are what is bounded, or the offset's limits leave out 0 in
+// still water; MORAY_MEMORY.
 moray_status moray_gait_search_new(moray_gait_search **search, const moray_gait_problem_spec *spec, const char *scheme,
                                    int intervals);
 void moray_gait_search_free(moray_gait_search *search);

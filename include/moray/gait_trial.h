@@ -35,6 +35,9 @@ typedef struct moray_gait_trial {
 moray_status moray_gait_trial_run(const moray_basin *basin, const moray_gait *gait, moray_model model,
                                   moray_gait_trial *trial);
 
+// The part of it of one model, with trial->gait[model] as given, which may have a series. Error: as above.
+moray_status moray_gait_trial_swim(const moray_basin *basin, moray_model model, moray_gait_trial *trial);
+
 // Speed along the course from rest under the trial's gait on one model, at n times equally spaced over [0, horizon]:
 // mean over the period before (from rest on while the first period lasts). time[n], speed[n]. Error: those of
 // moray_swim_run.

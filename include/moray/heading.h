@@ -28,7 +28,8 @@ double moray_reference_at(const moray_reference *reference, double t, double *ra
 double moray_reference_fastest(const moray_reference *reference, double t0, double t1);
 
 // The intervals of equal length on [t0, t1], at least `least` and at most 1.3 times as many, whose ends lie nearest to
-// the jumps: a collocation scheme that uses no point twice (radau, gauss) then integrates the error exactly.
+// the jumps, and to the corners unless they are many: a collocation scheme that uses no point twice (radau, gauss) then
+// integrates the error exactly.
 int moray_reference_intervals(const moray_reference *reference, double t0, double t1, int least);
 
 typedef struct moray_heading_weights {

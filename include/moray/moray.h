@@ -22,6 +22,7 @@
 #include "moray/run.h"
 #include "moray/scheme.h"
 #include "moray/search.h"
+#include "moray/sensitivity.h"
 #include "moray/sim.h"
 #include "moray/snake.h"
 #include "moray/status.h"

@@ -97,4 +97,49 @@ typedef struct moray_kkt {
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at the iterate.
 moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt);
 
+// ---- Sensitivities
+// ---------------------------------------------------------------------------------------------------
+//
+// How a solution moves with a parameter p of the programme: the implicit function theorem on its optimality conditions,
+// with the constraints that are active held so. The KKT matrix is factored once, each parameter is one more right-hand
+// side. Asked for is a strict local minimum. Active constraints may depend on each other if they move together.
+
+// What p does to the programme while x and the multipliers stand still. NULL: nothing.
+typedef struct moray_nlp_shift {
+    double objective;                                    // d f / d p
+    const double *gradient;                              // [n] d/dp of the gradient of f + lambda g
+    const double *g;                                     // [m]
+    const double *x_lower, *x_upper, *g_lower, *g_upper; // 0 where there is no bound
+} moray_nlp_shift;
+
+// Where the set of active constraints changes if all goes on as it begins.
+typedef struct moray_nlp_change {
+    double step;    // of p, with its sign; infinite where nothing changes
+    int constraint; // row, or m + j for a bound of x_j; -1: none
+    bool upper;     // which of its bounds
+    bool leaves;    // an active one that its multiplier would push away; else one that would be passed
+} moray_nlp_change;
+
+typedef struct moray_nlp_sensitivity moray_nlp_sensitivity;
+
+// Of a solution; both must outlive the result. Error: MORAY_NUMERIC where a function is not finite or the minimum not
+// strict, MORAY_MEMORY.
+moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const moray_nlp *nlp,
+                                       const moray_iterate *solution);
+void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
+
+// The constraints whose multiplier and slack are so small and so alike, in the scale of the solver, that it is not
+// certain whether they are active (a solution to a tighter tolerance may tell); numbered as in moray_nlp_change. Returns
+// how many; the first `most` stand in constraint[].
+int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *sensitivity, int *constraint, int most);
+
+// slope: the derivative by p of every entry of the solution, objective included; multipliers of constraints that depend
+// on each other share evenly. Error: MORAY_NUMERIC where those cannot all follow, so that one lets go at once.
+moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
+                                         moray_iterate *slope);
+
+// The first change as p rises (direction 1) or falls (-1).
+moray_nlp_change moray_nlp_sensitivity_change(const moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
+                                              const moray_iterate *slope, int direction);
+
 #endif

@@ -164,8 +164,8 @@ typedef struct moray_samples {
 typedef struct moray_solution moray_solution;
 
 // A guess: samples of each phase (piecewise linear, stretched to the phase's own first and last time), parameters
-// s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, u in the middle
-// of its bounds. Fill it by hand, or by one of the functions below.
+// s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, or as at the one
+// end that has bounds; u in the middle of its bounds. Fill it by hand, or by one of the functions below.
 typedef struct moray_guess {
     const moray_samples *phase;
     const double *s;
@@ -252,7 +252,9 @@ void moray_solution_times(const moray_solution *solution, int phase, double *t0,
 void moray_solution_at(const moray_solution *solution, int phase, double t, double *x, double *u);
 
 // The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the
-// Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL.
+// Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL. Where the
+// dynamics are collocated they are stage values, of lower order than the optimum: 2 with trapezoid (1 at the ends of the
+// phase) and hermite-simpson, s with radau, s + 1 with gauss, whose ends of intervals have the full 2s.
 int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
 
 // The Hamiltonian g + lambda f, with the integrands weighted by what they cost, at the nodes: hamiltonian[count], NaN

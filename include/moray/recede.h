@@ -13,6 +13,8 @@ typedef struct moray_replanner {
     moray_status (*make)(void *self, double t, const double state[MORAY_STEERING_STATES], void **problem,
                          const moray_ocp **ocp);
     void (*free)(void *problem);
+    // Whether what the last problem was made of has changed by t, so that a plan is due at once; NULL: it never does.
+    bool (*changed)(const void *self, double t);
     void *self;
     int nu; // controls
 } moray_replanner;
@@ -26,6 +28,7 @@ typedef struct moray_recede_spec {
     const moray_cruise *measured;        // of the swimmer's model
     double scale;                        // of the swimmer's offset to the plans'
     double horizon, interval;            // length of a plan; between two plans [s]
+    double look;                         // between two looks for a change [s]; 0: none
     const moray_solution *first;         // where the first plan starts from; NULL: from going straight on
 } moray_recede_spec;
 
@@ -35,13 +38,14 @@ typedef struct moray_recede moray_recede;
 moray_status moray_recede_new(moray_recede **recede, const moray_recede_spec *spec);
 void moray_recede_free(moray_recede *recede);
 
-// Where a solve fails the swimmer goes on with the plan it has.
+// Plans when one is due, and at a look that finds a change. Where a solve fails the swimmer goes on with the plan it
+// has.
 moray_helm moray_recede_helm(moray_recede *recede);
 
-// Plans made so far, and what they cost.
+// Plans made so far, and what they cost of the processor, set-up included.
 typedef struct moray_recede_record {
     int plans, failures, iterations;
-    double seconds, longest; // of all solves, of the longest after the first
+    double seconds, longest; // of all plans, of the longest after the first
     char first_failure[200];
 } moray_recede_record;
 const moray_recede_record *moray_recede_record_of(const moray_recede *recede);
@@ -54,6 +58,7 @@ typedef struct moray_heading_replanner {
     bool preview;            // the reference is known over the horizon; else it is taken to stay as it is at t
     moray_reference held;    // for this
     double held_time, held_heading;
+    double tolerance; // change of the reference that calls for a plan at once [rad]
 } moray_heading_replanner;
 
 // Uses it, so that it must outlive the plans.

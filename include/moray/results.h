@@ -148,6 +148,8 @@ typedef struct moray_ticker {
 
 moray_ticker moray_ticker_start(FILE *stream, bool quiet);
 void moray_ticker_show(const moray_ticker *ticker, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// A line that stays, above the one rewritten.
+void moray_ticker_note(const moray_ticker *ticker, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void moray_ticker_end(const moray_ticker *ticker); // erases the line
 
 #endif

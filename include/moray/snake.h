@@ -41,13 +41,23 @@ moray_status moray_robot_check(const moray_robot *robot);
 
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
+// A free periodic motion of the joints, beyond the paper: a truncated Fourier series in each of them,
+//     phi_i(t) = c_i + sum_k p_ik sin(k omega t) + q_ik cos(k omega t),   k = 1..harmonics.
+// at[joints (1 + 2 harmonics)], borrowed: c of all joints, then p and q of all joints for one harmonic after the other.
+typedef struct moray_series {
+    int joints, harmonics;
+    const double *at;
+} moray_series;
+enum { MORAY_SERIES_HARMONICS = 12 }; // at most
+
 // Gait (25): phi_ref,i(t) = A_i sin(omega t + (i-1) delta) + offset, i = 1..N-1. A_i and offset are a and phi_0 in m
 // for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Where the offset moves,
 // offset_rate and offset_acceleration are phi_0' and phi_0'' at t, fed forward. Eel-like motion, beyond the paper, with
 // a negative taper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail,
-// to 1 at the last (0 where N = 2).
+// to 1 at the last (0 where N = 2). And beyond that, what swims heeds a series to be added, plants and orbits do not.
 typedef struct moray_gait {
     double amplitude, omega, delta, offset, taper, offset_rate, offset_acceleration;
+    const moray_series *series; // of the gait's omega, for N-1 joints; NULL: none
 } moray_gait;
 
 // phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
@@ -67,8 +77,18 @@ double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model mode
 double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
 
 // The same gait for the other model: equal theta_max, omega, delta, taper; offset and its derivatives in the same ratio
-// to the amplitude, with the opposite sign (erratum E3).
+// to the amplitude, with the opposite sign (erratum E3). A series is not mapped but left out.
 moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
+
+// The gait with its constant offset and its series as one series of so many harmonics (those of its own beyond them are
+// left out): at[joints (1 + 2 harmonics)].
+void moray_series_of_gait(const moray_gait *gait, int joints, int harmonics, double *at);
+
+// A series of the control-oriented model for the first-principles model, into at as long as series->at: every joint's
+// share in every harmonic keeps the wave of link angles that it has in its surroundings, of a phase shift delta taken
+// from its neighbours, with (27) and (33) for that delta. Of a gait (25) it is moray_gait_map; offsets go by the ratio
+// of the first harmonics.
+void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at);
 
 // ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------
 //
@@ -142,8 +162,9 @@ typedef enum {
     MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0, taper); no u
     MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0, taper), ubar from (34); no u
     MORAY_JOINTS_FREE,        // x of (21), u = ubar (N-1); no s
-    MORAY_JOINTS_STEERED // on a gait without taper, with a moving offset, fed forward: x = (theta, p_x, p_y, v_theta,
-                         // v_t, v_n, phi_0, phi_0'), u = phi_0'', s = (a, omega, delta)
+    MORAY_JOINTS_STEERED, // on a gait without taper, with a moving offset, fed forward: x = (theta, p_x, p_y, v_theta,
+                          // v_t, v_n, phi_0, phi_0'), u = phi_0'', s = (a, omega, delta)
+    MORAY_JOINTS_SERIES   // x as on the gait, s = (omega, coefficients as in moray_series); no u
 } moray_joints;
 
 typedef struct moray_plant_spec {
@@ -151,6 +172,8 @@ typedef struct moray_plant_spec {
     moray_joints joints;
     double current[2];             // V_x, V_y [m/s]
     bool path_forces, path_angles; // blocks of c wanted
+    bool path_rates;               // and, joints on a series only, behind them the joint rates phi_i' (N-1)
+    int harmonics;                 // of a series, 1..MORAY_SERIES_HARMONICS
 } moray_plant_spec;
 
 // Sizes of the map that moray_control_plant makes.
@@ -162,10 +185,10 @@ moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
 // Error: MORAY_INPUT (robot), MORAY_MEMORY. The map owns all it needs; release with moray_map_release.
 moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 
-// The first-principles model in the same form, for MORAY_JOINTS_ON_GAIT and MORAY_JOINTS_STEERED only, with alpha in
-// place of a: x = (mean link angle, p_x, p_y, and their rates), steered phi_0 and phi_0' too; c: joint torques [N m],
-// then theta_i minus their mean. Exact Jacobians and Hessians by complex step. Errors and ownership
-// as above.
+// The first-principles model in the same form, for all but MORAY_JOINTS_CLOSED_LOOP, with alpha in place of a:
+// x = (mean link angle, p_x, p_y, and their rates), steered phi_0 and phi_0' too, free phi before each of the two
+// threes as in (21); c: joint torques [N m], then theta_i minus their mean. Exact Jacobians and Hessians by complex
+// step or, free and of a series, by the adjoint. Errors and ownership as above.
 moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec);
 
 // The control-oriented model averaged over a period of the gait, to second order in a, in the form of

@@ -32,8 +32,8 @@ typedef struct moray_voyage {
 moray_status moray_voyage_run(moray_voyage *voyage, const moray_voyage_plan *plan);
 void moray_voyage_free(moray_voyage *voyage); // safe on a zeroed voyage, and twice
 
-// Of the heading without its undulation, from the reference: root of the mean square, the last, the largest [rad]; and
-// the mean joint power [W].
+// Of the heading without its undulation, from the reference, which may jump at samples: root of the mean square, the
+// last, the largest [rad]; and the mean joint power [W].
 typedef struct moray_heading_score {
     double rms, final, largest, power;
 } moray_heading_score;

@@ -11,7 +11,7 @@ typedef double classic_start_fn(int phase, double tau, double *x, double *u, con
 
 struct classic {
     const char *name, *title, *source;
-    const char *published; // optimum as it was printed
+    const char *published; // optimum as it was printed; NULL where none is for this mesh
     const char *computed;  // what the stated data give where that is not what was printed (the file says why); or NULL
     double closed_form;    // to 1e-10; 0 where there is none
     double sign;           // of the objective in the published value: -1 where the textbook maximises
@@ -27,26 +27,34 @@ struct classic {
 extern const struct classic *const classics[]; // ends with NULL
 const struct classic *classic_find(const char *name);
 
+enum { CLASSIC_MOST_MESHES = 101 };
+
 struct classic_result {
     moray_nlp_outcome outcome;
-    int meshes, intervals, iterations; // of all meshes, but for the intervals
-    double seconds;
-    double value, difference; // in the textbook's sign; difference from what was printed
-    bool agrees;              // with `computed` where there is one, else with `published`, rounded or cut; and with the
-                              // closed form to 1e-7
-    bool better;              // than what was printed, and certified
+    moray_mesh_record mesh[CLASSIC_MOST_MESHES]; // first to last
+    int meshes, iterations;                      // iterations of all meshes
+    double seconds;                              // of the processor, from building the problem to the solution
+    double value, difference;                    // in the textbook's sign; difference from what was printed, or NaN
+    bool agrees; // with `computed` where there is one, else with `published`, rounded or cut; and with the
+                 // closed form to 1e-7
+    bool better; // than what was printed, and certified
     moray_certificate certificate;
 };
 
-// "agrees", "better" (than what was printed), "by the data" (as they give it, which is worse than was printed) or
-// "DIFFERS".
+// "agrees", "better" (than what was printed), "by the data" (as they give it, which is worse than was printed),
+// "solved" (where nothing was printed), "DIFFERS" or "NOT SOLVED".
 const char *classic_verdict(const struct classic *classic, const struct classic_result *result);
+
+// Builds the problem and solves it from its own start. Free both with moray_solution_free and moray_ocp_free, in this
+// order; what an error leaves unmade is NULL.
+moray_status classic_first_solution(const struct classic *classic, const moray_settings *settings, moray_ocp **ocp,
+                                    moray_solution **solution);
 
 // Recommended settings: the ones to start from.
 moray_settings classic_settings(const struct classic *classic);
 
-// Solves one from its own start. diagnosis, unless NULL, receives up to `size` characters of why it did not converge.
-// Errors: those of moray_solve and moray_certify.
+// Solves one from its own start; max_refinements below CLASSIC_MOST_MESHES. diagnosis, unless NULL, receives up to
+// `size` characters of why it did not converge. Errors: those of moray_solve and moray_certify.
 moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
                            const moray_integrator *integrator, struct classic_result *result, char *diagnosis,
                            int size);

@@ -65,13 +65,19 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
     return tau;
 }
 
-const struct classic classic_hang_glider = {.name = "hang-glider",
-                                            .title = "Hang glider, 2000 intervals",
-                                            .source = "COPS 3.0",
-                                            .published = "1247.987",
-                                            .sign = -1,
-                                            .build = build,
-                                            .start = start,
-                                            .scheme = "trapezoid",
-                                            .intervals = 2000,
-                                            .fixed_mesh = true};
+#define GLIDER(id, n, ...)                                                                                             \
+    const struct classic classic_##id = {.title = "Hang glider, " #n " intervals",                                     \
+                                         .source = "COPS 3.0",                                                         \
+                                         .sign = -1,                                                                   \
+                                         .build = build,                                                               \
+                                         .start = start,                                                               \
+                                         .scheme = "trapezoid",                                                        \
+                                         .intervals = n,                                                               \
+                                         .fixed_mesh = true,                                                           \
+                                         __VA_ARGS__}
+GLIDER(hang_glider_50, 50, .name = "hang-glider-50");
+GLIDER(hang_glider_100, 100, .name = "hang-glider-100");
+GLIDER(hang_glider_200, 200, .name = "hang-glider-200");
+GLIDER(hang_glider_500, 500, .name = "hang-glider-500");
+GLIDER(hang_glider_1000, 1000, .name = "hang-glider-1000");
+GLIDER(hang_glider, 2000, .name = "hang-glider", .published = "1247.987");

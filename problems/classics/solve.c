@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "classics.h"
 
@@ -28,6 +29,10 @@ static void sample_start(const struct classic *classic, const moray_ocp *ocp, st
 
 const char *classic_verdict(const struct classic *classic, const struct classic_result *result)
 {
+    if (result->outcome != MORAY_NLP_SOLVED)
+        return "NOT SOLVED";
+    if (!classic->published)
+        return "solved";
     if (result->agrees && !classic->computed)
         return "agrees";
     if (result->better && (result->agrees || !classic->computed))
@@ -50,6 +55,15 @@ static moray_status solve_from_start(const struct classic *classic, const moray_
     return status;
 }
 
+moray_status classic_first_solution(const struct classic *classic, const moray_settings *settings, moray_ocp **ocp,
+                                    moray_solution **solution)
+{
+    *ocp = NULL;
+    *solution = NULL;
+    MORAY_TRY(classic->build(ocp, classic->data));
+    return solve_from_start(classic, *ocp, settings, solution);
+}
+
 // Whether value becomes the printed decimal number when rounded or cut to its digits.
 static bool agrees_with(double value, const char *printed)
 {
@@ -61,9 +75,9 @@ static bool agrees_with(double value, const char *printed)
 
 static void judge(const struct classic *classic, struct classic_result *result)
 {
-    result->difference = result->value - strtod(classic->published, NULL);
-    result->agrees = result->outcome == MORAY_NLP_SOLVED &&
-                     agrees_with(result->value, classic->computed ? classic->computed : classic->published);
+    const char *expected = classic->computed ? classic->computed : classic->published;
+    result->difference = classic->published ? result->value - strtod(classic->published, NULL) : NAN;
+    result->agrees = expected && result->outcome == MORAY_NLP_SOLVED && agrees_with(result->value, expected);
     if (classic->closed_form != 0)
         result->agrees =
             result->agrees && fabs(result->value - classic->closed_form) <= 1e-7 * fabs(classic->closed_form);
@@ -85,22 +99,29 @@ static void read_solution(const struct classic *classic, const moray_solution *s
     const moray_mesh_record *mesh = moray_solution_history(solution, &result->meshes);
     result->outcome = moray_solution_info(solution)->outcome;
     for (int k = 0; k < result->meshes; k++) {
+        result->mesh[k] = mesh[k];
         result->iterations += mesh[k].iterations;
-        result->seconds += mesh[k].seconds;
-        result->intervals = mesh[k].intervals;
     }
     result->value = classic->sign * moray_solution_objective(solution);
     judge(classic, result);
 }
 
+static double processor_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
                            const moray_integrator *integrator, struct classic_result *result, char *diagnosis, int size)
 {
+    const double start = processor_seconds();
     *result = (struct classic_result){0};
     moray_ocp *ocp;
-    MORAY_TRY(classic->build(&ocp, classic->data));
     moray_solution *solution;
-    moray_status status = solve_from_start(classic, ocp, settings, &solution);
+    moray_status status = classic_first_solution(classic, settings, &ocp, &solution);
+    result->seconds = processor_seconds() - start;
     if (!moray_failed(status)) {
         read_solution(classic, solution, result);
         if (diagnosis)

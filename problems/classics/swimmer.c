@@ -21,16 +21,16 @@
 
 static const double xi = 1, eta = 2;
 
-// A piece of a link from `root` on the body in the direction sign * e(angle), turning against the body at `rate`.
+// A piece of a link from `root` on the body in the direction sign * e, turning against the body at `rate`.
 struct piece {
-    moray_num root[2], angle, rate;
-    double sign;
+    double root[2], sign;
+    moray_num e[2], rate;
 };
 
 // Adds the force and the torque about the middle of the body, which moves at V = (x', y', theta') in its own frame.
 static void add_drag(const struct piece *piece, const moray_num *V, moray_num rate, moray_num *drag)
 {
-    const moray_num e[] = {cos(piece->angle), sin(piece->angle)}, n[] = {-e[1], e[0]};
+    const moray_num *e = piece->e, n[] = {-e[1], e[0]};
     const moray_num v[] = {V[0] - V[2] * piece->root[1], V[1] + V[2] * piece->root[0]}; // of the root
     const moray_num turn = piece->sign * (V[2] + rate), across = v[0] * n[0] + v[1] * n[1];
     const moray_num along = -xi * (v[0] * e[0] + v[1] * e[1]),
@@ -44,9 +44,11 @@ static void add_drag(const struct piece *piece, const moray_num *V, moray_num ra
 static void swim(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
-    const moray_num theta = at->x[2];
-    const struct piece pieces[] = {
-        {{-1, 0}, at->x[3], at->u[0], -1}, {{0, 0}, 0, 0, -1}, {{0, 0}, 0, 0, 1}, {{1, 0}, at->x[4], at->u[1], 1}};
+    const moray_num c = cos(at->x[2]), s = sin(at->x[2]);
+    const struct piece pieces[] = {{{-1, 0}, -1, {cos(at->x[3]), sin(at->x[3])}, at->u[0]},
+                                   {{0, 0}, -1, {1, 0}, 0},
+                                   {{0, 0}, 1, {1, 0}, 0},
+                                   {{1, 0}, 1, {cos(at->x[4]), sin(at->x[4])}, at->u[1]}};
     const moray_num still[3] = {0};
     moray_num resistance[3][3] = {{0}}, V[3] = {0};
     for (int i = 0; i < 4; i++) {
@@ -58,8 +60,8 @@ static void swim(const moray_node *at, moray_rates *out, const void *data)
             V[j] -= drag[j];
     }
     linear_solve3(resistance, V);
-    out->f[0] = V[0] * cos(theta) - V[1] * sin(theta);
-    out->f[1] = V[0] * sin(theta) + V[1] * cos(theta);
+    out->f[0] = V[0] * c - V[1] * s;
+    out->f[1] = V[0] * s + V[1] * c;
     out->f[2] = V[2];
     out->f[3] = at->u[0];
     out->f[4] = at->u[1];

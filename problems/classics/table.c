@@ -23,6 +23,11 @@
     X(robot_arm)                                                                                                       \
     X(hanging_chain)                                                                                                   \
     X(moon_lander)                                                                                                     \
+    X(hang_glider_50)                                                                                                  \
+    X(hang_glider_100)                                                                                                 \
+    X(hang_glider_200)                                                                                                 \
+    X(hang_glider_500)                                                                                                 \
+    X(hang_glider_1000)                                                                                                \
     X(hang_glider)                                                                                                     \
     X(shuttle)                                                                                                         \
     X(launch)                                                                                                          \

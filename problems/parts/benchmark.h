@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "classics/classics.h"
 #include "moray/moray.h"
 
 #define DEG (M_PI / 180)
@@ -83,13 +84,34 @@ moray_status s1_begin(s1_case *c);
 void s1_end(s1_case *c);
 subject s1_subject(s1_case *c);
 
+// Heading tracking with the paper's gait: 30 deg there and back every 40 s, in the current (0.1, 0.1) m/s.
+enum { HORIZON_POINTS = 40 };
+typedef struct horizon_case {
+    moray_model model;
+    double seconds;
+    // owned
+    moray_robot robot;
+    moray_gait gait;
+    double time[HORIZON_POINTS], heading[HORIZON_POINTS];
+    moray_reference reference; // points into these
+    moray_heading_plan plan;
+} horizon_case;
+moray_status horizon_begin(horizon_case *c); // the case must stay where it is. Error: MORAY_INPUT when it is too long
+subject horizon_subject(horizon_case *c);
+// A textbook problem on the mesh it begins with.
+typedef struct classic_case {
+    const struct classic *classic;
+    moray_ocp *ocp; // owned
+} classic_case;
+subject classic_subject(classic_case *c);
+
 // Simulated seconds per processor second, median of `repeats` simulations of 45 s of the paper's gait from rest.
 // Error: that of moray_swim_run.
 moray_status simulation_rate(moray_model model, int links, int repeats, double *rate);
 
 // ---- Results -------------------------------------------------------------------------------------------------------
 
-enum { MOST_CASES = 32, MOST_POINTS = 8 };
+enum { MOST_CASES = 72, MOST_GROWTHS = 6, MOST_POINTS = 8 };
 
 typedef struct named_cost {
     const char *name;
@@ -97,7 +119,7 @@ typedef struct named_cost {
 } named_cost;
 
 typedef struct growth {
-    const char *name, *over; // over: "intervals" or "links"
+    const char *name, *over; // over: "intervals", "links" or "seconds"
     int n, size[MOST_POINTS];
     cost cost[MOST_POINTS];
 } growth;
@@ -114,15 +136,18 @@ typedef struct simulated {
 
 typedef struct benchmark {
     moray_common common;
-    int part, repeats, most_intervals, most_links;
+    int part, repeats, most_intervals, most_links, most_seconds;
     int n_cases, n_growths;
     named_cost cases[MOST_CASES]; // S1 first, where it is among them
-    growth growths[4];
+    growth growths[MOST_GROWTHS];
     simulated simulation;
     moray_ticker ticker;
 } benchmark;
 
-// Tables or JSON on standard output. Error: MORAY_IO, MORAY_MEMORY.
+// Tables or JSON on standard output; JSON and figures of the growth in the directory of --out. Error: MORAY_IO,
+// MORAY_MEMORY.
 moray_status benchmark_report(const benchmark *run);
+moray_status benchmark_json(const benchmark *run, FILE *file);
+moray_status benchmark_files(const benchmark *run);
 
 #endif

@@ -4,90 +4,6 @@
 
 #include "benchmark.h"
 
-static const char *const piece_keys[PIECES] = {"setup_s",   "function_s", "jacobian_s",
-                                               "hessian_s", "ipopt_s",    "linear_solver_s"};
-
-// ---- JSON ----------------------------------------------------------------------------------------------------------
-
-static void json_cost(moray_json *json, const cost *c)
-{
-    moray_json_bool(json, "solved", c->solved);
-    moray_json_number(json, "objective", c->objective);
-    moray_json_number(json, "iterations", c->iterations);
-    moray_json_number(json, "nvar", c->size.variables);
-    moray_json_number(json, "ncon", c->size.constraints);
-    moray_json_number(json, "nnz_jac", c->size.nnz_jac);
-    moray_json_number(json, "nnz_hess", c->size.nnz_hess);
-    for (int k = 0; k < PIECES; k++)
-        moray_json_number(json, piece_keys[k], c->piece[k]);
-    moray_json_number(json, "evaluation_s", cost_evaluation(c));
-    moray_json_number(json, "total_s", c->total);
-    moray_json_number(json, "wall_s", c->wall);
-    moray_json_number(json, "total_over_floor", cost_over_floor(c));
-}
-
-static void json_growth(moray_json *json, const growth *g)
-{
-    double exponent[EXPONENTS];
-    growth_exponents(g, exponent);
-    moray_json_open(json, NULL);
-    moray_json_text(json, "problem", g->name);
-    moray_json_text(json, "over", g->over);
-    moray_json_open(json, "exponents");
-    for (int i = 0; i < EXPONENTS; i++)
-        moray_json_number(json, exponent_names[i], exponent[i]);
-    moray_json_close(json);
-    moray_json_open_list(json, "points");
-    for (int k = 0; k < g->n; k++) {
-        moray_json_open(json, NULL);
-        moray_json_number(json, g->over, g->size[k]);
-        json_cost(json, &g->cost[k]);
-        moray_json_close(json);
-    }
-    moray_json_close(json);
-    moray_json_close(json);
-}
-
-static void json_simulation(moray_json *json, const simulated *s)
-{
-    static const char *const models[] = {"control", "complex"};
-    moray_json_open_list(json, "simulation");
-    for (int k = 0; k < s->n; k++)
-        for (int model = 0; model < 2; model++) {
-            moray_json_open(json, NULL);
-            moray_json_text(json, "model", models[model]);
-            moray_json_number(json, "links", s->links[k]);
-            moray_json_number(json, "simulated_s_per_s", s->rate[model][k]);
-            moray_json_close(json);
-        }
-    moray_json_close(json);
-}
-
-static moray_status print_json(const benchmark *run)
-{
-    moray_json *json = moray_json_new();
-    moray_json_text(json, "problem", "benchmark");
-    moray_json_text(json, "version", moray_version());
-    moray_json_text(json, "clock", "processor time, medians");
-    moray_json_number(json, "repeats", run->repeats);
-    moray_json_open_list(json, "problems");
-    for (int k = 0; k < run->n_cases; k++) {
-        moray_json_open(json, NULL);
-        moray_json_text(json, "name", run->cases[k].name);
-        json_cost(json, &run->cases[k].cost);
-        moray_json_close(json);
-    }
-    moray_json_close(json);
-    moray_json_open_list(json, "growth");
-    for (int k = 0; k < run->n_growths; k++)
-        json_growth(json, &run->growths[k]);
-    moray_json_close(json);
-    json_simulation(json, &run->simulation);
-    moray_status status = moray_json_write(json, stdout);
-    moray_json_free(json);
-    return status;
-}
-
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
 struct sheet {
@@ -120,6 +36,8 @@ static void times_row(struct sheet *sheet, const char *label, const cost *c)
     double ms[MORAY_TABLE_COLUMNS];
     for (int k = 0; k < PIECES; k++)
         ms[k] = 1000 * c->piece[k];
+    ms[PIECES] = c->iterations;
+    ms[PIECES + 1] = 1000 * (cost_evaluation(c) + c->piece[IPOPT] + c->piece[LINEAR]) / c->iterations;
     add(sheet, label, ms);
 }
 
@@ -139,6 +57,8 @@ static void totals_row(struct sheet *sheet, const char *label, const cost *c)
 
 static const char *const time_columns[MORAY_TABLE_COLUMNS] = {"set-up",  "function", "Jacobian",
                                                               "Hessian", "Ipopt",    "linear solver"};
+static const char *const growth_columns[MORAY_TABLE_COLUMNS] = {
+    "set-up", "function", "Jacobian", "Hessian", "Ipopt", "linear solver", "iterations", "an iteration"};
 static const char *const size_columns[MORAY_TABLE_COLUMNS] = {"iterations", "variables",    "constraints",
                                                               "nnz(J)",     "nnz(Hessian)", "objective"};
 static const char *const total_columns[MORAY_TABLE_COLUMNS] = {"total", "wall", "evaluation", "total/floor",
@@ -172,7 +92,7 @@ static void print_growth(const growth *g)
         times_row(&times, label, &g->cost[k]);
     }
     snprintf(title, sizeof title, "%s over %s: processor time [ms]", g->name, g->over);
-    print(&times, title, time_columns);
+    print(&times, title, growth_columns);
     growth_exponents(g, exponent);
     printf("grows with the power");
     for (int i = 0; i < EXPONENTS; i++)
@@ -195,8 +115,10 @@ static void print_simulation(const simulated *s)
 
 moray_status benchmark_report(const benchmark *run)
 {
+    if (run->common.output)
+        MORAY_TRY(benchmark_files(run));
     if (run->common.json)
-        return print_json(run);
+        return benchmark_json(run, stdout);
     print_cases(run);
     for (int k = 0; k < run->n_growths; k++)
         print_growth(&run->growths[k]);

@@ -110,7 +110,7 @@ moray_status gait_job_prepare(gait_job *job)
     return moray_gait_trial_run(&job->basin, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
 }
 
-static moray_status work(gait_job *job)
+moray_status gait_job_work(gait_job *job)
 {
     MORAY_TRY(gait_job_prepare(job));
     const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
@@ -123,7 +123,7 @@ static moray_status work(gait_job *job)
     return optimise_and_prove(job, MORAY_FIRST_PRINCIPLES, &two);
 }
 
-static bool certified(const gait_job *job)
+bool gait_job_certified(const gait_job *job)
 {
     bool pass = true;
     for (int model = 0; model <= (int)job->common.model; model++)
@@ -160,13 +160,13 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
         return exit_code;
     job->ticker = moray_ticker_start(stderr, job->common.quiet);
     moray_interrupt_begin();
-    moray_status status = program->work ? program->work(job) : work(job);
+    moray_status status = program->work ? program->work(job) : gait_job_work(job);
     moray_interrupt_end();
     moray_ticker_end(&job->ticker);
     if (!moray_failed(status))
         status = program->report ? program->report(job) : gait_job_report(job);
     exit_code = moray_app_end(&app, job, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !(program->certified ? program->certified(job) : certified(job)))
+    if (exit_code == MORAY_EXIT_SOLVED && !(program->certified ? program->certified(job) : gait_job_certified(job)))
         exit_code = MORAY_EXIT_CERTIFICATE;
     if (program->release)
         program->release(job);

@@ -18,6 +18,7 @@ typedef struct stage {
     double power; // limit of the mean joint power [W], or infinite
     double speed; // least speed along the course [m/s], or 0
     double taper[2];
+    double link_angle; // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
     moray_gait_problem *problem;
     moray_solution *solution;
     int starts, agreeing; // how many, and how many of them ended at the best solution
@@ -81,11 +82,19 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
 
 // ---- Pieces --------------------------------------------------------------------------------------------------------
 
+// What a program without its own does: both stages, or one, optimised and proved. Error: those of the below.
+moray_status gait_job_work(gait_job *job);
+bool gait_job_certified(const gait_job *job);
+
 enum { GAIT_JOB_OPTIONS = 10 }; // of every gait job
 extern const moray_option gait_job_options[GAIT_JOB_OPTIONS];
 
 // Swims the paper's gait. Error: that of moray_scheme_parse, moray_basin_new or moray_gait_trial_run.
 moray_status gait_job_prepare(gait_job *job);
+
+// What a program without own work does: swims the paper's gait, then optimises, certifies and proves the
+// control-oriented stage and, with the model complex, from there the other. Error: those of the pieces.
+moray_status gait_job_work(gait_job *job);
 
 // Sets model, power and speed of a stage. Error: MORAY_NOT_SOLVED where the paper's gait, which makes the default
 // speed, fails.
@@ -108,9 +117,17 @@ moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, mora
 moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
                               moray_gait_problem **problem);
 
+// How the job solves.
+moray_settings gait_job_settings(gait_job *job);
+
 // Solves from the steady orbit of the gait on the problem's model. Error: those of moray_swim_steady and moray_solve.
 moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
                             moray_solution **solution);
+
+moray_settings gait_job_settings(gait_job *job); // of every solve
+
+// Keeps the better of a solution, which it takes over, and of what the stage has; counts how many agree.
+void gait_job_keep_best(stage *at, moray_solution *solution);
 
 // Solves from an orbit of the gait. Error: those of moray_solve.
 moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,

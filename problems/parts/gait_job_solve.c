@@ -14,6 +14,7 @@ moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, mora
 {
     const bool revolute = at->model == MORAY_FIRST_PRINCIPLES, own = at->model == job->common.model;
     const double *offset = revolute ? job->offset_angle : job->offset;
+    const double theta_max = at->link_angle > 0 ? at->link_angle : job->theta_max[1];
     return (moray_gait_problem_spec){
         .robot = job->common.robot,
         .model = at->model,
@@ -21,7 +22,8 @@ moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, mora
         .joints = own ? job->joints : MORAY_JOINTS_ON_GAIT,
         .current = {current[0], current[1]},
         .course = job->common.course,
-        .limits = {.theta_max = moray_between(job->theta_max[0], job->theta_max[1]),
+        .limits = {.theta_max = moray_between(job->theta_max[0], theta_max),
+                   .link_angles = at->link_angle > 0,
                    .omega = moray_between(job->omega[0], job->omega[1]),
                    .delta = moray_between(job->delta[0], job->delta[1]),
                    .offset = moray_between(offset[0], offset[1]),
@@ -51,19 +53,24 @@ static bool show_iteration(void *observer, const moray_progress *at)
     return !moray_interrupted();
 }
 
+moray_settings gait_job_settings(gait_job *job)
+{
+    return (moray_settings){.scheme = job->common.scheme,
+                            .intervals = job->common.intervals,
+                            .tolerance = job->common.tol,
+                            .mesh_tolerance = 1e-6,
+                            .max_refinements = job->refinements,
+                            .max_iterations = 1000,
+                            .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
+                            .own_scaling = true,
+                            .progress = show_iteration,
+                            .observer = job};
+}
+
 moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,
                                  const moray_swim_track *orbit, moray_solution **solution)
 {
-    const moray_settings settings = {.scheme = job->common.scheme,
-                                     .intervals = job->common.intervals,
-                                     .tolerance = job->common.tol,
-                                     .mesh_tolerance = 1e-6,
-                                     .max_refinements = job->refinements,
-                                     .max_iterations = 1000,
-                                     .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
-                                     .own_scaling = true,
-                                     .progress = show_iteration,
-                                     .observer = job};
+    const moray_settings settings = gait_job_settings(job);
     return moray_gait_problem_solve(problem, &settings, gait, orbit, solution);
 }
 
@@ -120,7 +127,7 @@ static bool better(const moray_solution *one, const moray_solution *other)
     return moray_solution_objective(one) < moray_solution_objective(other);
 }
 
-static void keep_best(stage *at, moray_solution *solution)
+void gait_job_keep_best(stage *at, moray_solution *solution)
 {
     const double same = 1e-6;
     const bool level = at->solution && solved(solution) && solved(at->solution) &&
@@ -143,7 +150,7 @@ moray_status gait_job_continue(gait_job *job, stage *at, const stage *from)
     if (!at->problem)
         MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
     MORAY_TRY(gait_job_solve(job, at, at->problem, &gait, &solution));
-    keep_best(at, solution);
+    gait_job_keep_best(at, solution);
     at->promise = moray_gait_problem_promise(at->problem, at->solution);
     return moray_ok();
 }
@@ -159,7 +166,7 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
         moray_solution *solution = NULL;
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
         if (!moray_failed(status))
-            keep_best(at, solution);
+            gait_job_keep_best(at, solution);
         else if (k == 0)
             return status;
     }

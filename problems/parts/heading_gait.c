@@ -8,9 +8,7 @@ typedef struct hunt {
     heading_job *job;
     moray_heading_spec spec;
     moray_orbit *orbit;
-    moray_heading_plan plan; // the last that was solved, from which the next begins
-    moray_gait best;
-    double objective; // of the best
+    moray_heading_plan best; // from which the next begins
 } hunt;
 
 // The fastest gait of this theta_max and delta, within the limits of omega and straight-ahead power. False where even
@@ -50,28 +48,27 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     if (!fastest_gait(h, x[0], x[1], &gait))
         return false;
     moray_settings settings = heading_settings(job, false, 2 * M_PI / gait.omega);
-    settings.scheme = "radau4";
-    settings.tolerance = 1e-6;
+    settings.scheme = "radau3";
+    settings.tolerance = 1e-5;
     settings.max_refinements = 0;
-    settings.progress = NULL;
-    const moray_heading_plan *from = h->plan.solution ? &h->plan : &job->plan[MORAY_CONTROL_ORIENTED];
+    const moray_heading_plan *from = h->best.solution ? &h->best : &job->plan[MORAY_CONTROL_ORIENTED];
     if (moray_failed(moray_heading_plan_make(&plan, &h->spec, &settings, &gait, from)))
         return false;
     job->gaits_tried++;
-    if (moray_solution_info(plan.solution)->outcome != MORAY_NLP_SOLVED) {
-        moray_heading_plan_free(&plan);
-        return false;
-    }
-    moray_heading_plan_free(&h->plan);
-    h->plan = plan;
+    const bool solved = moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED;
     *f = moray_solution_objective(plan.solution);
     moray_ticker_show(&job->ticker, "heading_tracking: gait %d: %.1f deg, %.1f deg/s, %.1f deg: objective %.5g",
                       job->gaits_tried, x[0] / DEG, gait.omega / DEG, x[1] / DEG, *f);
-    if (*f < h->objective) {
-        h->objective = *f;
-        h->best = gait;
+    if (solved && job->gaits_tried == 1)
+        job->first_objective = *f;
+    if (solved && *f < job->best_objective) {
+        const moray_heading_plan before = h->best;
+        job->best_objective = *f;
+        h->best = plan;
+        plan = before;
     }
-    return true;
+    moray_heading_plan_free(&plan); // the worse of the two
+    return solved;
 }
 
 static moray_status search(hunt *h, const moray_gait *start)
@@ -86,25 +83,27 @@ static moray_status search(hunt *h, const moray_gait *start)
     moray_search_settings settings = moray_search_settings_default();
     moray_search_info info;
     settings.method = MORAY_SEARCH_COBYLA;
-    settings.x_tolerance = 1e-3;
-    settings.f_tolerance = 1e-4;
+    settings.x_tolerance = 1e-2;
+    settings.f_tolerance = 1e-3;
     settings.max_evaluations = h->job->gait_evaluations;
+    settings.progress = heading_go_on;
     const moray_status status = moray_search(&problem, &settings, x, &info);
+    if (moray_interrupted())
+        return moray_error(MORAY_INTERRUPTED, "interrupted in search of a gait; nothing is written");
     if (status.code == MORAY_NUMERIC)
         return moray_error(MORAY_NOT_SOLVED, "power_W = %g: no gait within the limits gets by with it", limits->power);
     return status;
 }
 
-moray_status heading_search_gait(heading_job *job, moray_gait *gait)
+moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_heading_plan *best)
 {
-    hunt h = {.job = job, .spec = heading_spec(job, MORAY_FIRST_PRINCIPLES, false), .objective = INFINITY};
+    hunt h = {.job = job, .spec = heading_spec(job, MORAY_FIRST_PRINCIPLES, false)};
+    job->first_objective = job->best_objective = INFINITY;
     moray_orbit_spec spec = moray_orbit_spec_default(&job->common.robot, MORAY_FIRST_PRINCIPLES);
     spec.steered = false;
     MORAY_TRY(moray_orbit_new(&h.orbit, &spec));
-    const moray_status status = search(&h, gait);
-    moray_heading_plan_free(&h.plan);
+    const moray_status status = search(&h, start);
     moray_orbit_free(h.orbit);
-    if (!moray_failed(status))
-        *gait = h.best;
+    *best = h.best;
     return status;
 }

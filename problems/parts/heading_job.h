@@ -18,11 +18,12 @@ enum { HEADING_TRIALS = 10, HEADING_GAITS = 3 }; // gaits: the paper's, those of
 typedef struct heading_trial {
     const char *name;
     heading_law law;
-    int gait;                     // swum
-    moray_model plan;             // whose plan
-    bool preview;                 // the reference is known ahead
-    double gain, lead;            // [m/rad of the control-oriented model], [s]
-    int evaluations;              // spent on tuning these
+    int gait;          // swum
+    moray_model plan;  // whose plan
+    bool preview;      // the reference is known ahead
+    double gain, lead; // [m/rad of the control-oriented model], [s]
+    int evaluations;   // spent on tuning these
+    bool run;
     moray_heading_score score[2]; // by the model swum on
     moray_recede_record record[2];
 } heading_trial;
@@ -30,7 +31,7 @@ typedef struct heading_trial {
 typedef struct heading_job {
     moray_common common; // model: of the last plan; with complex there is one on the control-oriented model before
     char reference_text[MORAY_PATH_SIZE];
-    double horizon; // [s]
+    double horizon; // [s]; NaN: by the reference
     steer_input input;
     double weight_power, weight_steering;
     double max_error;
@@ -46,7 +47,9 @@ typedef struct heading_job {
     double turn_rate; // sustained at the limit of the offset, by the model of the last plan [rad/s]
     heading_trial trial[HEADING_TRIALS];
     int n_trials;
-    int gaits_tried; // by the search for the gait of the first-principles plan
+    // by the search for the gait of the first-principles plan
+    int gaits_tried;
+    double first_objective, best_objective; // on its coarse mesh
     moray_ticker ticker;
 } heading_job;
 
@@ -55,9 +58,35 @@ static inline const moray_heading_plan *heading_last_plan(const heading_job *job
     return &job->plan[job->common.model];
 }
 
-// Plans: averaged, control-oriented, and with the complex model first-principles. Error: MORAY_NOT_SOLVED saying what
-// limits the robot, MORAY_INTERRUPTED, and those of moray_heading_plan_make.
-moray_status heading_make_plans(heading_job *job);
+#define HEADING_AVERAGED_SCHEME "radau3"
+
+// Plans: first the averaged and the control-oriented one, last the first-principles one. Error: MORAY_NOT_SOLVED saying
+// what limits the robot, MORAY_INTERRUPTED, and those of moray_heading_plan_make.
+moray_status heading_plan_first(heading_job *job);
+moray_status heading_plan_last(heading_job *job);
+
+// ---- Fig. 8
+// ---------------------------------------------------------------------------------------------------------
+
+// Whether the reference is the manoeuvre of Sec. V-C.
+bool heading_is_fig8(const heading_job *job);
+
+// Sets gait, reference, and the horizon unless it is given. Error: those of moray_cruise_find and moray_voyage_run.
+moray_status heading_fig8_prepare(heading_job *job);
+
+// The paper's offset at t [m or rad].
+double heading_fig8_offset(const heading_job *job, moray_model model, double t);
+
+// The offset that a plan found beside the paper's [m or rad].
+typedef struct heading_fig8_match {
+    double paper;                 // while it turns, there and, but for the sign, back
+    double there, back, straight; // means found, without 3 s behind and before every edge
+    double rms;                   // of the difference, over the whole horizon
+} heading_fig8_match;
+heading_fig8_match heading_fig8_compare(const heading_job *job, moray_model model);
+
+// ---- Plans
+// -----------------------------------------------------------------------------------------------------------
 
 // Limits of the model, with the gait that is swum where `gait` is not NULL.
 moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool averaged);
@@ -65,18 +94,27 @@ moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool 
 // Of a solve on the averaged plant or the full one, whose undulation has that period.
 moray_settings heading_settings(heading_job *job, bool averaged, double period);
 
-// From *gait to the one whose first-principles plan has the least objective on a coarse mesh, within the limits of gait
-// and straight-ahead power. Error: those of moray_search; MORAY_NOT_SOLVED when no gait gets by with the power.
-moray_status heading_search_gait(heading_job *job, moray_gait *gait);
+// A moray_search_observer: until Ctrl-C.
+bool heading_go_on(void *observer, const moray_search_progress *progress);
+
+// The gait whose first-principles plan has the least objective on a coarse mesh, within the limits of gait and
+// straight-ahead power, from `start` on; its plan must be freed even after an error. Error: those of moray_search;
+// MORAY_NOT_SOLVED when no gait gets by with the power.
+moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_heading_plan *best);
 
 // What keeps the robot from following more closely, in one paragraph.
 void heading_explain(const heading_job *job, char *text, size_t size);
 
-// Tunes and swims every trial. Error: those of moray_voyage_run.
+void heading_choose_trials(heading_job *job);
+
+// Tunes and swims every trial not yet run whose gait and plan are known. Error: those of moray_voyage_run.
 moray_status heading_run_trials(heading_job *job);
 
 // Swims one of them again, to be drawn.
 moray_status heading_swim(const heading_job *job, heading_trial *trial, moray_model model, moray_voyage *voyage);
+
+// Figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of moray_voyage_run.
+moray_status heading_draw(heading_job *job);
 
 moray_json *heading_json(const heading_job *job);
 

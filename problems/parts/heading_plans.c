@@ -80,7 +80,7 @@ static moray_status why_not(const heading_job *job, const moray_heading_plan *pl
     char text[700];
     const moray_nlp_info *info = moray_solution_info(plan->solution);
     if (info->outcome == MORAY_NLP_INTERRUPTED)
-        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations", info->iterations);
+        return moray_error(MORAY_INTERRUPTED, "interrupted while planning; nothing is written");
     const double jump = largest_jump(job), fastest = moray_reference_fastest(&job->reference, 0, job->horizon);
     if (isfinite(job->max_error) && jump > 2 * job->max_error)
         return moray_error(
@@ -105,7 +105,13 @@ static bool show_iteration(void *observer, const moray_progress *at)
     const heading_job *job = observer;
     moray_ticker_show(&job->ticker, "heading_tracking: iteration %d, objective %.6g, violation %.1e", at->iteration,
                       at->objective, at->infeasibility);
-    return true;
+    return !moray_interrupted();
+}
+
+bool heading_go_on(void *observer, const moray_search_progress *progress)
+{
+    (void)observer, (void)progress;
+    return !moray_interrupted();
 }
 
 moray_settings heading_settings(heading_job *job, bool averaged, double period)
@@ -113,7 +119,7 @@ moray_settings heading_settings(heading_job *job, bool averaged, double period)
     const double per_period = averaged ? 1.2 : job->intervals_per_period;
     const int least = (int)ceil(job->horizon / period * per_period);
     moray_settings settings = moray_settings_default();
-    settings.scheme = averaged ? "radau3" : job->common.scheme;
+    settings.scheme = averaged ? HEADING_AVERAGED_SCHEME : job->common.scheme;
     settings.intervals = moray_reference_intervals(&job->reference, 0, job->horizon, least < 4 ? 4 : least);
     if (!averaged && job->common.intervals > 0)
         settings.intervals = job->common.intervals;
@@ -149,7 +155,9 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
                               const moray_heading_plan *from)
 {
     const moray_heading_spec spec = heading_spec(job, model, false);
-    const moray_settings settings = heading_settings(job, false, 2 * M_PI / gait->omega);
+    moray_settings settings = heading_settings(job, false, 2 * M_PI / gait->omega);
+    if (from->cruise.model == model && from != &job->averaged)
+        settings.barrier = 1e-6;
     moray_heading_plan *plan = &job->plan[model];
     MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, gait, from));
     MORAY_TRY(find_turn_rate(job, plan));
@@ -161,7 +169,7 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
     return find_cruises(job, 1 + (int)model, &plan->cruise.gait, model);
 }
 
-moray_status heading_make_plans(heading_job *job)
+moray_status heading_plan_first(heading_job *job)
 {
     const moray_robot *robot = &job->common.robot;
     const moray_gait paper = moray_gait_paper(robot);
@@ -170,11 +178,20 @@ moray_status heading_make_plans(heading_job *job)
     const moray_heading_spec averaged = heading_spec(job, MORAY_CONTROL_ORIENTED, true);
     const moray_settings coarse = heading_settings(job, true, 2 * M_PI / first.omega);
     MORAY_TRY(moray_heading_plan_make(&job->averaged, &averaged, &coarse, &first, NULL));
-    MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged.cruise.gait, &job->averaged));
-    if (job->common.model == MORAY_CONTROL_ORIENTED)
-        return moray_ok();
-    moray_gait gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
-    if (job->gait_evaluations > 0 && !steer_gait_given(&job->input))
-        MORAY_TRY(heading_search_gait(job, &gait));
-    return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->plan[MORAY_CONTROL_ORIENTED]);
+    return make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged.cruise.gait, &job->averaged);
+}
+
+moray_status heading_plan_last(heading_job *job)
+{
+    const moray_robot *robot = &job->common.robot;
+    const moray_gait first = steer_first_gait(&job->input, robot);
+    const moray_gait gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    if (job->gait_evaluations == 0 || steer_gait_given(&job->input))
+        return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->plan[MORAY_CONTROL_ORIENTED]);
+    moray_heading_plan best;
+    moray_status status = heading_search_gait(job, &gait, &best);
+    if (!moray_failed(status))
+        status = make_plan(job, MORAY_FIRST_PRINCIPLES, &best.cruise.gait, &best);
+    moray_heading_plan_free(&best);
+    return status;
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <stdlib.h>
-
 #include "heading_job.h"
 
 static const char *const model_names[] = {"control-oriented", "first-principles"};
@@ -9,11 +7,12 @@ enum { text_size = 1200 };
 // ---- Tables
 // -----------------------------------------------------------------------------------------------------------
 
-enum { tables = 3, most_rows = HEADING_TRIALS + 2 };
+enum { most_tables = 4, most_rows = HEADING_TRIALS + 2 };
 
 typedef struct report_tables {
-    moray_table table[tables];
-    moray_table_row rows[tables][most_rows];
+    int n;
+    moray_table table[most_tables];
+    moray_table_row rows[most_tables][most_rows];
 } report_tables;
 
 // Zero where it is as good as zero, so that tables show no rounding.
@@ -46,7 +45,8 @@ static int gait_rows(const heading_job *job, moray_table_row *rows)
     enum { count = sizeof labels / sizeof *labels };
     for (int i = 0; i < count; i++)
         rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
-    for (int g = 0; g <= 1 + (int)job->common.model; g++) {
+    const int first = steer_gait_given(&job->input); // the paper's is not swum then
+    for (int g = first; g <= 1 + (int)job->common.model; g++) {
         const moray_cruise *control = &job->cruise[g][0], *revolute = &job->cruise[g][1];
         const double values[count] = {moray_theta_max_from_amplitude(&job->common.robot, MORAY_CONTROL_ORIENTED,
                                                                      control->gait.amplitude, control->gait.delta) /
@@ -59,7 +59,7 @@ static int gait_rows(const heading_job *job, moray_table_row *rows)
                                       revolute->speed,
                                       revolute->power};
         for (int i = 0; i < count; i++)
-            rows[i].value[g] = values[i];
+            rows[i].value[g - first] = values[i];
     }
     return count;
 }
@@ -77,12 +77,27 @@ static int tuning_rows(const heading_job *job, moray_table_row *rows)
     return n;
 }
 
+static int fig8_rows(const heading_job *job, moray_table_row *rows)
+{
+    int model = 0;
+    for (; model <= (int)job->common.model; model++) {
+        const heading_fig8_match match = heading_fig8_compare(job, (moray_model)model);
+        const double unit = model == MORAY_CONTROL_ORIENTED ? 0.01 : DEG;
+        rows[model] = (moray_table_row){.label = model_names[model],
+                                        .unit = model == MORAY_CONTROL_ORIENTED ? "cm" : "deg",
+                                        .value = {match.paper / unit, match.there / unit, match.back / unit,
+                                                  match.straight / unit, match.rms / unit}};
+    }
+    return model;
+}
+
 static void make_tables(const heading_job *job, report_tables *t)
 {
     score_rows(job, t->rows[1]);
+    const bool given = steer_gait_given(&job->input);
     t->table[0] = (moray_table){.title = "Gait",
-                                .columns = {"paper's", "control opt.", "first-pr. opt."},
-                                .n_columns = 2 + (int)job->common.model,
+                                .columns = {given ? "given" : "paper's", "control opt.", "first-pr. opt."},
+                                .n_columns = given ? 1 : 2 + (int)job->common.model,
                                 .rows = t->rows[0],
                                 .n_rows = gait_rows(job, t->rows[0])};
     t->table[1] = (moray_table){.title = "Heading error, without the undulation, deg; power, W",
@@ -95,18 +110,32 @@ static void make_tables(const heading_job *job, report_tables *t)
                                 .n_columns = 3,
                                 .rows = t->rows[2],
                                 .n_rows = tuning_rows(job, t->rows[2])};
+    t->n = 3;
+    if (heading_is_fig8(job))
+        t->table[t->n++] = (moray_table){.title = "Offset that the plans found beside the paper's",
+                                         .columns = {"paper's", "turning", "back", "straight on", "RMS difference"},
+                                         .n_columns = 5,
+                                         .rows = t->rows[3],
+                                         .n_rows = fig8_rows(job, t->rows[3])};
 }
 
 // ---- In words
 // ---------------------------------------------------------------------------------------------------------
 
-// The best of the trials that pass the filter, by RMS on the first-principles model.
+// Whether the trial swims on the paper's gait, and that takes more than the power allowed.
+static bool beyond_power(const heading_job *job, const heading_trial *trial)
+{
+    const moray_cruise *paper = &job->cruise[0][job->common.model];
+    return trial->gait == 0 && paper->power > (1 + 1e-6) * heading_spec(job, paper->model, false).limits.power;
+}
+
+// The best of the trials that pass the filter and keep the limits, by RMS on the first-principles model.
 static const heading_trial *best_trial(const heading_job *job, bool feedback, bool preview)
 {
     const heading_trial *best = NULL;
     for (int k = 0; k < job->n_trials; k++) {
         const heading_trial *trial = &job->trial[k];
-        if ((trial->law == HEADING_FEEDBACK) == feedback && trial->preview == preview &&
+        if ((trial->law == HEADING_FEEDBACK) == feedback && trial->preview == preview && !beyond_power(job, trial) &&
             (!best || trial->score[1].rms < best->score[1].rms))
             best = trial;
     }
@@ -131,21 +160,21 @@ static void verdict(const heading_job *job, char *text, size_t size)
 static void receding_line(const heading_job *job, const heading_trial *trial, char *text, size_t size)
 {
     const moray_recede_record *r = &trial->record[MORAY_FIRST_PRINCIPLES];
-    snprintf(text, size,
-             "%s: %d plans of %.3g periods, each %.2g s on average (the longest after the first %.2g s) and %.1f "
-             "iterations; %.1f times faster than real time%s%s",
-             trial->name, r->plans, job->look_ahead_periods, r->seconds / r->plans, r->longest,
-             (double)r->iterations / r->plans, job->horizon / r->seconds, r->failures ? "; not solved at first: " : "",
-             r->failures ? r->first_failure : "");
+    snprintf(
+        text, size,
+        "%s: %d plans of %.3g periods, each %.2g s of processor time on average (the longest after the first %.2g s) "
+        "and %.1f iterations; %.1f times faster than real time on one core%s%s",
+        trial->name, r->plans, job->look_ahead_periods, r->seconds / r->plans, r->longest,
+        (double)r->iterations / r->plans, job->horizon / r->seconds, r->failures ? "; not solved at first: " : "",
+        r->failures ? r->first_failure : "");
 }
 
-static void solver_line(const char *what, const heading_job *job, const moray_heading_plan *plan, char *text,
-                        size_t size)
+static void solver_line(const char *what, const char *scheme, const moray_heading_plan *plan, char *text, size_t size)
 {
     char line[300];
     int meshes;
     const moray_mesh_record *record = moray_solution_history(plan->solution, &meshes);
-    moray_solver_line(plan->solution, job->common.scheme, record[meshes - 1].intervals, line, sizeof line);
+    moray_solver_line(plan->solution, scheme, record[meshes - 1].intervals, line, sizeof line);
     snprintf(text, size, "%s: %s", what, line);
 }
 
@@ -157,7 +186,7 @@ static void print_all(const heading_job *job, const report_tables *t)
     char text[text_size];
     printf("%d links, current (%g, %g) m/s, reference %s over %g s\n\n", job->common.robot.links,
            job->common.current[0], job->common.current[1], job->reference_text, job->horizon);
-    for (int k = 0; k < tables; k++) {
+    for (int k = 0; k < t->n; k++) {
         moray_table_print(&t->table[k], stdout);
         printf("\n");
     }
@@ -165,99 +194,23 @@ static void print_all(const heading_job *job, const report_tables *t)
     printf("%s\n\n", text);
     heading_explain(job, text, sizeof text);
     printf("%s\n\n", text);
+    if (job->gaits_tried > 0)
+        printf("gait of the first-principles plan: %d tried; the objective of the best is %.2f %% below that of the "
+               "first\n",
+               job->gaits_tried, 100 * (1 - job->best_objective / job->first_objective));
     for (int k = 0; k < job->n_trials; k++)
         if (job->trial[k].law == HEADING_RECEDING) {
             receding_line(job, &job->trial[k], text, sizeof text);
             printf("%s\n", text);
         }
-    solver_line("period-averaged plan", job, &job->averaged, text, sizeof text);
+    solver_line("period-averaged plan", HEADING_AVERAGED_SCHEME, &job->averaged, text, sizeof text);
     printf("%s\n", text);
     for (int model = 0; model <= (int)job->common.model; model++) {
-        solver_line(model_names[model], job, &job->plan[model], text, sizeof text);
+        solver_line(model_names[model], job->common.scheme, &job->plan[model], text, sizeof text);
         printf("%s\n", text);
         moray_certificate_line(&job->certificate[model], text, sizeof text);
         printf("    %s\n", text);
     }
-}
-
-// ---- Figures
-// ----------------------------------------------------------------------------------------------------------
-
-enum { shown = 3 };
-
-// The tuned feedback, the same ahead of its time, the last plan.
-static void choose_shown(heading_job *job, heading_trial **trials)
-{
-    trials[0] = &job->trial[1];
-    trials[1] = &job->trial[2];
-    for (int k = 0; k < job->n_trials; k++)
-        if (job->trial[k].law == HEADING_PLAN)
-            trials[2] = &job->trial[k];
-}
-
-static moray_status draw_over_time(const heading_job *job, heading_trial *const *trials, const moray_voyage *voyages)
-{
-    const int n = voyages->track.n;
-    const double *t = voyages->track.t;
-    double *data = malloc((size_t)(n * (2 * shown + 1)) * sizeof *data), *reference = data + 2 * shown * n, rate;
-    moray_curve heading[shown + 1], offset[shown];
-    if (!data)
-        return moray_error(MORAY_MEMORY, "no memory for figures");
-    for (int k = 0; k < n; k++)
-        reference[k] = moray_reference_at(&job->reference, t[k], &rate) / DEG;
-    heading[0] = (moray_curve){.label = "reference", .x = t, .y = reference, .n = n};
-    for (int i = 0; i < shown; i++) {
-        const moray_cruise *cruise = &job->cruise[trials[i]->gait][1];
-        double *angle = data + 2 * i * n, *phi = angle + n;
-        for (int k = 0; k < n; k++) {
-            angle[k] = moray_cruise_heading(cruise, t[k], voyages[i].track.pose[k].heading) / DEG;
-            phi[k] = voyages[i].offset[k] / DEG;
-        }
-        heading[1 + i] = (moray_curve){.label = trials[i]->name, .x = t, .y = angle, .n = n};
-        offset[i] = (moray_curve){.label = trials[i]->name, .x = t, .y = phi, .n = n};
-    }
-    moray_status status = steer_draw(job->common.output, job->common.quiet, "heading_tracking",
-                                     &(moray_figure){.name = "heading",
-                                                     .title = "Heading without its undulation, first-principles model",
-                                                     .x_label = "time [s]",
-                                                     .y_label = "heading [deg]",
-                                                     .curves = heading,
-                                                     .n_curves = 1 + shown});
-    if (!moray_failed(status))
-        status = steer_draw(job->common.output, job->common.quiet, "heading_tracking",
-                            &(moray_figure){.name = "offset",
-                                            .title = "Joint offset, first-principles model",
-                                            .x_label = "time [s]",
-                                            .y_label = "phi_0 [deg]",
-                                            .curves = offset,
-                                            .n_curves = shown});
-    free(data);
-    return status;
-}
-
-static moray_status draw_shown(heading_job *job, heading_trial *const *trials, const moray_voyage *voyages)
-{
-    const steer_curve paths[shown] = {
-        {trials[0]->name, &voyages[0]}, {trials[1]->name, &voyages[1]}, {trials[2]->name, &voyages[2]}};
-    MORAY_TRY(draw_over_time(job, trials, voyages));
-    MORAY_TRY(steer_draw_path(&job->common, "heading_tracking", paths, shown, NULL, 0));
-    MORAY_TRY(steer_draw_joints(&job->common, "heading_tracking", &voyages[shown - 1]));
-    return steer_write_trajectory(&job->common, &voyages[shown - 1]);
-}
-
-static moray_status draw(heading_job *job)
-{
-    heading_trial *trials[shown];
-    moray_voyage voyages[shown] = {{0}};
-    moray_status status = moray_ok();
-    choose_shown(job, trials);
-    for (int k = 0; k < shown && !moray_failed(status); k++)
-        status = heading_swim(job, trials[k], MORAY_FIRST_PRINCIPLES, &voyages[k]);
-    if (!moray_failed(status))
-        status = draw_shown(job, trials, voyages);
-    for (int k = 0; k < shown; k++)
-        moray_voyage_free(&voyages[k]);
-    return status;
 }
 
 // ---- Files
@@ -270,12 +223,12 @@ static moray_status write_files(heading_job *job, const report_tables *t, const 
     FILE *file;
     MORAY_TRY(moray_output_file(output, "summary.json", &file));
     MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(draw(job));
+    MORAY_TRY(heading_draw(job));
     verdict(job, text, text_size);
     const moray_report report = {.title = "heading_tracking",
                                  .text = text,
                                  .tables = t->table,
-                                 .n_tables = tables,
+                                 .n_tables = t->n,
                                  .argc = job->common.argc,
                                  .argv = job->common.argv};
     MORAY_TRY(moray_output_report(output, &report));

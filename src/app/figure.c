@@ -82,18 +82,25 @@ static void widen_to(double value, double range[2])
     range[1] = fmax(range[1], value);
 }
 
-// The same scale on both axes, and a picture no flatter or slimmer than 4:1 around whatever is drawn.
-static void write_equal_axes(FILE *script, const moray_figure *figure)
+// What is drawn along an axis, 0 for x; {INFINITY, -INFINITY} where there is nothing.
+static void range_along(const moray_figure *figure, int axis, double range[2])
 {
-    double range[2][2] = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
     for (int k = 0; k < figure->n_curves; k++) {
         const moray_curve *curve = &figure->curves[k];
         const size_t stride = curve->stride ? (size_t)curve->stride : 1;
-        for (size_t i = 0; i < (size_t)curve->n; i++) {
-            widen_to(curve->x[i * stride], range[0]);
-            widen_to(curve->y[i * stride], range[1]);
-        }
+        for (size_t i = 0; i < (size_t)curve->n; i++)
+            widen_to((axis ? curve->y : curve->x)[i * stride], range);
     }
+}
+
+// The same scale on both axes, and a picture no flatter or slimmer than 4:1 around whatever is drawn.
+static void write_equal_axes(FILE *script, const moray_figure *figure)
+{
+    double range[2][2];
+    for (int axis = 0; axis < 2; axis++)
+        range_along(figure, axis, range[axis]);
     const double width = range[0][1] - range[0][0], height = range[1][1] - range[1][0];
     fputs("set size ratio -1\n", script);
     if (!(isfinite(width) && isfinite(height)))
@@ -106,16 +113,39 @@ static void write_equal_axes(FILE *script, const moray_figure *figure)
     }
 }
 
+// As much of the axis as is used, not whole decades; within three decades, numbers at 1, 2 and 5 of each.
+static void write_log_axis(FILE *script, const moray_figure *figure, int axis)
+{
+    static const double steps[] = {1, 2, 5};
+    const double margin = 1.1;
+    const char name = axis ? 'y' : 'x';
+    double range[2];
+    range_along(figure, axis, range);
+    fprintf(script, "set logscale %c\n", name);
+    if (!(range[0] > 0 && isfinite(range[1])))
+        return;
+    fprintf(script, "set %crange [%.17g:%.17g]\n", name, range[0] / margin, range[1] * margin);
+    if (range[1] > 1e3 * range[0])
+        return;
+    const double first = pow(10, floor(log10(range[0])));
+    fprintf(script, "set %ctics (%g", name, first);
+    for (double decade = first; decade <= range[1]; decade *= 10)
+        for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+            fprintf(script, ", %g", steps[k] * decade);
+    fputs(")\n", script);
+}
+
 static void write_script(FILE *script, const moray_figure *figure)
 {
-    fputs("set terminal svg noenhanced size 720,440 font 'Helvetica,13' background '#ffffff'\n"
-          "set grid lc rgb '#d0d0d0' lt 1 lw 0.5\nset border 3\nset tics nomirror\nset key outside below height 1\n"
+    const int usual = 4, extra = figure->n_curves > usual ? 18 * (figure->n_curves - usual) : 0; // room for the key
+    fprintf(script, "set terminal svg noenhanced size 720,%d font 'Helvetica,13' background '#ffffff'\n", 440 + extra);
+    fputs("set grid lc rgb '#d0d0d0' lt 1 lw 0.5\nset border 3\nset tics nomirror\nset key outside below height 1\n"
           "set offsets graph 0, graph 0, graph 0.03, graph 0.03\n",
           script);
     if (figure->log_x)
-        fputs("set logscale x\n", script);
+        write_log_axis(script, figure, 0);
     if (figure->log_y)
-        fputs("set logscale y\n", script);
+        write_log_axis(script, figure, 1);
     if (figure->equal_axes)
         write_equal_axes(script, figure);
     set_text(script, "title", figure->title);

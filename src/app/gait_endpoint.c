@@ -17,7 +17,7 @@ struct term {
     double curve[6];
 };
 
-enum { MOST_TERMS = 12 };
+enum { MOST_TERMS = 12, MOST_INPUTS = 4096 };
 
 // ---- Features in the input [x0, t0, xf, tf, q, s] ------------------------------------------------------------------
 
@@ -33,7 +33,7 @@ static int inputs_of(const struct gait_endpoint *e, int feature, int at[4], doub
         }
         return 4;
     }
-    at[0] = feature == PERIOD ? tf : feature == WORK ? tf + 1 : s + feature - AMPLITUDE;
+    at[0] = feature == PERIOD ? tf : feature == WORK ? tf + 1 : e->series ? s : s + feature - AMPLITUDE;
     weight[0] = 1;
     return 1;
 }
@@ -170,7 +170,8 @@ static int terms_of(const struct gait_endpoint *e, const double *in, struct term
     term[n++] = e->goal == MORAY_GAIT_FASTEST ? ratio(value, -1, ALONG, PERIOD) : ratio(value, 1, WORK, ALONG);
     term[n++] = linear(value, ACROSS);
     term[n++] = product(value, OMEGA, PERIOD);
-    term[n++] = link_angle(e, value);
+    if (!e->series)
+        term[n++] = link_angle(e, value);
     if (e->head)
         term[n++] = end_link_angle(e, value, 1);
     if (e->tail)
@@ -267,13 +268,13 @@ static void endpoint_hessian(void *self, const double *in, const double *weight,
 
 moray_status gait_endpoint_map(moray_map *map, struct gait_endpoint *e)
 {
-    double zeros[1024] = {0}; // while recording, any point does
+    double zeros[MOST_INPUTS] = {0}; // while recording, any point does
     struct term term[MOST_TERMS];
-    const int inputs = 2 * e->nx + 3 + MORAY_GAIT_PARAMETERS;
-    if (inputs > 1024)
-        return moray_error(MORAY_INPUT, "links: %d states are more than this form is made for", e->nx);
+    const int inputs = 2 * e->nx + 3 + (e->series ? e->series : MORAY_GAIT_PARAMETERS);
+    if (inputs > MOST_INPUTS)
+        return moray_error(MORAY_INPUT, "links: %d inputs are more than this form is made for", inputs);
     e->events = e->nx - 2 + terms_of(e, zeros, term) - 1;
-    e->power_event = e->nx - 2 + 3 + e->head + e->tail;
+    e->power_event = e->nx - 2 + (e->series ? 2 : 3) + e->head + e->tail;
     triplets_record(&e->jac);
     walk_endpoint_jacobian(e, zeros, &e->jac);
     MORAY_TRY(triplets_close(&e->jac));

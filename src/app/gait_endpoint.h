@@ -16,6 +16,7 @@ struct gait_endpoint {
     bool revolute;    // amplitude by (27), else by (33) with links of length L
     double L;
     int links;
+    int series;      // parameters of a series, omega the first, which has no amplitude; 0: those of a gait
     bool head, tail; // a taper above and below 0 is allowed
     moray_gait_goal goal;
     bool power, rate, speed;
@@ -27,6 +28,14 @@ struct gait_endpoint {
 // The map uses `endpoint`, which must not move. Error: MORAY_MEMORY.
 moray_status gait_endpoint_map(moray_map *map, struct gait_endpoint *endpoint);
 void gait_endpoint_free(struct gait_endpoint *endpoint);
+
+// What the events are called, name[endpoint->events].
+void gait_event_names(const struct gait_endpoint *endpoint, const char **name);
+
+// What the n path outputs are called: joint efforts if any, then angles of the links, then rates of the joints. name[n]
+// into text[n].
+typedef char gait_name[32];
+void gait_path_names(int n, int efforts, int links, gait_name *text, const char **name);
 
 // Bounds of the amplitude event for a range of theta_max: (33) a / (L cos(delta/2)) = sin theta_max, or
 // (27) alpha / (2 sin(delta/2)) = theta_max.

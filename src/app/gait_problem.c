@@ -1,20 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "moray/gait_problem.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/gait_endpoint.h"
-
-struct moray_gait_problem {
-    moray_gait_problem_spec spec;
-    moray_plant_size size;
-    moray_map plant, ends;
-    struct gait_endpoint endpoint;
-    moray_bounds *block; // x, x0, c, e in turn
-    moray_ocp *ocp;
-};
+#include "app/gait_problem.h"
 
 moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAMETERS])
 {
@@ -48,10 +37,11 @@ static moray_status check_spec(const moray_gait_problem_spec *spec)
     const moray_gait_limits *limits = &spec->limits;
     MORAY_TRY(moray_robot_check(&spec->robot));
     if (spec->joints == MORAY_JOINTS_FREE)
-        return moray_error(MORAY_INPUT, "joints = free: an optimal gait has its joints on the gait or in closed loop");
+        return moray_error(MORAY_INPUT,
+                           "joints = free: an optimal gait has its joints on the gait, on a series or in closed loop");
     const bool control = spec->model == MORAY_CONTROL_ORIENTED;
-    if (!control && spec->joints != MORAY_JOINTS_ON_GAIT)
-        return moray_error(MORAY_INPUT, "joints: the first-principles model has its joints on the gait");
+    if (!control && spec->joints == MORAY_JOINTS_CLOSED_LOOP)
+        return moray_error(MORAY_INPUT, "joints: the first-principles model has none in closed loop");
     MORAY_TRY(check_range("theta_max_deg", limits->theta_max, 0, 89 * degree, degree));
     MORAY_TRY(check_range("omega_deg_s", limits->omega, 1e-3 * degree, 1e5 * degree, degree));
     MORAY_TRY(check_range("delta_deg", limits->delta, 1 * degree, 179 * degree, degree));
@@ -84,6 +74,17 @@ static double least_speed(const moray_gait_problem_spec *spec)
     return spec->goal == MORAY_GAIT_THRIFTIEST ? fmax(spec->limits.course_speed, some_way) : spec->limits.course_speed;
 }
 
+static bool on_series(const moray_gait_problem *problem)
+{
+    return problem->spec.joints == MORAY_JOINTS_SERIES;
+}
+
+// Whether theta_max bounds the links' angles in place of their amplitude.
+static bool by_link_angles(const moray_gait_problem *problem)
+{
+    return on_series(problem) || problem->spec.limits.link_angles;
+}
+
 static moray_status make_plant(moray_gait_problem *problem)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
@@ -91,8 +92,11 @@ static moray_status make_plant(moray_gait_problem *problem)
                                     .joints = spec->joints,
                                     .current = {spec->current[0], spec->current[1]},
                                     .path_forces = limited(spec->limits.joint_effort),
-                                    .path_angles = spec->model == MORAY_CONTROL_ORIENTED &&
-                                                   (spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0)};
+                                    .path_angles = by_link_angles(problem) ||
+                                                   (spec->model == MORAY_CONTROL_ORIENTED &&
+                                                    (spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0)),
+                                    .path_rates = on_series(problem) && limited(spec->limits.joint_rate),
+                                    .harmonics = spec->harmonics};
     problem->size = moray_plant_sizes(&plant);
     return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&problem->plant, &plant)
                                                  : moray_complex_plant(&problem->plant, &plant);
@@ -101,27 +105,39 @@ static moray_status make_plant(moray_gait_problem *problem)
 static moray_status make_endpoint(moray_gait_problem *problem)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
-    const int joints = spec->joints == MORAY_JOINTS_ON_GAIT ? 0 : spec->robot.links - 1;
-    problem->endpoint = (struct gait_endpoint){
-        .nx = problem->size.nx,
-        .position = joints + 1,
-        .revolute = spec->model == MORAY_FIRST_PRINCIPLES,
-        .L = 2 * spec->robot.l,
-        .links = spec->robot.links,
-        .head = spec->limits.taper.upper > 0,
-        .tail = spec->limits.taper
-                    .lower<0, .course = {cos(spec->course), sin(spec->course)}, .power = limited(spec->limits.power),
-                           .goal = spec->goal, .rate = limited(spec->limits.joint_rate), .speed = least_speed(spec)> 0};
+    const int joints = spec->joints == MORAY_JOINTS_CLOSED_LOOP ? spec->robot.links - 1 : 0;
+    const bool series = on_series(problem);
+    problem->endpoint = (struct gait_endpoint){.nx = problem->size.nx,
+                                               .position = joints + 1,
+                                               .revolute = spec->model == MORAY_FIRST_PRINCIPLES,
+                                               .L = 2 * spec->robot.l,
+                                               .links = spec->robot.links,
+                                               .series = series ? problem->size.ns : 0,
+                                               .head = !series && spec->limits.taper.upper > 0,
+                                               .tail = !series && spec->limits.taper.lower < 0,
+                                               .course = {cos(spec->course), sin(spec->course)},
+                                               .goal = spec->goal,
+                                               .power = limited(spec->limits.power),
+                                               .rate = !series && limited(spec->limits.joint_rate),
+                                               .speed = least_speed(spec) > 0};
     return gait_endpoint_map(&problem->ends, &problem->endpoint);
+}
+
+static int path_efforts(const moray_gait_problem *problem)
+{
+    return limited(problem->spec.limits.joint_effort) ? problem->spec.robot.links - 1 : 0;
 }
 
 static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
-    const int forces = limited(limits->joint_effort) ? problem->spec.robot.links - 1 : 0;
-    for (int i = 0; i < problem->size.nc; i++)
-        c[i] = i < forces ? moray_between(-limits->joint_effort, limits->joint_effort)
-                          : moray_between(-limits->theta_max.upper, limits->theta_max.upper);
+    const int efforts = path_efforts(problem), angles = efforts + problem->spec.robot.links;
+    for (int i = 0; i < problem->size.nc; i++) {
+        const double most = i < efforts  ? limits->joint_effort
+                            : i < angles ? limits->theta_max.upper
+                                         : limits->joint_rate;
+        c[i] = moray_between(-most, most);
+    }
 }
 
 static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e)
@@ -131,8 +147,10 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
         *e++ = moray_fixed(0);
     *e++ = moray_fixed(2 * M_PI);
     const struct gait_endpoint *endpoint = &problem->endpoint;
-    const moray_bounds amplitude = gait_amplitude_bounds(endpoint, limits->theta_max);
-    *e++ = amplitude;
+    const moray_bounds amplitude = gait_amplitude_bounds(
+        endpoint, limits->link_angles ? moray_between(limits->theta_max.lower, M_PI / 2) : limits->theta_max);
+    if (!endpoint->series)
+        *e++ = amplitude;
     for (int k = 0; k < endpoint->head + endpoint->tail; k++)
         *e++ = moray_at_most(amplitude.upper * amplitude.upper);
     if (endpoint->power)
@@ -149,23 +167,45 @@ static const char *const s_names[][MORAY_GAIT_PARAMETERS] = {{"a", "omega", "del
 static const char *const gait_states[][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
                                              {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
 
+// Bounds of the parameters, s[ns].
+static void fill_parameter_bounds(const moray_gait_problem *problem, moray_bounds *s)
+{
+    const moray_gait_limits *limits = &problem->spec.limits;
+    const int n = problem->spec.robot.links - 1;
+    const double swing = problem->spec.model == MORAY_CONTROL_ORIENTED
+                             ? 2 * problem->spec.robot.l * sin(limits->theta_max.upper) // of a, by (33)
+                             : 2 * limits->theta_max.upper;                             // of alpha, by (27)
+    const double largest = by_link_angles(problem) ? 2 * swing : swing;
+    if (!on_series(problem)) {
+        const moray_bounds all[] = {moray_between(0, largest), limits->omega, limits->delta, limits->offset,
+                                    limits->taper};
+        memcpy(s, all, sizeof all);
+        return;
+    }
+    s[0] = limits->omega;
+    for (int i = 1; i < problem->size.ns; i++)
+        s[i] = i <= n ? limits->offset : moray_between(-largest, largest);
+    s[1 + 2 * n] = moray_fixed(0); // q_11
+}
+
 static moray_status make_ocp(moray_gait_problem *problem)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
-    const int nx = problem->size.nx, nc = problem->size.nc, ne = problem->endpoint.events,
+    const int nx = problem->size.nx, nc = problem->size.nc, ne = problem->endpoint.events, ns = problem->size.ns,
               at = problem->endpoint.position;
-    problem->block = calloc((size_t)(nx + nc + ne), sizeof *problem->block);
-    if (!problem->block)
+    problem->block = calloc((size_t)(nx + nc + ne + ns), sizeof *problem->block);
+    problem->names = calloc((size_t)(ne + nc), sizeof *problem->names);
+    problem->path_names = calloc((size_t)nc + 1, sizeof *problem->path_names);
+    if (!problem->block || !problem->names || !problem->path_names)
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
-    moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc;
+    moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc, *s = e + ne;
     for (int r = 0; r < nx; r++)
         x0[r] = r == at || r == at + 1 ? moray_fixed(0) : moray_free();
     fill_path_bounds(problem, c);
     fill_event_bounds(problem, e);
-    const bool control = problem->spec.model == MORAY_CONTROL_ORIENTED;
-    const double largest = control ? 2 * problem->spec.robot.l * sin(limits->theta_max.upper) // of a, by (33)
-                                   : 2 * limits->theta_max.upper;                             // of alpha, by (27)
-    const moray_bounds s[] = {moray_between(0, largest), limits->omega, limits->delta, limits->offset, limits->taper};
+    fill_parameter_bounds(problem, s);
+    gait_event_names(&problem->endpoint, problem->names);
+    gait_path_names(nc, path_efforts(problem), problem->spec.robot.links, problem->path_names, problem->names + ne);
     const moray_phase_spec phase = {
         .name = "period",
         .nx = nx,
@@ -173,20 +213,24 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .nq = problem->size.nq,
         .map = &problem->plant,
         .t0 = moray_fixed(0),
-        .tf = moray_between(2 * M_PI / limits->omega.upper, 2 * M_PI / limits->omega.lower),
+        .tf =
+            moray_between(1.8 * M_PI / limits->omega.upper, 2.2 * M_PI / limits->omega.lower), // omega alone is to bind
         .x0 = {x0, nx},
         .c = {c, nc},
-        .x_names = problem->spec.joints == MORAY_JOINTS_ON_GAIT ? gait_states[problem->spec.model] : NULL,
+        .c_names = problem->names + ne,
+        .x_names = problem->spec.joints == MORAY_JOINTS_CLOSED_LOOP ? NULL : gait_states[problem->spec.model],
     };
-    return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = goals[problem->spec.goal],
-                                                          .phases = 1,
-                                                          .phase = &phase,
-                                                          .ns = MORAY_GAIT_PARAMETERS,
-                                                          .s = {s, MORAY_GAIT_PARAMETERS},
-                                                          .s_names = s_names[problem->spec.model],
-                                                          .ne = ne,
-                                                          .e = {e, ne},
-                                                          .endpoint_map = &problem->ends});
+    return moray_ocp_new(&problem->ocp,
+                         &(moray_ocp_spec){.name = goals[problem->spec.goal],
+                                           .phases = 1,
+                                           .phase = &phase,
+                                           .ns = ns,
+                                           .s = {s, ns},
+                                           .s_names = on_series(problem) ? NULL : s_names[problem->spec.model],
+                                           .ne = ne,
+                                           .e = {e, ne},
+                                           .e_names = problem->names,
+                                           .endpoint_map = &problem->ends});
 }
 
 moray_status moray_gait_problem_new(moray_gait_problem **result, const moray_gait_problem_spec *spec)
@@ -217,55 +261,12 @@ void moray_gait_problem_free(moray_gait_problem *problem)
     moray_map_release(&problem->plant);
     gait_endpoint_free(&problem->endpoint);
     free(problem->block);
+    free(problem->names);
+    free(problem->path_names);
     free(problem);
 }
 
 const moray_ocp *moray_gait_problem_ocp(const moray_gait_problem *problem)
 {
     return problem->ocp;
-}
-
-moray_gait_promise moray_gait_problem_promise(const moray_gait_problem *problem, const moray_solution *solution)
-{
-    const moray_gait_problem_spec *spec = &problem->spec;
-    const int at = problem->endpoint.position;
-    double t0, tf, x[6 + 2 * 512];
-    moray_gait_promise promise = {.gait = moray_gait_from_parameters(moray_solution_parameters(solution))};
-    moray_solution_times(solution, 0, &t0, &tf);
-    moray_solution_at(solution, 0, tf, x, NULL);
-    promise.v_x = x[at] / tf;
-    promise.v_y = x[at + 1] / tf;
-    promise.speed = hypot(promise.v_x - spec->current[0], promise.v_y - spec->current[1]);
-    promise.course_speed = promise.v_x * cos(spec->course) + promise.v_y * sin(spec->course);
-    promise.power = moray_solution_integrals(solution, 0)[0] / tf;
-    if (problem->endpoint.power)
-        promise.power_price = moray_solution_event_multipliers(solution)[problem->endpoint.power_event];
-    return promise;
-}
-
-// The plant's state from the swimmer's.
-static void plant_state(const moray_gait_problem *problem, const double *full, double *x)
-{
-    if (problem->spec.joints != MORAY_JOINTS_ON_GAIT) {
-        memcpy(x, full, (size_t)problem->size.nx * sizeof *x);
-        return;
-    }
-    moray_state_body(problem->spec.model, problem->spec.robot.links, full, x);
-}
-
-moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
-                                      const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution)
-{
-    const int nx = problem->size.nx;
-    double s[MORAY_GAIT_PARAMETERS], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
-    if (!x)
-        return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", orbit->n);
-    for (int k = 0; k < orbit->n; k++)
-        plant_state(problem, orbit->x + k * orbit->n_states, x + k * nx);
-    moray_gait_to_parameters(gait, s);
-    const moray_samples samples = {.n = orbit->n, .time = orbit->t, .x = x};
-    const moray_guess guess = {.phase = &samples, .s = s};
-    moray_status status = moray_solve(problem->ocp, settings, &guess, solution);
-    free(x);
-    return status;
 }

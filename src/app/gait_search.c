@@ -32,6 +32,8 @@ static moray_status check(const moray_gait_problem_spec *spec)
     moray_gait_problem_free(problem);
     if (spec->joints != MORAY_JOINTS_ON_GAIT)
         return moray_error(MORAY_INPUT, "joints: a search has its joints on the gait");
+    if (spec->limits.link_angles)
+        return moray_error(MORAY_INPUT, "link_angles: a search bounds the amplitude of (24)");
     if (spec->limits.taper.lower != 0 || spec->limits.taper.upper != 0)
         return moray_error(MORAY_INPUT, "taper = %g:%g: a search knows gaits without one", spec->limits.taper.lower,
                            spec->limits.taper.upper);

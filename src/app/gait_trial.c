@@ -42,16 +42,23 @@ moray_gait moray_gait_paper(const moray_robot *robot)
                         .delta = delta};
 }
 
+moray_status moray_gait_trial_swim(const moray_basin *basin, moray_model model, moray_gait_trial *trial)
+{
+    const moray_swim_setup setup = moray_basin_setup(basin, model);
+    trial->why[model] = moray_swim_hold_course(&setup, &trial->gait[model], basin->course, &trial->steady[model]);
+    trial->held[model] = !moray_failed(trial->why[model]);
+    return trial->held[model]
+               ? moray_ok()
+               : moray_swim_steady(&setup, &trial->gait[model], basin->course, &trial->steady[model], NULL, 0);
+}
+
 moray_status moray_gait_trial_run(const moray_basin *basin, const moray_gait *gait, moray_model from,
                                   moray_gait_trial *trial)
 {
     for (int model = 0; model < 2; model++) {
-        const moray_swim_setup setup = moray_basin_setup(basin, (moray_model)model);
-        trial->gait[model] = moray_gait_map(moray_swimmer_robot(setup.swimmer), gait, from, (moray_model)model);
-        trial->why[model] = moray_swim_hold_course(&setup, &trial->gait[model], basin->course, &trial->steady[model]);
-        trial->held[model] = !moray_failed(trial->why[model]);
-        if (!trial->held[model])
-            MORAY_TRY(moray_swim_steady(&setup, &trial->gait[model], basin->course, &trial->steady[model], NULL, 0));
+        const moray_robot *robot = moray_swimmer_robot(basin->swimmer[model]);
+        trial->gait[model] = moray_gait_map(robot, gait, from, (moray_model)model);
+        MORAY_TRY(moray_gait_trial_swim(basin, (moray_model)model, trial));
     }
     return moray_ok();
 }

@@ -161,13 +161,16 @@ double moray_reference_fastest(const moray_reference *reference, double t0, doub
     return fastest;
 }
 
-// Sum over the jumps within (t0, t1) of their distance to the nearest of k equal intervals' ends, per interval.
+// Sum over the jumps within (t0, t1), and the corners where they are few, of their distance to the nearest of k equal
+// intervals' ends, per interval.
 static double misfit(const moray_reference *reference, double t0, double t1, int k)
 {
+    const int few = 50;
     double sum = 0;
-    for (int i = 1; i < reference->n; i++) {
+    for (int i = 0; i < reference->n; i++) {
         const double t = reference->time[i], at = (t - t0) / (t1 - t0) * k;
-        if (t == reference->time[i - 1] && t > t0 && t < t1)
+        const bool jumps = i > 0 && t == reference->time[i - 1];
+        if ((jumps || reference->n <= few) && t > t0 && t < t1)
             sum += fabs(at - round(at));
     }
     return sum;

@@ -5,17 +5,27 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { states = MORAY_STEERING_STATES, per_interval = 4 }; // samples of a guess
 
 struct moray_recede {
     moray_recede_spec spec;
+    double due;    // time of the next plan
     void *problem; // of the plan now carried out
     moray_solution *solution;
     moray_recede_record record;
     int n;          // samples of a guess
     double guess[]; // times, states, controls
 };
+
+// Processor time of this process [s].
+static double processor(void)
+{
+    struct timespec at;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &at);
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
 
 // ---- From the swimmer to the plan
 // -------------------------------------------------------------------------------------
@@ -85,9 +95,6 @@ static moray_status solve(moray_recede *r, double t, const double state[states],
     MORAY_TRY(moray_solve(ocp, &settings, &guess, solution));
     const moray_nlp_info *info = moray_solution_info(*solution);
     r->record.iterations += info->iterations;
-    r->record.seconds += info->seconds;
-    if (r->record.plans > 0)
-        r->record.longest = fmax(r->record.longest, info->seconds);
     if (info->outcome == MORAY_NLP_SOLVED || info->outcome == MORAY_NLP_ACCEPTABLE)
         return moray_ok();
     return moray_error(MORAY_NOT_SOLVED, "%.250s", moray_solution_diagnosis(*solution));
@@ -100,9 +107,8 @@ static void drop(const moray_recede *r, void *problem, moray_solution *solution)
         r->spec.replanner.free(problem);
 }
 
-static void look(const moray_swim_sample *sample, void *self)
+static void plan(moray_recede *r, const moray_swim_sample *sample)
 {
-    moray_recede *r = self;
     const moray_replanner *replanner = &r->spec.replanner;
     double state[states];
     void *problem = NULL;
@@ -112,7 +118,6 @@ static void look(const moray_swim_sample *sample, void *self)
     moray_status status = replanner->make(replanner->self, sample->t, state, &problem, &ocp);
     if (!moray_failed(status))
         status = solve(r, sample->t, state, ocp, &solution);
-    r->record.plans++;
     if (moray_failed(status)) {
         if (r->record.failures++ == 0)
             snprintf(r->record.first_failure, sizeof r->record.first_failure, "t = %.6g s: %.170s", sample->t,
@@ -125,6 +130,23 @@ static void look(const moray_swim_sample *sample, void *self)
     r->solution = solution;
 }
 
+static void look(const moray_swim_sample *sample, void *self)
+{
+    moray_recede *r = self;
+    const moray_replanner *replanner = &r->spec.replanner;
+    const double t = sample->t, rounding = 1e-9 * r->spec.interval;
+    const bool changed = replanner->changed && r->record.plans > 0 && replanner->changed(replanner->self, t);
+    if (t < r->due - rounding && !changed)
+        return;
+    const double start = processor();
+    plan(r, sample);
+    const double spent = processor() - start;
+    r->due = t + r->spec.interval;
+    r->record.seconds += spent;
+    if (r->record.plans++ > 0)
+        r->record.longest = fmax(r->record.longest, spent);
+}
+
 static moray_offset offset(double t, const void *self)
 {
     const moray_recede *r = self;
@@ -135,7 +157,9 @@ static moray_offset offset(double t, const void *self)
 
 moray_helm moray_recede_helm(moray_recede *recede)
 {
-    return (moray_helm){.offset = offset, .look = look, .period = recede->spec.interval, .self = recede};
+    const moray_recede_spec *spec = &recede->spec;
+    return (moray_helm){
+        .offset = offset, .look = look, .period = spec->look > 0 ? spec->look : spec->interval, .self = recede};
 }
 
 // ---- Handling
@@ -153,6 +177,7 @@ moray_status moray_recede_new(moray_recede **result, const moray_recede_spec *sp
         return moray_error(MORAY_MEMORY, "no memory for a receding horizon");
     r->spec = *spec;
     r->n = n;
+    r->due = -INFINITY;
     *result = r;
     return moray_ok();
 }
@@ -201,6 +226,14 @@ static moray_status make_heading(void *self, double t, const double state[states
     return status;
 }
 
+static bool heading_changed(const void *self, double t)
+{
+    const moray_heading_replanner *r = self;
+    double rate;
+    const double heading = moray_reference_at(r->spec.reference, nextafter(t, INFINITY), &rate);
+    return fabs(heading - r->held_heading) > r->tolerance;
+}
+
 static void free_heading(void *problem)
 {
     moray_heading_free(problem);
@@ -209,5 +242,9 @@ static void free_heading(void *problem)
 
 moray_replanner moray_heading_replan(moray_heading_replanner *replanner)
 {
-    return (moray_replanner){.make = make_heading, .free = free_heading, .self = replanner, .nu = 1};
+    return (moray_replanner){.make = make_heading,
+                             .free = free_heading,
+                             .changed = replanner->preview ? NULL : heading_changed,
+                             .self = replanner,
+                             .nu = 1};
 }

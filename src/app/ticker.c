@@ -32,6 +32,18 @@ void moray_ticker_show(const moray_ticker *ticker, const char *format, ...)
     fflush(ticker->stream);
 }
 
+void moray_ticker_note(const moray_ticker *ticker, const char *format, ...)
+{
+    va_list arguments;
+    if (!ticker->live)
+        return;
+    fputs("\r\033[K", ticker->stream);
+    va_start(arguments, format);
+    vfprintf(ticker->stream, format, arguments);
+    va_end(arguments);
+    fputc('\n', ticker->stream);
+}
+
 void moray_ticker_end(const moray_ticker *ticker)
 {
     if (!ticker->live)

@@ -90,12 +90,14 @@ moray_heading_score moray_voyage_heading_score(const moray_voyage *voyage, const
     const moray_swim_track *track = &voyage->track;
     const int last = track->n - 1;
     moray_heading_score score = {.power = track->energy[last] / track->t[last]};
-    double rate;
+    double rate, before = 0; // error just after the sample before
     for (int k = 0; k <= last; k++) {
         const double t = track->t[k], heading = moray_cruise_heading(cruise, t, track->pose[k].heading);
         const double error = heading - moray_reference_at(reference, t, &rate);
-        score.rms += error * error * (k == 0 || k == last ? 0.5 : 1) / last;
-        score.largest = fmax(score.largest, fabs(error));
+        if (k > 0) // of a straight line from the one to the other
+            score.rms += (before * before + before * error + error * error) / (3 * last);
+        before = heading - moray_reference_at(reference, nextafter(t, INFINITY), &rate);
+        score.largest = fmax(score.largest, fmax(fabs(error), k < last ? fabs(before) : 0));
         score.final = error;
     }
     score.rms = sqrt(score.rms);

@@ -137,3 +137,8 @@ moray_status sparse_lu_solve_transposed(sparse_lu *lu, int columns, double *B)
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", lu->n);
     return klu_tsolve(lu->symbolic, lu->numeric, lu->n, columns, B, &lu->common) ? moray_ok() : status_of(lu);
 }
+
+double sparse_lu_condition(sparse_lu *lu)
+{
+    return lu->numeric && klu_rcond(lu->symbolic, lu->numeric, &lu->common) ? lu->common.rcond : 0;
+}

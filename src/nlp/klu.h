@@ -23,4 +23,7 @@ moray_status sparse_lu_factor(sparse_lu *lu, const double *values);
 moray_status sparse_lu_solve(sparse_lu *lu, int columns, double *B);
 moray_status sparse_lu_solve_transposed(sparse_lu *lu, int columns, double *B);
 
+// A cheap estimate of the reciprocal condition number of the factored matrix; 0 without factors.
+double sparse_lu_condition(sparse_lu *lu);
+
 #endif

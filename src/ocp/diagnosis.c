@@ -27,6 +27,18 @@ double scaled_violation(const moray_solution *solution, int i)
     return s.scale * (s.value < s.lower ? s.value - s.lower : s.value > s.upper ? s.value - s.upper : 0);
 }
 
+static void say_allowed(moray_solution *solution, double lower, double upper)
+{
+    if (lower == upper)
+        say(solution, "%.6g", lower);
+    else if (upper >= MORAY_INFINITY)
+        say(solution, "at least %.6g", lower);
+    else if (lower <= -MORAY_INFINITY)
+        say(solution, "at most %.6g", upper);
+    else
+        say(solution, "%.6g to %.6g", lower, upper);
+}
+
 static void say_worst_violation(moray_solution *solution)
 {
     const struct transcription *t = solution->transcription;
@@ -45,8 +57,9 @@ static void say_worst_violation(moray_solution *solution)
     }
     char name[name_size];
     layout_row_name(&t->layout, t->ocp, solution->iterate.x, where, name, name_size);
-    say(solution, "Largest violation: %s, %.3g where [%.6g, %.6g] is allowed (scaled %.1e).\n", name,
-        solution->iterate.g[where], t->nlp.g_lower[where], t->nlp.g_upper[where], worst);
+    say(solution, "Largest violation: %s, %.3g where ", name, solution->iterate.g[where]);
+    say_allowed(solution, t->nlp.g_lower[where], t->nlp.g_upper[where]);
+    say(solution, " is allowed (scaled %.1e).\n", worst);
 }
 
 static void say_furthest(moray_solution *solution)

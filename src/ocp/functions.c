@@ -90,9 +90,11 @@ static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phas
     double *work = calloc(2 * n, sizeof *work);
     p->wrapped = calloc(1, sizeof *p->wrapped);
     moray_status status = moray_error(MORAY_MEMORY, "no memory for its functions");
-    if (p->wrapped && work)
+    if (p->wrapped && work) {
         *p->wrapped = (struct wrapped_phase){p, spec->continuous, spec->continuous_real, ocp->data};
-    for (int trial = 0; p->wrapped && work && trial < trials && moray_failed(status); trial++)
+        status = phase_map(ocp, p, 0, work, work + n);
+    }
+    for (int trial = 1; trial < trials && status.code == MORAY_INPUT; trial++)
         status = phase_map(ocp, p, trial, work, work + n);
     p->map = &p->own_map;
     free(work);
@@ -105,8 +107,9 @@ static moray_status wrap_endpoint(moray_ocp *ocp)
 {
     const size_t n = (size_t)endpoint_inputs(ocp) + 1;
     double *work = calloc(2 * n, sizeof *work);
-    moray_status status = moray_error(MORAY_MEMORY, "no memory for its function");
-    for (int trial = 0; work && trial < trials && moray_failed(status); trial++)
+    moray_status status =
+        work ? endpoint_map(ocp, 0, work, work + n) : moray_error(MORAY_MEMORY, "no memory for its function");
+    for (int trial = 1; trial < trials && status.code == MORAY_INPUT; trial++)
         status = endpoint_map(ocp, trial, work, work + n);
     ocp->endpoint = &ocp->own_endpoint;
     free(work);

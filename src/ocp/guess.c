@@ -55,6 +55,13 @@ static void guess_from_samples(const struct transcription *t, int p, const moray
     }
 }
 
+// The value at one end of a phase; where nothing is known of it, that of the other end.
+static double end_value(moray_bounds end, moray_bounds other)
+{
+    const bool known = end.lower > -MORAY_INFINITY || end.upper < MORAY_INFINITY;
+    return bounds_middle(known ? end : other);
+}
+
 static void guess_from_bounds(const struct transcription *t, int p, double *x)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -67,7 +74,8 @@ static void guess_from_bounds(const struct transcription *t, int p, double *x)
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
         for (int r = 0; r < phase->nx; r++)
-            x[node->x + r] = (1 - node->tau) * bounds_middle(phase->x0[r]) + node->tau * bounds_middle(phase->xf[r]);
+            x[node->x + r] = (1 - node->tau) * end_value(phase->x0[r], phase->xf[r]) +
+                             node->tau * end_value(phase->xf[r], phase->x0[r]);
         for (int r = 0; r < phase->nu && node->collocated; r++)
             x[node->x + phase->nx + r] = bounds_middle(phase->u[r]);
     }

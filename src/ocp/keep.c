@@ -183,14 +183,13 @@ static moray_status read_iterate(struct reader *r, moray_solution *solution)
     return strcmp(r->text, "end\n") == 0 ? moray_ok() : damaged(r, "the end");
 }
 
-// Caches, history and diagnosis, as after solving.
-static moray_status complete(moray_solution *solution)
+moray_status complete_solution(moray_solution *solution)
 {
     struct transcription *t = solution->transcription;
     double error = NAN;
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (!transcription_jacobians(t, solution->iterate.x))
-        return moray_error(MORAY_NUMERIC, "at the loaded solution, %.200s", t->failure.text);
+        return moray_error(MORAY_NUMERIC, "at this solution, %.200s", t->failure.text);
     solution->history = calloc(1, sizeof *solution->history);
     if (!solution->history)
         return moray_error(MORAY_MEMORY, "no memory for a history");
@@ -217,7 +216,7 @@ moray_status moray_solution_load(moray_solution **result, const moray_ocp *ocp, 
     if (!moray_failed(status))
         status = read_iterate(&reader, solution);
     if (!moray_failed(status))
-        status = complete(solution);
+        status = complete_solution(solution);
     if (reader.file)
         fclose(reader.file);
     if (moray_failed(status))

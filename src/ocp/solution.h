@@ -44,6 +44,9 @@ bool is_solved(const moray_solution *solution); // to the tolerance or a looser 
 // Zeroed vectors for the programme of solution->transcription. Error: MORAY_MEMORY.
 moray_status allocate_iterate(moray_solution *solution);
 
+// Caches, history and diagnosis of an iterate that no solver has left here. Error: MORAY_NUMERIC, MORAY_MEMORY.
+moray_status complete_solution(moray_solution *solution);
+
 moray_mesh_record record_of(const moray_solution *solution, double mesh_error);
 
 #endif

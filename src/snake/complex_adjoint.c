@@ -156,3 +156,15 @@ void complex_adjoint(const moray_robot *robot, const double V[2], const complex_
         out->dtheta[j + 1] -= weight->pi * u[j];
     }
 }
+
+num complex_pull_angles(int N, const num *on_angles, num *on_joints)
+{
+    num mean = 0, behind = 0;
+    for (int i = 0; i < N; i++)
+        mean += on_angles[i] / N;
+    for (int i = N - 1; i > 0; i--) {
+        behind += on_angles[i] - mean;
+        on_joints[i - 1] = -behind;
+    }
+    return N * mean;
+}

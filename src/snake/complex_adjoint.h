@@ -34,4 +34,7 @@ void complex_adjoint(const moray_robot *robot, const double V[2], const complex_
                      const complex_link_z *links, const double complex *ddtheta, const double complex *u,
                      const complex_weights *weight, complex_dual_link *dual, complex_gradient *out);
 
+// Derivatives by the joints where those by the angles, of given mean, are on_angles[N]; returns that by the mean.
+double complex complex_pull_angles(int N, const double complex *on_angles, double complex *on_joints);
+
 #endif

@@ -2,7 +2,9 @@
 #include "moray/snake.h"
 
 #include <math.h>
+#include <stddef.h>
 
+#include "series.h"
 #include "taper.h"
 
 void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi)
@@ -16,6 +18,8 @@ void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double
         dphi[i] = a * omega * cosine + gait->offset_rate;
         ddphi[i] = -a * omega * omega * sine + gait->offset_acceleration;
     }
+    if (gait->series)
+        series_add(gait->series, omega, t, phi, dphi, ddphi);
 }
 
 double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta)
@@ -55,5 +59,6 @@ moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, mora
     mapped.offset *= ratio;
     mapped.offset_rate *= ratio;
     mapped.offset_acceleration *= ratio;
+    mapped.series = NULL;
     return mapped;
 }

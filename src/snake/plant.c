@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "plant_series.h"
 #include "shape.h"
 
 moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
@@ -12,9 +13,10 @@ moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
     const moray_plant_size forms[] = {[MORAY_JOINTS_ON_GAIT] = {.nx = 6, .ns = 5},
                                       [MORAY_JOINTS_CLOSED_LOOP] = {.nx = 2 * N + 4, .ns = 5},
                                       [MORAY_JOINTS_FREE] = {.nx = 2 * N + 4, .nu = N - 1},
-                                      [MORAY_JOINTS_STEERED] = {.nx = 8, .nu = 1, .ns = 3}};
+                                      [MORAY_JOINTS_STEERED] = {.nx = 8, .nu = 1, .ns = 3},
+                                      [MORAY_JOINTS_SERIES] = {.nx = 6, .ns = 1 + (N - 1) * (1 + 2 * spec->harmonics)}};
     moray_plant_size size = forms[spec->joints];
-    size.nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0);
+    size.nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0) + (spec->path_rates ? N - 1 : 0);
     size.nq = 1;
     return size;
 }
@@ -191,6 +193,8 @@ moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec)
 {
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));
+    if (spec->joints == MORAY_JOINTS_SERIES)
+        return plant_series(map, spec, moray_control_plant);
     plant *self = plant_new(spec);
     if (!self)
         return moray_error(MORAY_MEMORY, "no memory for the plant of a robot with %d links", spec->robot.links);

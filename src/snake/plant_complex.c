@@ -8,6 +8,8 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "complex_free.h"
+#include "plant_series.h"
 #include "taper.h"
 
 enum { body = 6, most_inputs = 13 };
@@ -84,19 +86,6 @@ static void evaluate(void *self, const double complex *in, double complex *out)
 
 // ---- Hessian
 
-// Derivatives by the joints where those by the angles, of given mean, are on_angles[N]; returns that by the mean.
-static double complex pull_angles(int N, const double complex *on_angles, double complex *on_joints)
-{
-    double complex mean = 0, behind = 0;
-    for (int i = 0; i < N; i++)
-        mean += on_angles[i] / N;
-    for (int i = N - 1; i > 0; i--) {
-        behind += on_angles[i] - mean;
-        on_joints[i - 1] = -behind;
-    }
-    return N * mean;
-}
-
 // Adds the gradient by alpha, omega, delta, t, taper and by the offset from that by the rank-th derivative of the
 // joints.
 static void pull_gait(const struct complex_plant *plant, int rank, const double complex *s, double complex t,
@@ -138,7 +127,7 @@ static void weighted_gradient(struct complex_plant *plant, const double complex 
     for (int i = 0; i < N && spec->path_angles; i++)
         by.theta[i] += on_angles[i];
     for (int rank = 0; rank < 3; rank++) {
-        mean[rank] = pull_angles(N, by_rank[rank], plant->on_joints);
+        mean[rank] = complex_pull_angles(N, by_rank[rank], plant->on_joints);
         pull_gait(plant, rank, in + s, in[t], plant->on_joints, by_gait, &by_offset[rank]);
     }
     memset(gradient, 0, (size_t)(t + 1) * sizeof *gradient);
@@ -249,8 +238,12 @@ moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec)
     double in[most_inputs];
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));
-    if (spec->joints != MORAY_JOINTS_ON_GAIT && spec->joints != MORAY_JOINTS_STEERED)
-        return moray_error(MORAY_INPUT, "joints: the first-principles plant has its joints on the gait");
+    if (spec->joints == MORAY_JOINTS_SERIES)
+        return plant_series(map, spec, moray_complex_plant);
+    if (spec->joints == MORAY_JOINTS_FREE)
+        return complex_free_plant(map, spec);
+    if (spec->joints == MORAY_JOINTS_CLOSED_LOOP)
+        return moray_error(MORAY_INPUT, "joints: the first-principles plant has none in closed loop");
     MORAY_TRY(plant_new(&plant, spec));
     probe(spec, in);
     const moray_plant_size *size = &plant->size;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#include "benchmark.h"
+
+static moray_status solve(void *self, moray_solution **solution)
+{
+    classic_case *c = self;
+    moray_settings settings = classic_settings(c->classic);
+    settings.max_refinements = 0;
+    settings.timing = true;
+    return classic_first_solution(c->classic, &settings, &c->ocp, solution);
+}
+
+static void forget(void *self)
+{
+    classic_case *c = self;
+    moray_ocp_free(c->ocp);
+    c->ocp = NULL;
+}
+
+subject classic_subject(classic_case *c)
+{
+    return (subject){solve, forget, c};
+}

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+# The program benchmark as a user meets it. Arguments: the program, the source directory.
+. "$2/tests/program.sh"
+ln -s "$program" benchmark # which is what it calls itself
+program=$work/benchmark
+
+run --part s1 --json --set repeats=3
+check "S1 is measured: $(cat err)" [ $code -eq 0 ]
+check "and solved: $(number S1 objective)" near "$(number S1 objective)" -0.603772 1e-5
+check "in $(number S1 iterations) iterations" [ "$(number S1 iterations)" -le 12 ]
+check "of 960 defects and more" [ "$(number S1 ncon)" -ge 960 ]
+check "the pieces make the total" awk -v t="$(number S1 total_s)" -v e="$(number S1 evaluation_s)" \
+    -v f="$(number S1 total_over_floor)" 'BEGIN { d = f - t / (t - e); exit !(t > 0 && d * d < 1e-12) }'
+check "evaluations are function, Jacobian and Hessian" awk -v e="$(number S1 evaluation_s)" -v a="$(number S1 function_s)" \
+    -v b="$(number S1 jacobian_s)" -v c="$(number S1 hessian_s)" 'BEGIN { d = e - a - b - c; exit !(d * d < 1e-20) }'
+
+run --part intervals --json --out results --set repeats=1 --set most_intervals=20
+check "growth over intervals: $(cat err)" [ $code -eq 0 ]
+check "with exponents" [ -n "$(number exponents iteration)" ]
+check "of two sizes" [ "$(grep -c '"intervals":[[:space:]]*[0-9]' out)" -eq 4 ]
+for file in summary.json growth_intervals.svg; do
+    check "--out has $file" [ -s results/$file ]
+done
+check "the summary is the output" cmp out results/summary.json
+
+run --part classics --set repeats=1 --set most_intervals=20
+check "textbook problems as a table: $(cat err)" [ $code -eq 0 ]
+check "those of 20 intervals" eval 'grep -q "^brachistochrone " out && ! grep -q "^bryson-denham " out'
+check "all of them solved" eval '! grep -q "NOT SOLVED" out'
+
+run --part simulation --json --set repeats=1 --set most_links=5
+check "with simulated seconds a second" awk -v r="$(number simulated_s_per_s)" 'BEGIN { exit !(r > 0) }'
+
+refuse 'repeats = 0' --set repeats=0
+refuse 'most_links = 4' --set most_links=4
+refuse 'part = everything' --part everything
+tap_done
