@@ -80,6 +80,9 @@ void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, 
 // Tunes and swims every trial. Error: those of moray_voyage_run.
 moray_status path_run_trials(path_job *job);
 
+// How many times faster plans are made than the robot swims through them.
+double path_real_time(const path_job *job, const path_trial *trial, const moray_recede_record *record);
+
 // Swims one of them again, to be drawn.
 moray_status path_swim(const path_job *job, path_trial *trial, moray_model model, moray_voyage *voyage);
 

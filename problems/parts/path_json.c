@@ -14,7 +14,7 @@ static void json_score(moray_json *json, const char *key, const path_trial *tria
     moray_json_close(json);
 }
 
-static void json_receding(moray_json *json, const moray_recede_record *record, double seconds)
+static void json_receding(moray_json *json, const moray_recede_record *record, double times_real_time)
 {
     moray_json_open(json, "receding");
     moray_json_number(json, "plans", record->plans);
@@ -22,7 +22,7 @@ static void json_receding(moray_json *json, const moray_recede_record *record, d
     moray_json_number(json, "iterations", record->iterations);
     moray_json_number(json, "time_s", record->seconds);
     moray_json_number(json, "longest_s", record->longest);
-    moray_json_number(json, "times_real_time", seconds / record->seconds);
+    moray_json_number(json, "times_real_time", times_real_time);
     moray_json_close(json);
 }
 
@@ -32,6 +32,7 @@ static void json_trials(moray_json *json, const path_job *job)
     moray_json_open_list(json, "steering");
     for (int k = 0; k < job->n_trials; k++) {
         const path_trial *trial = &job->trial[k];
+        const moray_recede_record *record = &trial->record[MORAY_FIRST_PRINCIPLES];
         const bool planned = trial->law != PATH_SIGHT, tuned = trial->evaluations > 0;
         moray_json_open(json, NULL);
         moray_json_text(json, "name", trial->name);
@@ -45,7 +46,7 @@ static void json_trials(moray_json *json, const path_job *job)
         json_score(json, "predicted", trial, MORAY_CONTROL_ORIENTED);
         json_score(json, "validated", trial, MORAY_FIRST_PRINCIPLES);
         if (trial->law == PATH_RECEDING)
-            json_receding(json, &trial->record[MORAY_FIRST_PRINCIPLES], trial->score[MORAY_FIRST_PRINCIPLES].time);
+            json_receding(json, record, path_real_time(job, trial, record));
         moray_json_close(json);
     }
     moray_json_close(json);

@@ -151,10 +151,10 @@ static void receding_line(const path_job *job, const path_trial *trial, char *te
 {
     const moray_recede_record *r = &trial->record[MORAY_FIRST_PRINCIPLES];
     snprintf(text, size,
-             "%s: %d plans of %.3g periods, each %.2g s on average (the longest after the first %.2g s) and %.1f "
-             "iterations; %.1f times faster than real time%s%s",
+             "%s: %d plans of %.3g periods, each %.2g s of processor time on average (the longest after the first %.2g "
+             "s) and %.1f iterations; %.1f times faster than real time on one core%s%s",
              trial->name, r->plans, job->look_ahead_periods, r->seconds / r->plans, r->longest,
-             (double)r->iterations / r->plans, trial->score[MORAY_FIRST_PRINCIPLES].time / r->seconds,
+             (double)r->iterations / r->plans, path_real_time(job, trial, r),
              r->failures ? "; not solved at first: " : "", r->failures ? r->first_failure : "");
 }
 

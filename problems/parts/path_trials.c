@@ -92,6 +92,12 @@ static moray_status set_helm(const path_job *job, const path_trial *trial, moray
     return moray_ok();
 }
 
+double path_real_time(const path_job *job, const path_trial *trial, const moray_recede_record *record)
+{
+    const double period = 2 * M_PI / job->cruise[trial->gait][trial->plan].gait.omega;
+    return record->plans * job->replan_periods * period / record->seconds;
+}
+
 // ---- Swimming
 // ---------------------------------------------------------------------------------------------------------
 

@@ -245,7 +245,7 @@ moray_status moray_path_passable(const moray_path *path, double speed, const dou
                 "the current is too strong for the path: %s leg %d, %.4g m along the path, its course is "
                 "%.4g deg, %.4g m/s run across it and %.4g m/s against it, and the robot swims %.4g m/s",
                 piece->curvature != 0 ? "in the corner behind" : "on", piece->leg,
-                piece->start + piece->length * i / (points - 1), course / degree, fabs(side), against, speed);
+                piece->start + piece->length * i / (points - 1), course / degree, fabs(side), against + 0.0, speed);
         }
     return moray_ok();
 }
