@@ -171,7 +171,7 @@ static moray_status solve_continued(gait_job *job, stage *at)
     const moray_guess guess = moray_guess_from_solution(at->from);
     moray_solution *solution = NULL;
     MORAY_TRY(moray_solve(moray_gait_problem_ocp(at->problem), &settings, &guess, &solution));
-    keep_best(at, solution);
+    gait_job_keep_best(at, solution);
     return moray_ok();
 }
 
