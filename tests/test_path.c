@@ -387,6 +387,24 @@ static void test_score(void)
     moray_path_free(&path);
 }
 
+// The last sample's time, as a multiple of the interval, may come out beyond the end by rounding.
+static void test_last_sample(void)
+{
+    const moray_robot robot = moray_robot_paper();
+    moray_cruise cruise;
+    moray_voyage voyage;
+    int n = 3;
+    const double duration = 0.295627;
+    while (n < 5000 && !(duration * n / n > duration))
+        n++;
+    CHECK(n < 5000, "%d intervals of %.6g s come out longer", n, duration);
+    CHECK_OK(moray_cruise_find(&cruise, &robot, MORAY_CONTROL_ORIENTED, paper_gait(&robot)), "cruise");
+    const moray_voyage_plan plan = {
+        .robot = &robot, .cruise = &cruise, .duration = duration, .intervals = n, .tolerance = 1e-6};
+    CHECK_OK(moray_voyage_run(&voyage, &plan), "a voyage of so many");
+    moray_voyage_free(&voyage);
+}
+
 // ---- Guidance
 // ---------------------------------------------------------------------------------------------------------
 
@@ -432,6 +450,7 @@ int main(void)
     test_crab();
     test_replanning();
     test_score();
+    test_last_sample();
     test_guidance();
     return tap_done();
 }

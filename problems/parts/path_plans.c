@@ -128,7 +128,7 @@ static moray_status why_not(const path_job *job, const moray_path_plan *plan)
         say_corner(job, corner, text, sizeof text);
         return moray_error(MORAY_NOT_SOLVED, "tube_m = %g cannot be kept: %.300s", job->tube, text);
     }
-    snprintf(text, sizeof text, "%s", moray_solution_diagnosis(plan->solution));
+    steer_diagnosis(plan->solution, text, sizeof text);
     return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
 }
 

@@ -153,6 +153,7 @@ enum { most = 4 };
 typedef struct tuning {
     const path_job *job;
     path_trial *trial;
+    moray_status status; // of the last simulation
 } tuning;
 
 // Gain and lookahead on logarithmic scales, of line of sight the distance ahead too, and the integral gain.
@@ -174,11 +175,11 @@ static bool judge(void *self, const double *x, double *f, double *c, double *gra
     tuning *t = self;
     (void)c, (void)gradient, (void)jacobian;
     read(t->trial, x);
-    const moray_status status = score(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
+    t->status = score(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
     *f = t->trial->cost[MORAY_FIRST_PRINCIPLES];
     moray_ticker_show(&t->job->ticker, "path_following: tuning %s: gain %.3g m/rad, lookahead %.2f m: cost %.5g",
                       t->trial->name, t->trial->gain, t->trial->lookahead, *f);
-    return !moray_failed(status);
+    return !moray_failed(t->status);
 }
 
 // From a start on; keeps what is better than what the trial has.
@@ -195,7 +196,9 @@ static moray_status tune_from(const path_job *job, path_trial *trial, double *x)
     settings.x_tolerance = 1e-3;
     settings.f_tolerance = 1e-4;
     settings.max_evaluations = job->evaluations * problem.n;
-    MORAY_TRY(moray_search(&problem, &settings, x, &info));
+    const moray_status status = moray_search(&problem, &settings, x, &info);
+    if (moray_failed(status))
+        return status.code == MORAY_NUMERIC ? t.status : status;
     read(&own, x);
     own.cost[MORAY_FIRST_PRINCIPLES] = info.objective;
     own.evaluations = trial->evaluations + info.evaluations;

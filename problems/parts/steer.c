@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "steer.h"
 
+#include <string.h>
+
 steer_input steer_input_default(void)
 {
     return (steer_input){.theta_max = {1 * DEG, 20 * DEG},
@@ -66,4 +68,11 @@ steer_saturation steer_saturation_of(const moray_solution *solution, const moray
         share.rate += (fabs(offset.rate) > at_limit * limits->offset_rate) / (double)points;
     }
     return share;
+}
+
+void steer_diagnosis(const moray_solution *solution, char *text, size_t size)
+{
+    snprintf(text, size, "%s", moray_solution_diagnosis(solution));
+    for (char *at = strchr(text, '\n'); at; at = strchr(at, '\n'))
+        *at = ' ';
 }

@@ -66,6 +66,9 @@ typedef struct steer_saturation {
 } steer_saturation;
 steer_saturation steer_saturation_of(const moray_solution *solution, const moray_steering_limits *limits);
 
+// The first sentences of a solution's diagnosis, on one line.
+void steer_diagnosis(const moray_solution *solution, char *text, size_t size);
+
 // ---- Gaits and models
 // ----------------------------------------------------------------------------------------------------
 

@@ -54,6 +54,8 @@ void turn_explain(const turn_job *job, char *text, size_t size)
 static moray_status why_not(const turn_job *job, const moray_turn_plan *plan)
 {
     const double *V = job->common.current, water = hypot(V[0], V[1]);
+    char text[300];
+    steer_diagnosis(plan->solution, text, sizeof text);
     if (job->to_position && water > plan->cruise.speed)
         return moray_error(MORAY_NOT_SOLVED,
                            "end_m = %g,%g is not reached: the current of %.4g m/s is stronger than the robot, which "
@@ -64,9 +66,8 @@ static moray_status why_not(const turn_job *job, const moray_turn_plan *plan)
                            "end_m = %g,%g with angle_deg = %g is not reached: the robot turns on a circle of %.3g m at "
                            "the least (%.200s)",
                            job->end[0], job->end[1], job->angle / DEG,
-                           plan->cruise.speed / fabs(job->turn_rate[plan->cruise.model]),
-                           moray_solution_diagnosis(plan->solution));
-    return moray_error(MORAY_NOT_SOLVED, "%.280s", moray_solution_diagnosis(plan->solution));
+                           plan->cruise.speed / fabs(job->turn_rate[plan->cruise.model]), text);
+    return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
 }
 
 // ---- Plans

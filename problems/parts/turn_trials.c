@@ -148,6 +148,7 @@ static moray_status score(const turn_job *job, turn_trial *trial, moray_model mo
 typedef struct tuning {
     const turn_job *job;
     turn_trial *trial;
+    moray_status status; // of the last simulation
 } tuning;
 
 static int read(turn_trial *trial, const double *x)
@@ -167,10 +168,10 @@ static bool judge(void *self, const double *x, double *f, double *c, double *gra
     tuning *t = self;
     (void)c, (void)gradient, (void)jacobian;
     read(t->trial, x);
-    const moray_status status = score(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
+    t->status = score(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
     *f = t->trial->score[MORAY_FIRST_PRINCIPLES].unsettled;
     moray_ticker_show(&t->job->ticker, "min_time_turn: tuning %s: %.3f s not settled", t->trial->name, *f);
-    return !moray_failed(status);
+    return !moray_failed(t->status);
 }
 
 static moray_status tune(const turn_job *job, turn_trial *trial, const turn_trial *like)
@@ -192,7 +193,9 @@ static moray_status tune(const turn_job *job, turn_trial *trial, const turn_tria
     settings.x_tolerance = 1e-4;
     settings.f_tolerance = 1e-5;
     settings.max_evaluations = job->evaluations * problem.n;
-    MORAY_TRY(moray_search(&problem, &settings, x, &info));
+    const moray_status status = moray_search(&problem, &settings, x, &info);
+    if (moray_failed(status))
+        return status.code == MORAY_NUMERIC ? t.status : status;
     read(trial, x);
     trial->evaluations = info.evaluations;
     return moray_ok();

@@ -51,7 +51,7 @@ static moray_status sail(moray_voyage *voyage, const moray_voyage_plan *plan, do
                                   .observer = &recorder};
     settings.rtol = settings.atol = plan->tolerance;
     for (int k = 0; k < n; k++)
-        times[k] = plan->duration * k / plan->intervals;
+        times[k] = fmin(plan->duration * k / plan->intervals, plan->duration); // not beyond by rounding
     start(plan, voyage->swimmer, x);
     return moray_swim_run(voyage->swimmer, &settings, &swim, x, NULL);
 }
