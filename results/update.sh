@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Runs what README.md and results/ show, and writes it there: results/NAME/{command.txt,table.txt,...}, and the table
-# between the lines `<!-- NAME -->` and `<!-- end -->` of README.md. sh results/update.sh [NAME...]; without names, all.
+# between the lines `<!-- NAME -->` and `<!-- end -->` of both README.md. sh results/update.sh [NAME...]; without names,
+# all.
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd) || exit 1
 cd "$root" || exit 1
 wanted=" $* "
@@ -28,15 +29,17 @@ show() {
     fi
     mv table.tmp "results/$name/table.txt"
     echo "sh problems/run.sh $*" >"results/$name/command.txt"
-    awk -v name="$name" -v table="results/$name/table.txt" '
-        $0 == "<!-- end -->" { inside = 0 }
-        !inside { print }
-        $0 == "<!-- " name " -->" {
-            inside = 1
-            print "```text"
-            while ((getline line < table) > 0) print line
-            print "```"
-        }' README.md >README.tmp && mv README.tmp README.md
+    for page in README.md results/README.md; do
+        awk -v name="$name" -v table="results/$name/table.txt" '
+            $0 == "<!-- end -->" { inside = 0 }
+            !inside { print }
+            $0 == "<!-- " name " -->" {
+                inside = 1
+                print "```text"
+                while ((getline line < table) > 0) print line
+                print "```"
+            }' $page >README.tmp && mv README.tmp $page
+    done
 }
 
 show max_speed max_speed
