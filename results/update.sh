@@ -62,4 +62,5 @@ show min_time_turn min_time_turn
 show paper paper all
 show classics classics all
 print benchmark_s1 benchmark --part s1 --set repeats=9
+print benchmark_horizon benchmark --part horizon --set repeats=3
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
