@@ -129,8 +129,8 @@ moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const mor
 void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
 
 // The constraints whose multiplier and slack are so small and so alike, in the scale of the solver, that it is not
-// certain whether they are active (a solution to a tighter tolerance may tell); numbered as in moray_nlp_change. Returns
-// how many; the first `most` stand in constraint[].
+// certain whether they are active (a solution to a tighter tolerance may tell); numbered as in moray_nlp_change.
+// Returns how many; the first `most` stand in constraint[].
 int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *sensitivity, int *constraint, int most);
 
 // slope: the derivative by p of every entry of the solution, objective included; multipliers of constraints that depend

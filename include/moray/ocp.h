@@ -256,8 +256,8 @@ void moray_solution_at(const moray_solution *solution, int phase, double t, doub
 
 // The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the
 // Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL. Where the
-// dynamics are collocated they are stage values, of lower order than the optimum: 2 with trapezoid (1 at the ends of the
-// phase) and hermite-simpson, s with radau, s + 1 with gauss, whose ends of intervals have the full 2s.
+// dynamics are collocated they are stage values, of lower order than the optimum: 2 with trapezoid (1 at the ends of
+// the phase) and hermite-simpson, s with radau, s + 1 with gauss, whose ends of intervals have the full 2s.
 int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
 
 // The Hamiltonian g + lambda f, with the integrands weighted by what they cost, at the nodes: hamiltonian[count], NaN
