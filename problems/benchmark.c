@@ -153,7 +153,13 @@ static moray_status measure_growth(benchmark *run, const gait_case *of, const ch
 
 static const int interval_sizes[] = {10, 20, 50, 100, 200, 500, 1000, 0};
 static const int link_sizes[] = {5, 10, 20, 50, 100, 0};
-static const int most_in_loop = 20; // links; 2N+4 states of which every one is coupled to all others
+// In closed loop, 2N+4 states of which every one is coupled to all others.
+static const int most_links_in_loop = 20, most_intervals_in_loop = 200;
+
+static int at_most(int value, int most)
+{
+    return value < most ? value : most;
+}
 
 static moray_status measure_intervals(benchmark *run)
 {
@@ -166,16 +172,16 @@ static moray_status measure_intervals(benchmark *run)
     closed_loop.name = "max_speed, control-oriented, closed loop";
     closed_loop.joints = MORAY_JOINTS_CLOSED_LOOP;
     MORAY_TRY(measure_growth(run, &on_gait, "intervals", interval_sizes, run->most_intervals));
-    return measure_growth(run, &closed_loop, "intervals", interval_sizes, run->most_intervals);
+    return measure_growth(run, &closed_loop, "intervals", interval_sizes,
+                          at_most(run->most_intervals, most_intervals_in_loop));
 }
 
 static moray_status measure_links(benchmark *run)
 {
     const gait_case on_gait = {.name = "max_speed, control-oriented", ON_GAIT(MORAY_CONTROL_ORIENTED)};
     const gait_case closed_loop = {.name = "max_speed, control-oriented, closed loop", CLOSED_LOOP};
-    const int most = run->most_links < most_in_loop ? run->most_links : most_in_loop;
     MORAY_TRY(measure_growth(run, &on_gait, "links", link_sizes, run->most_links));
-    return measure_growth(run, &closed_loop, "links", link_sizes, most);
+    return measure_growth(run, &closed_loop, "links", link_sizes, at_most(run->most_links, most_links_in_loop));
 }
 
 static moray_status measure_horizon_of(benchmark *run, const char *name, moray_model model)
