@@ -122,26 +122,33 @@ static void split(struct refinement *r, const struct interval *interval, double 
         add_interval(&r->mesh, node[last].tau, r->base_stages);
 }
 
-// Takes an interval over as it is, or makes one of it and its neighbour of as many stages where their error allows.
-static void keep(struct refinement *r, double end, int stages, double error)
+// Takes an interval over as it is, or makes one of it and its neighbour of as many stages where their error allows. Not
+// twice: an error that is small because an edge stands on a kink is back once the edge is gone, and the meshes would
+// alternate for ever.
+static void keep(struct refinement *r, double end, int stages, enum mesh_past past, double error)
 {
     const int last = r->mesh.intervals - 1;
     const double merged = (error + r->spare) * ldexp(1, stages + 1);
-    const bool merge = last >= 0 && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance;
+    const bool may = last >= 0 && past != mesh_settled && r->mesh.past[last] != mesh_settled;
+    const bool merge = may && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance;
     if (merge)
         r->mesh.edge[r->mesh.intervals] = end;
     else
         add_interval(&r->mesh, end, stages);
+    r->mesh.past[r->mesh.intervals - 1] = merge ? mesh_merged : past;
     r->spare = merge ? INFINITY : error;
 }
 
-static void refine_interval(struct refinement *r, const struct interval *interval, double raised_from, double error)
+static void refine_interval(struct refinement *r, int k, double error)
 {
-    const struct node *node = r->e.solution->transcription->layout.phase[r->e.p].node + interval->first;
-    const int s = interval->scheme->stages;
+    const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
+    const struct interval *interval = &layout->interval[k];
+    const double raised_from = layout->mesh.raised_from[k];
+    const struct node *node = layout->node + interval->first;
+    const int s = interval->scheme->stages, first = r->mesh.intervals;
     const double end = node[interval->scheme->points - 1].tau, excess = error / (aim * r->tolerance);
     if (error <= r->tolerance || interval->width < least_width) {
-        keep(r, end, s, error);
+        keep(r, end, s, layout->mesh.past[k], error);
         return;
     }
     r->spare = INFINITY;
@@ -153,6 +160,8 @@ static void refine_interval(struct refinement *r, const struct interval *interva
     } else {
         split(r, interval, excess);
     }
+    for (int i = first; i < r->mesh.intervals; i++)
+        r->mesh.past[i] = layout->mesh.past[k] == mesh_untouched ? mesh_untouched : mesh_settled;
 }
 
 static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double *worst)
@@ -168,7 +177,7 @@ static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double
         error = fmax(error, outside / violation_slack); // what the certificate will ask
         *worst = fmax(*worst, error);
         if (mesh)
-            refine_interval(r, &layout->interval[k], layout->mesh.raised_from[k], error);
+            refine_interval(r, k, error);
     }
     if (mesh)
         *mesh = r->mesh;
