@@ -8,7 +8,7 @@
 enum mesh_past {
     mesh_untouched,
     mesh_merged, // of several
-    mesh_settled // merged, then refined after all: it and what it is split into stay
+    mesh_settled // merged, then refined after all, or part of such a one
 };
 
 // Intervals of one phase: edges[intervals + 1] from 0 to 1, stages[intervals]; raised_from[intervals] is the error with

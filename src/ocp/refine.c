@@ -122,21 +122,30 @@ static void split(struct refinement *r, const struct interval *interval, double 
         add_interval(&r->mesh, node[last].tau, r->base_stages);
 }
 
-// Takes an interval over as it is, or makes one of it and its neighbour of as many stages where their error allows. Not
-// twice: an error that is small because an edge stands on a kink is back once the edge is gone, and the meshes would
-// alternate for ever.
+// Makes one of an interval and the one before it.
+static void merge_last(struct mesh *mesh, double end, enum mesh_past past)
+{
+    enum mesh_past *merged = &mesh->past[mesh->intervals - 1];
+    mesh->edge[mesh->intervals] = end;
+    *merged = past == mesh_settled || *merged == mesh_settled ? mesh_settled : mesh_merged;
+}
+
+// Takes an interval over as it is, or merges it with its neighbour of as many stages where their error allows; not
+// where that was tried before, between two that are settled: an error that is small because the edge stands on a kink
+// is back once the edge is gone, and the meshes would alternate for ever.
 static void keep(struct refinement *r, double end, int stages, enum mesh_past past, double error)
 {
     const int last = r->mesh.intervals - 1;
     const double merged = (error + r->spare) * ldexp(1, stages + 1);
-    const bool may = last >= 0 && past != mesh_settled && r->mesh.past[last] != mesh_settled;
-    const bool merge = may && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance;
-    if (merge)
-        r->mesh.edge[r->mesh.intervals] = end;
-    else
+    const bool tried = last >= 0 && past == mesh_settled && r->mesh.past[last] == mesh_settled;
+    if (last >= 0 && !tried && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance) {
+        merge_last(&r->mesh, end, past);
+        r->spare = INFINITY;
+    } else {
         add_interval(&r->mesh, end, stages);
-    r->mesh.past[r->mesh.intervals - 1] = merge ? mesh_merged : past;
-    r->spare = merge ? INFINITY : error;
+        r->mesh.past[last + 1] = past;
+        r->spare = error;
+    }
 }
 
 static void refine_interval(struct refinement *r, int k, double error)
