@@ -210,6 +210,59 @@ static void test_switch_is_found(const char *scheme)
     moray_ocp_free(ocp);
 }
 
+// ---- Data with kinks: x' = u + sum |t - kink|, minimise the integral of u^2. The best u is constant, and polynomials
+//      are exact, so the error is zero where edges stand on the kinks: a mesh that is coarsened there is wrong again.
+//      ----
+
+struct bends {
+    const char *scheme;
+    int intervals;
+    double kink[3];
+};
+
+static void bend(const moray_node *at, moray_rates *out, const void *data)
+{
+    const struct bends *bends = data;
+    out->f[0] = at->u[0];
+    out->g[0] = at->u[0] * at->u[0];
+    for (int i = 0; i < 3; i++)
+        out->f[0] += moray_abs(at->t - bends->kink[i]);
+}
+
+static void effort(const moray_ends *at, moray_verdict *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static void test_meshes_do_not_alternate(const struct bends *bends)
+{
+    const moray_phase_spec phase = {.name = "bent",
+                                    .nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = bend,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(1))};
+    moray_ocp *ocp = NULL;
+    CHECK_OK(
+        moray_ocp_new(
+            &ocp, &(moray_ocp_spec){.name = "kinks", .phases = 1, .phase = &phase, .endpoint = effort, .data = bends}),
+        "kinks");
+    moray_solution *solution = solve(ocp, bends->scheme, bends->intervals, 20, NULL);
+    const moray_mesh_record last = last_mesh(solution);
+    double u = 1;
+    for (int i = 0; i < 3; i++)
+        u -= (bends->kink[i] * bends->kink[i] + (1 - bends->kink[i]) * (1 - bends->kink[i])) / 2;
+    check_history(solution, bends->scheme);
+    CHECK(last.error <= 1e-6, "%s: kinks found to %.1e with %d nodes", bends->scheme, last.error, last.nodes);
+    CHECK_NEAR(last.objective, u * u, 1e-7, "cost against its closed form");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- Solutions as guesses ----
 
 static void test_guess_from_solution(void)
@@ -330,6 +383,11 @@ int main(void)
         test_against_uniform(schemes[k], 1000);
         test_switch_is_found(schemes[k]);
     }
+    const struct bends bends[] = {{"trapezoid", 4, {29. / 64, 7. / 32, 5. / 32}},
+                                  {"hermite-simpson", 10, {39. / 40, 67. / 160, 73. / 160}},
+                                  {"gauss2", 5, {33. / 40, 11. / 40, 13. / 16}}};
+    for (unsigned k = 0; k < sizeof bends / sizeof *bends; k++)
+        test_meshes_do_not_alternate(&bends[k]);
     test_phases_apart();
     test_guess_from_solution();
     test_path_constraint_between_nodes();

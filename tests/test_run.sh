@@ -28,7 +28,7 @@ done
 check "certificate passes" grep -q '"pass":.true' out
 check "summary.json is what --json prints" cmp out results/summary.json
 check "every figure by phase and unit, and nothing else" [ "$(ls -A results | tr '\n' ' ')" = \
-    "controls_1_to-the-gate.svg controls_2_beyond.svg report.html states_1_to-the-gate.svg \
+    "controls_1_to-the-gate.svg controls_2_beyond.svg costates.csv report.html states_1_to-the-gate.svg \
 states_1_to-the-gate_2.svg states_2_beyond.svg states_2_beyond_2.svg summary.json trajectory.csv " ]
 check "columns with names and units, phases of the same names share them" \
     [ "$(head -n 1 results/trajectory.csv)" = 'phase,t [s],x [m],v [m/s],u [N]' ]
@@ -36,6 +36,12 @@ check "columns with names and units, phases of the same names share them" \
 check "the trajectory is the cubic" awk -F, 'NR > 1 { t = $2; e = $3 - (1.5 * t * t - 0.5 * t * t * t); n++
     if (e > 1e-6 || e < -1e-6) bad = 1 } END { exit bad || n < 400 }' results/trajectory.csv
 check "from start to end" eval 'sed -n 2p results/trajectory.csv | grep -q "^1,0," && tail -n 1 results/trajectory.csv | grep -q "^2,2,"'
+check "costates have names, units, a row for each node" eval '
+    [ "$(head -n 1 results/costates.csv)" = "phase,t [s],costate of x [N^2 s/m],costate of v [N^2 s/(m/s)]" ] &&
+    [ "$(wc -l <results/costates.csv)" -eq 83 ]'
+# u = x'' = 3 - 3 t, H = u^2/2 + lambda_x v + lambda_v u: lambda_v = -u, lambda_x = -lambda_v' = -3
+check "and are those of the cubic" awk -F, 'NR > 1 { e = $3 + 3; d = $4 + 3 - 3 * $2; n[$1]++
+    if (e * e > 1e-10 || d * d > 1e-10) bad = 1 } END { exit bad || n[1] != 41 || n[2] != 41 }' results/costates.csv
 check "the report has the table, the figures, the command line" eval '
     grep -q "Certificate: pass" results/report.html && grep -q "<svg" results/report.html &&
     grep -q -- "--json --out results" results/report.html'
@@ -43,6 +49,7 @@ run
 check "the table: objective by its name" grep -q '^effort  *[0-9.]*  *N^2 s$' out
 check "the table: integral of each phase" grep -q '^integral q\[0\] of beyond  *1\.5[0-9]*  *N^2 s$' out
 check "the table: certificate" grep -q '^Certificate: pass$' out
+check "the table: no mesh history where there is one mesh" eval '! grep -q "^Meshes" out'
 run --json --set gate=1.2 --scheme radau4 --intervals 7 --tol 1e-9
 check "--set reaches the functions, other options the solver" \
     eval '[ $code -eq 0 ] && has gate 1.2 0 && has intervals 7 0 && grep -q radau4 out && has tf 1.1341378 1e-6'
@@ -50,6 +57,12 @@ check "--set reaches the functions, other options the solver" \
 run --json --scheme trapezoid --intervals 3 --set mesh_tol=1e-4 --set refinements=20
 check "a coarse mesh is refined: $(grep -c '"nodes"' out) meshes" \
     eval '[ $code -eq 0 ] && [ $(grep -c "\"nodes\":" out) -gt 1 ] && has objective 3 1e-3'
+meshes=$(grep -c '"nodes"' out)
+run --scheme trapezoid --intervals 3 --set mesh_tol=1e-4 --set refinements=20
+check "the table: every mesh, the first of 6 intervals and 8 nodes" eval '
+    grep -A 2 "^Meshes$" out | tail -n 2 | tr -s " " | tr "\n" ";" |
+        grep -qE "^ intervals nodes error iterations time \[s\];solved 6 8 [0-9.e-]+ [0-9]+ [0-9.e-]+;$" &&
+    [ "$(grep -c "^solved  " out)" -eq "$meshes" ]'
 run --json --scheme trapezoid --intervals 3 --set mesh_tol=1e-4
 check "and only when asked for" eval '[ $code -eq 3 ] && [ $(grep -c "\"nodes\":" out) -eq 1 ]'
 run --check

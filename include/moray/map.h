@@ -55,7 +55,8 @@ typedef void moray_real_fn(void *self, const double *in, double *out);
 moray_status moray_map_from_real(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *self,
                                  void (*release)(void *self), const double *probe);
 
-// The worst disagreement between a map's derivatives and an independent route, relative to 1 + |reference|.
+// The worst disagreement between a map's derivatives and an independent route, relative to 1 + |reference| and to
+// 1e4 times what the reference itself is in doubt, so that steep functions and large values accuse nobody.
 typedef struct moray_derivative_report {
     double jacobian_error, hessian_error;
     int jacobian_row, jacobian_col, hessian_row, hessian_col;

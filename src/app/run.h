@@ -34,7 +34,7 @@ const char *moray_phase_name(const moray_ocp_spec *spec, int p);
 moray_status moray_run_show(app_run *run);
 
 // The tables of a run: rows belong to them. Error: MORAY_MEMORY. Free with moray_run_tables_free.
-enum { MORAY_RUN_TABLES = 3 };
+enum { MORAY_RUN_TABLES = 4 };
 typedef struct run_tables {
     moray_table table[MORAY_RUN_TABLES];
     int n;
@@ -49,5 +49,8 @@ void moray_run_tables_free(run_tables *tables);
 // trajectory.csv, and figures of states and controls over time for each phase. Error: MORAY_IO, MORAY_MEMORY; a
 // missing gnuplot is only remarked upon.
 moray_status moray_run_write_trajectory(const app_run *run);
+
+// costates.csv. Error: MORAY_IO, MORAY_MEMORY.
+moray_status moray_run_write_costates(const app_run *run);
 
 #endif

@@ -93,6 +93,18 @@ static int solver_rows(const app_run *run, moray_table_row *rows)
     return sizeof filled / sizeof *filled;
 }
 
+// One row a mesh, the newest last.
+static int mesh_rows(const app_run *run, moray_table_row *rows)
+{
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(run->solution, &meshes);
+    for (int k = 0; k < meshes; k++)
+        rows[k] = (moray_table_row){
+            .label = moray_nlp_outcome_text(mesh[k].outcome),
+            .value = {mesh[k].intervals, mesh[k].nodes, mesh[k].error, mesh[k].iterations, mesh[k].seconds}};
+    return meshes;
+}
+
 static int certificate_rows(const app_run *run, moray_table_row *rows)
 {
     const moray_certificate *c = &run->certificate;
@@ -111,8 +123,11 @@ moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
     enum { solver_room = 10, certificate_room = 5 };
     const int solution_room = count_rows(run->app->spec);
-    *t = (run_tables){.rows = calloc((size_t)solution_room + solver_room + certificate_room, sizeof *t->rows),
-                      .texts = calloc((size_t)solution_room, sizeof *t->texts)};
+    int meshes;
+    moray_solution_history(run->solution, &meshes);
+    *t =
+        (run_tables){.rows = calloc((size_t)(solution_room + solver_room + meshes + certificate_room), sizeof *t->rows),
+                     .texts = calloc((size_t)solution_room, sizeof *t->texts)};
     if (!t->rows || !t->texts) {
         moray_run_tables_free(t);
         return moray_error(MORAY_MEMORY, "no memory for %d rows of results", solution_room);
@@ -123,6 +138,14 @@ moray_status moray_run_tables_new(run_tables *t, const app_run *run)
     rows += n;
     n = solver_rows(run, rows);
     t->table[t->n++] = (moray_table){.title = "Solver", .n_columns = 1, .rows = rows, .n_rows = n};
+    rows += n;
+    n = mesh_rows(run, rows);
+    if (meshes > 1)
+        t->table[t->n++] = (moray_table){.title = "Meshes",
+                                         .columns = {"intervals", "nodes", "error", "iterations", "time [s]"},
+                                         .n_columns = 5,
+                                         .rows = rows,
+                                         .n_rows = n};
     rows += n;
     if (run->certified)
         t->table[t->n++] = (moray_table){.title = run->certificate.pass ? "Certificate: pass" : "Certificate: FAIL",
@@ -213,6 +236,7 @@ static moray_status write_files(const app_run *run, const run_tables *tables, co
     MORAY_TRY(moray_output_file(run->common.output, "summary.json", &file));
     MORAY_TRY(moray_json_write(json, file));
     MORAY_TRY(moray_run_write_trajectory(run));
+    MORAY_TRY(moray_run_write_costates(run));
     const moray_report report = {.title = run->name,
                                  .text = moray_solution_diagnosis(run->solution),
                                  .tables = tables->table,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "moray/map.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { levels = 6 };
+static const double certain = 1e4; // doubts of a reference that a disagreement is to exceed
 
 // Derivative with respect to in[j] of a vector function of m outputs, by central differences with halved steps and
 // Richardson extrapolation; every output keeps the extrapolate whose last two levels agree best.
@@ -18,7 +20,27 @@ struct difference {
     double *table; // levels x levels for one output at a time: m blocks
 };
 
-static void richardson(struct difference *d, int j, double *derivative)
+// doubt: how far the levels disagree, and what rounding of the outputs makes of it.
+static void extrapolate(const struct difference *d, int i, double start, double *derivative, double *doubt)
+{
+    const double *table = d->table + i * levels * levels;
+    *doubt = INFINITY;
+    *derivative = NAN;
+    double step = start;
+    for (int level = 1; level < levels; level++)
+        for (int k = 1; k <= level; k++) {
+            const double *at = table + level * levels + k;
+            const double spread = fmax(fabs(at[0] - at[-1]), fabs(at[0] - at[-1 - levels]));
+            if (spread <= *doubt && isfinite(spread)) {
+                *doubt = spread;
+                *derivative = at[0];
+                step = ldexp(start, -2 * level);
+            }
+        }
+    *doubt += DBL_EPSILON * (fabs(d->ahead[i]) + fabs(d->behind[i])) / (2 * step);
+}
+
+static void richardson(struct difference *d, int j, double *derivative, double *doubt)
 {
     const double x = d->in[j], start = 0.02 * (1 + fabs(x));
     for (int level = 0; level < levels; level++) {
@@ -35,21 +57,8 @@ static void richardson(struct difference *d, int j, double *derivative)
         }
     }
     d->in[j] = x;
-    for (int i = 0; i < d->m; i++) {
-        const double *table = d->table + i * levels * levels;
-        double best = INFINITY;
-        for (int level = 1; level < levels; level++)
-            for (int k = 1; k <= level; k++) {
-                const double *at = table + level * levels + k;
-                const double spread = fmax(fabs(at[0] - at[-1]), fabs(at[0] - at[-1 - levels]));
-                if (spread <= best) {
-                    best = spread;
-                    derivative[i] = at[0];
-                }
-            }
-        if (!isfinite(best))
-            derivative[i] = NAN;
-    }
+    for (int i = 0; i < d->m; i++)
+        extrapolate(d, i, start, &derivative[i], &doubt[i]);
 }
 
 static void evaluate_value(const moray_map *map, const double *weight, const double *in, double *out, double *scratch)
@@ -73,20 +82,22 @@ struct worst {
     int row, col;
 };
 
-// A NaN on either side counts as the worst.
-static void compare(struct worst *worst, double given, double reference, int row, int col)
+// A NaN counts as the worst. Where no reference can be formed, nothing is said of a number.
+static void compare(struct worst *worst, double given, double reference, double doubt, int row, int col)
 {
-    const double error = fabs(given - reference) / (1 + fabs(reference));
+    const double error = fabs(given - reference) / (1 + fabs(reference) + certain * doubt);
+    if (isnan(reference) && isfinite(given))
+        return;
     if (!(error <= worst->error) && !isnan(worst->error))
         *worst = (struct worst){error, given, reference, row, col};
 }
 
 // Compares column by column; missing entries are zeros.
 static void compare_columns(struct difference *d, const moray_pattern *pattern, const double *values, bool symmetric,
-                            double *given, double *reference, struct worst *worst)
+                            double *given, double *reference, double *doubt, struct worst *worst)
 {
     for (int j = 0; j < d->map->n_in; j++) {
-        richardson(d, j, reference);
+        richardson(d, j, reference, doubt);
         memset(given, 0, (size_t)d->m * sizeof *given);
         for (int k = 0; k < pattern->nnz; k++) {
             if (pattern->col[k] == j)
@@ -95,24 +106,24 @@ static void compare_columns(struct difference *d, const moray_pattern *pattern, 
                 given[pattern->col[k]] += values[k];
         }
         for (int i = 0; i < d->m; i++)
-            compare(worst, given[i], reference[i], i, j);
+            compare(worst, given[i], reference[i], doubt[i], i, j);
     }
 }
 
 static void check_both(struct difference *d, const double *weight, double *values, double *given, double *reference,
-                       moray_derivative_report *report)
+                       double *doubt, moray_derivative_report *report)
 {
     const moray_map *map = d->map;
     struct worst jac = {0}, hess = {0};
     d->m = map->n_out;
     d->evaluate = evaluate_value;
     map->jacobian(map->self, d->in, values);
-    compare_columns(d, &map->jac, values, false, given, reference, &jac);
+    compare_columns(d, &map->jac, values, false, given, reference, doubt, &jac);
     d->m = map->n_in;
     d->evaluate = evaluate_gradient;
     d->weight = weight;
     map->hessian(map->self, d->in, weight, values);
-    compare_columns(d, &map->hess, values, true, given, reference, &hess);
+    compare_columns(d, &map->hess, values, true, given, reference, doubt, &hess);
     *report = (moray_derivative_report){
         .jacobian_error = jac.error,
         .jacobian_row = jac.row,
@@ -132,15 +143,15 @@ moray_status moray_check_derivatives(const moray_map *map, const double *in, con
 {
     const size_t m = (size_t)(map->n_in > map->n_out ? map->n_in : map->n_out) + 1;
     const size_t nnz = (size_t)(map->jac.nnz > map->hess.nnz ? map->jac.nnz : map->hess.nnz) + 1;
-    double *block = calloc(m * (5 + levels * levels) + 2 * nnz, sizeof *block);
+    double *block = calloc(m * (6 + levels * levels) + 2 * nnz, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to check the derivatives of %d inputs", map->n_in);
     struct difference d = {.map = map, .in = block, .ahead = block + m, .behind = block + 2 * m};
-    double *given = block + 3 * m, *reference = block + 4 * m;
-    d.table = block + 5 * m;
+    double *given = block + 3 * m, *reference = block + 4 * m, *doubt = block + 5 * m;
+    d.table = block + 6 * m;
     d.scratch = d.table + m * levels * levels;
     memcpy(d.in, in, (size_t)map->n_in * sizeof *in);
-    check_both(&d, weight, d.scratch + nnz, given, reference, report);
+    check_both(&d, weight, d.scratch + nnz, given, reference, doubt, report);
     free(block);
     return moray_ok();
 }

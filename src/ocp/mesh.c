@@ -9,6 +9,7 @@ void mesh_free(struct mesh *mesh)
     free(mesh->edge);
     free(mesh->raised_from);
     free(mesh->stages);
+    free(mesh->past);
     *mesh = (struct mesh){0};
 }
 
@@ -17,8 +18,9 @@ moray_status mesh_new(struct mesh *mesh, int intervals)
     *mesh = (struct mesh){.intervals = intervals,
                           .edge = calloc((size_t)intervals + 1, sizeof *mesh->edge),
                           .raised_from = calloc((size_t)intervals, sizeof *mesh->raised_from),
-                          .stages = calloc((size_t)intervals, sizeof *mesh->stages)};
-    if (mesh->edge && mesh->raised_from && mesh->stages)
+                          .stages = calloc((size_t)intervals, sizeof *mesh->stages),
+                          .past = calloc((size_t)intervals, sizeof *mesh->past)};
+    if (mesh->edge && mesh->raised_from && mesh->stages && mesh->past)
         return moray_ok();
     mesh_free(mesh);
     return moray_error(MORAY_MEMORY, "no memory for a mesh of %d intervals", intervals);
@@ -40,6 +42,7 @@ moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh)
     memcpy(copy->edge, mesh->edge, ((size_t)mesh->intervals + 1) * sizeof *copy->edge);
     memcpy(copy->raised_from, mesh->raised_from, (size_t)mesh->intervals * sizeof *copy->raised_from);
     memcpy(copy->stages, mesh->stages, (size_t)mesh->intervals * sizeof *copy->stages);
+    memcpy(copy->past, mesh->past, (size_t)mesh->intervals * sizeof *copy->past);
     return moray_ok();
 }
 

@@ -4,12 +4,20 @@
 
 #include "moray/status.h"
 
+// What refinement did to an interval before.
+enum mesh_past {
+    mesh_untouched,
+    mesh_merged, // of several
+    mesh_settled // merged, then refined after all, or part of such a one
+};
+
 // Intervals of one phase: edges[intervals + 1] from 0 to 1, stages[intervals]; raised_from[intervals] is the error with
 // fewer stages where the last refinement added some, else 0.
 struct mesh {
     int intervals;
     double *edge, *raised_from;
     int *stages;
+    enum mesh_past *past;
 };
 
 // Error: MORAY_MEMORY. Free with mesh_free, which is safe on a zeroed mesh.

@@ -122,26 +122,42 @@ static void split(struct refinement *r, const struct interval *interval, double 
         add_interval(&r->mesh, node[last].tau, r->base_stages);
 }
 
-// Takes an interval over as it is, or makes one of it and its neighbour of as many stages where their error allows.
-static void keep(struct refinement *r, double end, int stages, double error)
+// Makes one of an interval and the one before it.
+static void merge_last(struct mesh *mesh, double end, enum mesh_past past)
+{
+    enum mesh_past *merged = &mesh->past[mesh->intervals - 1];
+    mesh->edge[mesh->intervals] = end;
+    *merged = past == mesh_settled || *merged == mesh_settled ? mesh_settled : mesh_merged;
+}
+
+// Takes an interval over as it is, or merges it with its neighbour of as many stages where their error allows; not
+// where that was tried before, between two that are settled: an error that is small because the edge stands on a kink
+// is back once the edge is gone, and the meshes would alternate for ever.
+static void keep(struct refinement *r, double end, int stages, enum mesh_past past, double error)
 {
     const int last = r->mesh.intervals - 1;
     const double merged = (error + r->spare) * ldexp(1, stages + 1);
-    const bool merge = last >= 0 && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance;
-    if (merge)
-        r->mesh.edge[r->mesh.intervals] = end;
-    else
+    const bool tried = last >= 0 && past == mesh_settled && r->mesh.past[last] == mesh_settled;
+    if (last >= 0 && !tried && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance) {
+        merge_last(&r->mesh, end, past);
+        r->spare = INFINITY;
+    } else {
         add_interval(&r->mesh, end, stages);
-    r->spare = merge ? INFINITY : error;
+        r->mesh.past[last + 1] = past;
+        r->spare = error;
+    }
 }
 
-static void refine_interval(struct refinement *r, const struct interval *interval, double raised_from, double error)
+static void refine_interval(struct refinement *r, int k, double error)
 {
-    const struct node *node = r->e.solution->transcription->layout.phase[r->e.p].node + interval->first;
-    const int s = interval->scheme->stages;
+    const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
+    const struct interval *interval = &layout->interval[k];
+    const double raised_from = layout->mesh.raised_from[k];
+    const struct node *node = layout->node + interval->first;
+    const int s = interval->scheme->stages, first = r->mesh.intervals;
     const double end = node[interval->scheme->points - 1].tau, excess = error / (aim * r->tolerance);
     if (error <= r->tolerance || interval->width < least_width) {
-        keep(r, end, s, error);
+        keep(r, end, s, layout->mesh.past[k], error);
         return;
     }
     r->spare = INFINITY;
@@ -153,6 +169,8 @@ static void refine_interval(struct refinement *r, const struct interval *interva
     } else {
         split(r, interval, excess);
     }
+    for (int i = first; i < r->mesh.intervals; i++)
+        r->mesh.past[i] = layout->mesh.past[k] == mesh_untouched ? mesh_untouched : mesh_settled;
 }
 
 static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double *worst)
@@ -168,7 +186,7 @@ static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double
         error = fmax(error, outside / violation_slack); // what the certificate will ask
         *worst = fmax(*worst, error);
         if (mesh)
-            refine_interval(r, &layout->interval[k], layout->mesh.raised_from[k], error);
+            refine_interval(r, k, error);
     }
     if (mesh)
         *mesh = r->mesh;
