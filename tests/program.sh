@@ -17,6 +17,11 @@ run() {
     code=$?
 }
 
+# False in the sanitizers' half of tests/run.sh, for long runs of what shorter ones reach too.
+thorough() {
+    [ -z "${MORAY_TESTS_BRIEF-}" ]
+}
+
 # Standard error is one line that begins with the program's name.
 one_line() {
     [ "$(wc -l <err)" -eq 1 ] && grep -q "^$(basename "$program"): " err

@@ -26,6 +26,7 @@ suite() {
 
 if install_packages; then
     suite "$root/build-ci" -Dwerror=true
+    export MORAY_TESTS_BRIEF=yes
     suite "$root/build-san" -Db_sanitize=address,undefined
 else
     failed=1

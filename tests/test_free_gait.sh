@@ -44,6 +44,7 @@ check "the motion swum is the series: first joint at the start" eval \
     'near "$(head -n 2 results/motion.csv | tail -n 1 | cut -d , -f 2)" \
         "$(awk -F , "\$1 == 1 { sum += \$4 } END { print sum }" results/series.csv)" 1e-6'
 
+if thorough; then
 run --json --model control --links 4 --set harmonics=1 --set link_angle_deg=25
 check "on the control-oriented model: $(cat err)" [ $code -eq 0 ]
 check "the first-principles result stands beside the promise" \
@@ -52,6 +53,7 @@ check "the promise is kept on its own model" \
     near "$(number predicted speed_m_s)" "$(number simulated_control speed_m_s)" 1e-5
 check "the limit asked for" near "$(number link_angle_limit_deg)" 25 1e-9
 check "and kept there" near "$(number simulated_control max_link_angle_deg)" 25 0.02
+fi
 
 refuse 'harmonics = 0' --set harmonics=0
 refuse 'link_angle_deg = 0.5' --set link_angle_deg=0.5

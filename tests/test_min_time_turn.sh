@@ -20,9 +20,11 @@ check "the other way round: $(cat err)" [ $code -eq 0 ]
 check "it says what limits the turn" grep -q 'limit of the offset decides\|rate of the offset decides\|decide together' out
 check "and how the undulation counts" grep -q 'heading swings with every stroke' out
 
+if thorough; then
 run --quiet --model control --current 0,0 --angle 45 --set end_m=4,1.5 --set evaluations=1
 check "from pose to pose: $(cat err)" [ $code -eq 0 ]
 check "near the end position" grep -q 'control-oriented plan comes within\|plan + feedback comes within' out
+fi
 
 run --quiet --model control --angle 90 --set end_m=-4,2 --current 0.4,0 --set evaluations=1
 check "a current too strong: exit 1" [ $code -eq 1 ]

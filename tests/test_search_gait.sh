@@ -29,6 +29,7 @@ done
 check "nothing else" [ "$(ls -A results | wc -l)" -eq 4 ]
 check "summary.json is what --json prints" cmp -s out results/summary.json
 
+if thorough; then
 # ---- Other goal, model and methods
 run --quiet --model control --set goal=economy --set random_starts=2 --set global=none --set local=cobyla
 check "thrift on the control-oriented model: $(cat err)" [ $code -eq 0 ]
@@ -37,6 +38,7 @@ check "one optimum" grep -q '^1 optimum from 3 starts (cobyla: ' out
 run --json --model control --current 0.05,0.05 --set random_starts=2 --set global=direct --set global_orbits=100
 check "in a current: exit 0: $(cat err)" [ $code -eq 0 ]
 check "search and collocation agree to $(number largest_difference)" near "$(number largest_difference)" 0 1e-7
+fi
 
 # ---- Currents that cannot be stemmed, bad input
 run --current=-0.3,0 --model control --set random_starts=1 --set global=none

@@ -41,6 +41,7 @@ check "the predicted gait, $(number gait_predicted omega_deg_s) deg/s, is that s
 check "and swims as fast: $(number gait_predicted course_speed_m_s)" \
     alike "$(number gait_predicted course_speed_m_s)" "$(number gait_solved_again course_speed_m_s)" 1e-3
 
+if thorough; then
 # ---- The control-oriented one, beside what the first-principles model says to it; about to reach a limit
 run --quiet --model control --set delta_deg=15:34.95 --set predict_current=0.05,0
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
@@ -51,6 +52,7 @@ check "the limit that is near is told" grep -q '^WARNING: the slopes hold only u
 check "the prediction is swum" grep -q 'Swum on the first-principles model, it is off by [+-]0\.0' out
 check "and where the model errs most is said" grep -q 'swum on the first-principles model are .* differ most for' out
 check "parameters of the other model are not there" eval '! grep -q lambda_ out && grep -q "^rot_damping" out'
+fi
 
 refuse 'predict_current = fast' --set predict_current=fast
 refuse 'power_W = 0' --set power_W=0
