@@ -98,7 +98,9 @@ int main(int argc, char **argv)
     if (!moray_app_start(&program, argc, argv, &job, &exit_code))
         return exit_code;
     job.ticker = moray_ticker_start(stderr, job.common.quiet);
+    moray_interrupt_begin();
     moray_status status = work(&job);
+    moray_interrupt_end();
     moray_ticker_end(&job.ticker);
     if (!moray_failed(status))
         status = turn_report(&job);

@@ -30,6 +30,10 @@ run --quiet --model control --angle 90 --set end_m=-4,2 --current 0.4,0 --set ev
 check "a current too strong: exit 1" [ $code -eq 1 ]
 check "said with its numbers: $(cat err)" eval 'one_line && grep -q "current of 0.4 m/s is stronger than the robot" err'
 
+timeout --foreground --preserve-status -s INT 1 "$program" --out interrupted >out 2>err </dev/null
+code=$?
+check "Ctrl-C is told and leaves nothing: $(cat err)" eval '[ $code -eq 130 ] && one_line && grep -q interrupted err && [ ! -s out ] && [ ! -e interrupted ]'
+
 refuse 'angle_deg = 0' --angle 0
 refuse 'band_deg' --set band_deg=0
 tap_done

@@ -31,6 +31,10 @@ run --quiet --model control --path "0,0 5,0 5,5" --set radius_m=0.3 --set tube_m
 check "a corner too tight for the tube: exit 1" [ $code -eq 1 ]
 check "said with leg and numbers: $(cat err)" eval 'one_line && grep -q "tube_m = 0.1.*behind leg 1.*0.3 m.*deg/s" err'
 
+timeout --foreground --preserve-status -s INT 1 "$program" --out interrupted >out 2>err </dev/null
+code=$?
+check "Ctrl-C is told and leaves nothing: $(cat err)" eval '[ $code -eq 130 ] && one_line && grep -q interrupted err && [ ! -s out ] && [ ! -e interrupted ]'
+
 refuse 'leg 2 is 1 m long' --path "0,0 5,0 5,1 0,1"
 refuse 'at least 2' --path "0,0"
 refuse 'nowhere.csv' --path nowhere.csv

@@ -86,7 +86,7 @@ static moray_status search(hunt *h, const moray_gait *start)
     settings.x_tolerance = 1e-2;
     settings.f_tolerance = 1e-3;
     settings.max_evaluations = h->job->gait_evaluations;
-    settings.progress = heading_go_on;
+    settings.progress = steer_go_on;
     const moray_status status = moray_search(&problem, &settings, x, &info);
     if (moray_interrupted())
         return moray_error(MORAY_INTERRUPTED, "interrupted in search of a gait; nothing is written");

@@ -94,9 +94,6 @@ moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool 
 // Of a solve on the averaged plant or the full one, whose undulation has that period.
 moray_settings heading_settings(heading_job *job, bool averaged, double period);
 
-// A moray_search_observer: until Ctrl-C.
-bool heading_go_on(void *observer, const moray_search_progress *progress);
-
 // The gait whose first-principles plan has the least objective on a coarse mesh, within the limits of gait and
 // straight-ahead power, from `start` on; its plan must be freed even after an error. Error: those of moray_search;
 // MORAY_NOT_SOLVED when no gait gets by with the power.

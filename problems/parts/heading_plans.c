@@ -108,12 +108,6 @@ static bool show_iteration(void *observer, const moray_progress *at)
     return !moray_interrupted();
 }
 
-bool heading_go_on(void *observer, const moray_search_progress *progress)
-{
-    (void)observer, (void)progress;
-    return !moray_interrupted();
-}
-
 moray_settings heading_settings(heading_job *job, bool averaged, double period)
 {
     const double per_period = averaged ? 1.2 : job->intervals_per_period;

@@ -85,7 +85,7 @@ static moray_status tune(const heading_job *job, heading_trial *trial)
     settings.x_tolerance = 3e-3;
     settings.f_tolerance = 3e-4;
     settings.max_evaluations = job->evaluations * (1 + lead);
-    settings.progress = heading_go_on;
+    settings.progress = steer_go_on;
     MORAY_TRY(moray_search(&problem, &settings, x, &info));
     trial->gain = exp(x[0]);
     trial->lead = lead ? x[1] : 0;

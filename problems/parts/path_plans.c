@@ -140,7 +140,7 @@ static bool show_iteration(void *observer, const moray_progress *at)
     const path_job *job = observer;
     moray_ticker_show(&job->ticker, "path_following: iteration %d, objective %.6g, violation %.1e", at->iteration,
                       at->objective, at->infeasibility);
-    return true;
+    return !moray_interrupted();
 }
 
 static moray_settings settings_of(path_job *job, bool averaged, const moray_cruise *cruise)
@@ -181,6 +181,7 @@ static moray_status solve(path_job *job, const moray_path_spec *spec, const mora
     MORAY_TRY(find_turn_rate(job, &cruise));
     const moray_settings settings = settings_of(job, spec->averaged, &cruise);
     MORAY_TRY(moray_path_plan_make(plan, spec, &settings, gait, job->start, job->heading, from));
+    MORAY_TRY(steer_interruption());
     return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED ? moray_ok() : why_not(job, plan);
 }
 

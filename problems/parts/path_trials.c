@@ -196,7 +196,9 @@ static moray_status tune_from(const path_job *job, path_trial *trial, double *x)
     settings.x_tolerance = 1e-3;
     settings.f_tolerance = 1e-4;
     settings.max_evaluations = job->evaluations * problem.n;
+    settings.progress = steer_go_on;
     const moray_status status = moray_search(&problem, &settings, x, &info);
+    MORAY_TRY(steer_interruption());
     if (moray_failed(status))
         return status.code == MORAY_NUMERIC ? t.status : status;
     read(&own, x);
@@ -260,8 +262,10 @@ moray_status path_run_trials(path_job *job)
         moray_ticker_show(&job->ticker, "path_following: %s", trial->name);
         if (trial->law == PATH_SIGHT || trial->law == PATH_BOTH)
             MORAY_TRY(tune(job, trial, trial->law == PATH_SIGHT && k > 0 ? &job->trial[k - 1] : NULL));
-        for (int model = 0; model < 2; model++)
+        for (int model = 0; model < 2; model++) {
+            MORAY_TRY(steer_interruption());
             MORAY_TRY(score(job, trial, (moray_model)model, careful));
+        }
     }
     return moray_ok();
 }

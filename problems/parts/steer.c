@@ -76,3 +76,14 @@ void steer_diagnosis(const moray_solution *solution, char *text, size_t size)
     for (char *at = strchr(text, '\n'); at; at = strchr(at, '\n'))
         *at = ' ';
 }
+
+bool steer_go_on(void *observer, const moray_search_progress *progress)
+{
+    (void)observer, (void)progress;
+    return !moray_interrupted();
+}
+
+moray_status steer_interruption(void)
+{
+    return moray_interrupted() ? moray_error(MORAY_INTERRUPTED, "interrupted; nothing is written") : moray_ok();
+}

@@ -87,6 +87,12 @@ moray_steering_limits steer_replanning_limits(const moray_robot *robot, const mo
                                               const moray_steering_limits *own, const moray_steering_limits *swum,
                                               double scale);
 
+// Progress of a search that Ctrl-C ends.
+bool steer_go_on(void *observer, const moray_search_progress *progress);
+
+// MORAY_INTERRUPTED after Ctrl-C.
+moray_status steer_interruption(void);
+
 // ---- Figures
 // ----------------------------------------------------------------------------------------------------------
 

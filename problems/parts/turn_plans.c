@@ -78,7 +78,7 @@ static bool show_iteration(void *observer, const moray_progress *at)
     const turn_job *job = observer;
     moray_ticker_show(&job->ticker, "min_time_turn: iteration %d, objective %.6g, violation %.1e", at->iteration,
                       at->objective, at->infeasibility);
-    return true;
+    return !moray_interrupted();
 }
 
 // With as many intervals as the plan before took periods.
@@ -125,6 +125,7 @@ static moray_status solve(turn_job *job, moray_model model, const moray_gait *ga
         moray_turn_plan_free(better ? plan : &next);
         if (better)
             *plan = next;
+        MORAY_TRY(steer_interruption());
     }
     return solved(plan) ? moray_ok() : why_not(job, plan);
 }

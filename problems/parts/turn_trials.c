@@ -193,7 +193,9 @@ static moray_status tune(const turn_job *job, turn_trial *trial, const turn_tria
     settings.x_tolerance = 1e-4;
     settings.f_tolerance = 1e-5;
     settings.max_evaluations = job->evaluations * problem.n;
+    settings.progress = steer_go_on;
     const moray_status status = moray_search(&problem, &settings, x, &info);
+    MORAY_TRY(steer_interruption());
     if (moray_failed(status))
         return status.code == MORAY_NUMERIC ? t.status : status;
     read(trial, x);
@@ -229,8 +231,10 @@ moray_status turn_run_trials(turn_job *job)
         turn_trial *trial = &job->trial[k];
         if (trial->law != TURN_PLAN)
             MORAY_TRY(tune(job, trial, trial->law == TURN_BRAKE ? &job->trial[k - 1] : NULL));
-        for (int model = 0; model < 2; model++)
+        for (int model = 0; model < 2; model++) {
+            MORAY_TRY(steer_interruption());
             MORAY_TRY(score(job, trial, (moray_model)model, careful));
+        }
     }
     return moray_ok();
 }
