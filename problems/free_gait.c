@@ -28,8 +28,7 @@ static const moray_option options[] = {
              "best gait within it reaches"},
 };
 
-// ---- One motion
-// ------------------------------------------------------------------------------------------------------
+// ---- One motion ----------------------------------------------------------------------------------------------------
 
 static int coefficients_of(const free_gait *run, int harmonics)
 {
@@ -147,8 +146,7 @@ double free_gait_disagreement(const motion *m)
     return fmax(fabs(swum->speed - m->at.promise.speed), fabs(swum->power - m->at.promise.power));
 }
 
-// ---- All of them
-// -----------------------------------------------------------------------------------------------------
+// ---- All of them ---------------------------------------------------------------------------------------------------
 
 static motion *start_motion(free_gait *run, int harmonics, double taper)
 {

@@ -69,8 +69,7 @@ static void random_point(const moray_plant_spec *spec, int n_in, double *in)
         in[k] = draw(kinds[k].low, kinds[k].high);
 }
 
-// ---- The reference's derivatives
-// -------------------------------------------------------------------------------------
+// ---- The reference's derivatives -----------------------------------------------------------------------------------
 
 static void dense_jacobian(const dense_plant *plant, int n_in, int n_out, const double *in, grid *out)
 {
@@ -123,8 +122,7 @@ static void dense_hessian(const dense_plant *plant, int n_in, int n_out, const d
     }
 }
 
-// ---- Comparison
-// ------------------------------------------------------------------------------------------------------
+// ---- Comparison ----------------------------------------------------------------------------------------------------
 
 // Spreads values over a matrix; false when an entry stands twice or (lower) above the diagonal.
 static bool spread(const moray_pattern *pattern, const double *values, bool lower, grid *out)

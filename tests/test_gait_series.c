@@ -45,8 +45,7 @@ static void test_endpoint(moray_gait_goal goal)
     gait_endpoint_free(&ends);
 }
 
-// ---- Optima
-// ----------------------------------------------------------------------------------------------------------
+// ---- Optima --------------------------------------------------------------------------------------------------------
 
 static moray_gait_problem_spec spec_of(moray_model model)
 {

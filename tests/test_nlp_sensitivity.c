@@ -117,8 +117,7 @@ static moray_iterate slope_in(struct slope *s)
     return (moray_iterate){.x = s->x, .z_lower = s->z_lower, .z_upper = s->z_upper, .g = s->g, .lambda = s->lambda};
 }
 
-// ---- A quadratic programme at a bound: ½(x0² + 2 x1² + 3 x2²), x0 + x1 + x2 = 1, x0 >= l = p[0]
-// ----------------------
+// ---- A quadratic programme at a bound: ½(x0² + 2 x1² + 3 x2²), x0 + x1 + x2 = 1, x0 >= l = p[0] --------------------
 
 static void quadratic(const double *x, const double *p, struct facts *f)
 {
@@ -173,8 +172,7 @@ static void test_bound(void)
     moray_nlp_sensitivity_free(s);
 }
 
-// ---- The least |x|² with 6 x0 + 3 x1 + 2 x2 = p0, p1 x0 + x1 - x2 = 1, x >= 0
-// ----------------------------------------
+// ---- The least |x|² with 6 x0 + 3 x1 + 2 x2 = p0, p1 x0 + x1 - x2 = 1, x >= 0 --------------------------------------
 
 static void least_norm(const double *x, const double *p, struct facts *f)
 {
@@ -236,8 +234,7 @@ static void test_least_norm(void)
     moray_nlp_sensitivity_free(s);
 }
 
-// ---- The point of the disc |x|² <= r² nearest to c = (p0, p1): x = r c / |c|, lambda = |c|/r - 1
-// ---------------------
+// ---- The point of the disc |x|² <= r² nearest to c = (p0, p1): x = r c / |c|, lambda = |c|/r - 1 -------------------
 
 static void disc(const double *x, const double *p, struct facts *f)
 {

@@ -11,8 +11,7 @@
 
 #define DEG (M_PI / 180)
 
-// ---- Geometry
-// ---------------------------------------------------------------------------------------------------------
+// ---- Geometry ------------------------------------------------------------------------------------------------------
 
 // Position by integrating the course, Simpson's rule, from the start on.
 static void walk(const moray_path *path, double along, double p[2])
@@ -105,8 +104,7 @@ static void test_projection(void)
     moray_path_free(&path);
 }
 
-// ---- Reading
-// ----------------------------------------------------------------------------------------------------------
+// ---- Reading -------------------------------------------------------------------------------------------------------
 
 static void check_refused(const char *text, double radius, moray_code code, const char *words)
 {
@@ -148,8 +146,7 @@ static void test_reading(void)
     remove(name);
 }
 
-// ---- Currents
-// ---------------------------------------------------------------------------------------------------------
+// ---- Currents ------------------------------------------------------------------------------------------------------
 
 // The triangle of velocities: heading into the current by the crab angle, by the law of sines.
 static double triangle(double speed, const double current[2], double course)
@@ -191,8 +188,7 @@ static void test_currents(void)
     moray_path_free(&path);
 }
 
-// ---- The problem
-// ------------------------------------------------------------------------------------------------------
+// ---- The problem ---------------------------------------------------------------------------------------------------
 
 static moray_path_spec spec_of(const moray_path *path, int links)
 {
@@ -258,8 +254,7 @@ static void test_refusals(void)
     moray_path_free(&path);
 }
 
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 static const moray_gait *paper_gait(const moray_robot *robot)
 {
@@ -349,8 +344,7 @@ static void test_replanning(void)
     moray_path_free(&path);
 }
 
-// ---- Scores
-// -----------------------------------------------------------------------------------------------------------
+// ---- Scores --------------------------------------------------------------------------------------------------------
 
 // Beside a leg of 10 m at 0.25 m/s, a sample a second: 0.3 m off on the first 2 m, 0.1 m thereafter.
 static void test_score(void)
@@ -405,8 +399,7 @@ static void test_last_sample(void)
     moray_voyage_free(&voyage);
 }
 
-// ---- Guidance
-// ---------------------------------------------------------------------------------------------------------
+// ---- Guidance ------------------------------------------------------------------------------------------------------
 
 // A point that moves on the heading it is given at constant speed in a current: without integral action it stays off by
 // lookahead times the tangent of the crab angle, with it it comes to the path.

@@ -15,8 +15,7 @@ typedef double complex num;
 
 static random_seed seed = 11;
 
-// ---- The reference
-// ---------------------------------------------------------------------------------------------------
+// ---- The reference -------------------------------------------------------------------------------------------------
 
 // phi, phi', phi'' of the input, and where mean angle and its rate stand in it and in the state.
 typedef struct joints {
@@ -79,8 +78,7 @@ static void reference(void *self, const num *in, num *out)
     *next = power;
 }
 
-// ---- Plants against it
-// -----------------------------------------------------------------------------------------------
+// ---- Plants against it ---------------------------------------------------------------------------------------------
 
 static void random_input(const moray_plant_spec *spec, int n_in, double *in)
 {
@@ -180,8 +178,7 @@ static void test_derivatives(int links, moray_joints form, bool path)
     moray_map_release(&want);
 }
 
-// ---- Series of gaits
-// -------------------------------------------------------------------------------------------------
+// ---- Series of gaits -----------------------------------------------------------------------------------------------
 
 static moray_gait random_gait(moray_model model)
 {

@@ -9,8 +9,7 @@
 #include "moray/steering.h"
 #include "moray/swim.h"
 
-// ---- Straight swimming
-// ------------------------------------------------------------------------------------------------
+// ---- Straight swimming ---------------------------------------------------------------------------------------------
 
 // Steady swimming of a gait without offset, in still water, at mean heading 0.
 typedef struct moray_cruise {
@@ -35,8 +34,7 @@ void moray_cruise_start(const moray_cruise *cruise, double heading, const double
 // Heading at t without the undulation.
 double moray_cruise_heading(const moray_cruise *cruise, double t, double heading);
 
-// ---- Plans carried out
-// ------------------------------------------------------------------------------------------------
+// ---- Plans carried out ---------------------------------------------------------------------------------------------
 
 // The offset of a plan, times `scale`: 1, or from one model to the other alpha/a with the sign of erratum E3.
 typedef struct moray_plan {
@@ -49,8 +47,7 @@ moray_offset moray_plan_offset(const moray_plan *plan, double t);
 // Blindly. The plan must outlive the helm.
 moray_helm moray_plan_helm(const moray_plan *plan);
 
-// ---- Feedback
-// ---------------------------------------------------------------------------------------------------------
+// ---- Feedback ------------------------------------------------------------------------------------------------------
 
 // phi_0 = feed + gain (target - heading), the heading without its undulation, limited in range and rate. Decided every
 // `period`, with straight lines in between.

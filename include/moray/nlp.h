@@ -97,8 +97,7 @@ typedef struct moray_kkt {
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at the iterate.
 moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt);
 
-// ---- Sensitivities
-// ---------------------------------------------------------------------------------------------------
+// ---- Sensitivities -------------------------------------------------------------------------------------------------
 //
 // How a solution moves with a parameter p of the programme: the implicit function theorem on its optimality conditions,
 // with the constraints that are active held so. The KKT matrix is factored once, each parameter is one more right-hand

@@ -16,8 +16,7 @@
 #include "moray/ode.h"
 #include "moray/scheme.h"
 
-// ---- Bounds
-// ----------------------------------------------------------------------------------------------------------
+// ---- Bounds --------------------------------------------------------------------------------------------------------
 
 typedef struct moray_bounds {
     double lower, upper;
@@ -54,8 +53,7 @@ typedef struct moray_bounds_list {
         (const moray_bounds[]){__VA_ARGS__}, (int)(sizeof((const moray_bounds[]){__VA_ARGS__}) / sizeof(moray_bounds)) \
     }
 
-// ---- Problem form
-// ------------------------------------------------------------------------------------------------------
+// ---- Problem form --------------------------------------------------------------------------------------------------
 
 // User functions are plain C99 on moray_num, see num.h; their derivatives come by complex step. Where the functions of
 // a phase are evaluated, and what they give:
@@ -139,8 +137,8 @@ moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
 void moray_ocp_free(moray_ocp *ocp);
 
 // The worst disagreement, relative as in moray_derivative_report, between the derivatives in use and differences of the
-// functions at several points within the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u) is
-// 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
+// functions at several points within the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
+// is 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
 typedef struct moray_ocp_derivative_report {
     double jacobian_error, hessian_error;
     char jacobian[300], hessian[300];
@@ -153,8 +151,7 @@ moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivat
 int moray_ocp_phases(const moray_ocp *ocp);
 void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
 
-// ---- Trajectories, guesses
-// -----------------------------------------------------------------------------------------------
+// ---- Trajectories, guesses -----------------------------------------------------------------------------------------
 
 // Samples of one phase, row-major: time[n], x[n][nx], u[n][nu]; u is NULL where nu = 0. Borrowed by whoever takes it as
 // input.
@@ -200,8 +197,7 @@ typedef struct moray_drive {
 moray_status moray_guess_simulate(moray_guess *guess, const moray_ocp *ocp, const moray_drive *phase, const double *s,
                                   moray_control_fn *control, void *self, const moray_integrator *integrator);
 
-// ---- Solving
-// ---------------------------------------------------------------------------------------------------------------
+// ---- Solving -------------------------------------------------------------------------------------------------------
 
 typedef struct moray_settings {
     const char *scheme;    // "hermite-simpson"
@@ -292,8 +288,7 @@ const moray_mesh_record *moray_solution_history(const moray_solution *solution, 
 // bounds. Owned by the solution.
 const char *moray_solution_diagnosis(const moray_solution *solution);
 
-// ---- Certificate
-// -------------------------------------------------------------------------------------------------------------
+// ---- Certificate ---------------------------------------------------------------------------------------------------
 
 // Computed apart from the solver. Passes when every number is within its limit.
 typedef struct moray_certificate {

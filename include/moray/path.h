@@ -9,8 +9,7 @@
 #include "moray/recede.h"
 #include "moray/steering.h"
 
-// ---- Paths
-// ------------------------------------------------------------------------------------------------------------
+// ---- Paths ---------------------------------------------------------------------------------------------------------
 
 // A straight leg (curvature 0) or an arc.
 typedef struct moray_path_piece {
@@ -57,8 +56,7 @@ moray_status moray_path_passable(const moray_path *path, double speed, const dou
 // How long such a swimmer takes from a distance along the path to its end, crabbing; NaN where it makes no way [s].
 double moray_path_duration(const moray_path *path, double along, double speed, const double current[2]);
 
-// ---- Following
-// --------------------------------------------------------------------------------------------------------
+// ---- Following -----------------------------------------------------------------------------------------------------
 
 typedef struct moray_path_weights {
     double across;   // of the integral of the squared distance to the path [1/(m^2 s)]
@@ -117,8 +115,7 @@ typedef struct moray_path_replanner {
 // Uses it, so that it must outlive the plans.
 moray_replanner moray_path_replan(moray_path_replanner *replanner);
 
-// ---- Guidance
-// ---------------------------------------------------------------------------------------------------------
+// ---- Guidance ------------------------------------------------------------------------------------------------------
 
 // Headings to steer for, from where the swimmer is: line of sight theta = course(along + ahead) - atan((e + gain y) /
 // lookahead) with y' = lookahead e / ((e + gain y)^2 + lookahead^2) (Borhaug, Pavlov and Pettersen 2008; gain 0:

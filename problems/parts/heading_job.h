@@ -65,8 +65,7 @@ static inline const moray_heading_plan *heading_last_plan(const heading_job *job
 moray_status heading_plan_first(heading_job *job);
 moray_status heading_plan_last(heading_job *job);
 
-// ---- Fig. 8
-// ---------------------------------------------------------------------------------------------------------
+// ---- Fig. 8 --------------------------------------------------------------------------------------------------------
 
 // Whether the reference is the manoeuvre of Sec. V-C.
 bool heading_is_fig8(const heading_job *job);
@@ -85,8 +84,7 @@ typedef struct heading_fig8_match {
 } heading_fig8_match;
 heading_fig8_match heading_fig8_compare(const heading_job *job, moray_model model);
 
-// ---- Plans
-// -----------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 // Limits of the model, with the gait that is swum where `gait` is not NULL.
 moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool averaged);

@@ -22,8 +22,7 @@ moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool 
                                 .t1 = job->horizon};
 }
 
-// ---- What limits the robot
-// --------------------------------------------------------------------------------------------
+// ---- What limits the robot -----------------------------------------------------------------------------------------
 
 static double largest_jump(const heading_job *job)
 {
@@ -97,8 +96,7 @@ static moray_status why_not(const heading_job *job, const moray_heading_plan *pl
     return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
 }
 
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 static bool show_iteration(void *observer, const moray_progress *at)
 {

@@ -4,8 +4,7 @@
 static const char *const model_names[] = {"control-oriented", "first-principles"};
 enum { text_size = 1200 };
 
-// ---- Tables
-// -----------------------------------------------------------------------------------------------------------
+// ---- Tables --------------------------------------------------------------------------------------------------------
 
 enum { most_tables = 4, most_rows = HEADING_TRIALS + 2 };
 
@@ -119,8 +118,7 @@ static void make_tables(const heading_job *job, report_tables *t)
                                          .n_rows = fig8_rows(job, t->rows[3])};
 }
 
-// ---- In words
-// ---------------------------------------------------------------------------------------------------------
+// ---- In words ------------------------------------------------------------------------------------------------------
 
 // Whether the trial swims on the paper's gait, and that takes more than the power allowed.
 static bool beyond_power(const heading_job *job, const heading_trial *trial)
@@ -178,8 +176,7 @@ static void solver_line(const char *what, const char *scheme, const moray_headin
     snprintf(text, size, "%s: %s", what, line);
 }
 
-// ---- Standard output
-// --------------------------------------------------------------------------------------------------
+// ---- Standard output -----------------------------------------------------------------------------------------------
 
 static void print_all(const heading_job *job, const report_tables *t)
 {
@@ -213,8 +210,7 @@ static void print_all(const heading_job *job, const report_tables *t)
     }
 }
 
-// ---- Files
-// ------------------------------------------------------------------------------------------------------------
+// ---- Files ---------------------------------------------------------------------------------------------------------
 
 static moray_status write_files(heading_job *job, const report_tables *t, const moray_json *json)
 {

@@ -7,8 +7,7 @@ typedef struct accuracy {
 } accuracy;
 static const accuracy rough = {1e-6, 10}, careful = {1e-8, 20};
 
-// ---- Swimming
-// ---------------------------------------------------------------------------------------------------------
+// ---- Swimming ------------------------------------------------------------------------------------------------------
 
 static moray_status swim(const heading_job *job, heading_trial *trial, moray_model model, accuracy how,
                          moray_voyage *voyage)
@@ -45,8 +44,7 @@ static moray_status score(const heading_job *job, heading_trial *trial, moray_mo
     return moray_ok();
 }
 
-// ---- Tuning
-// -----------------------------------------------------------------------------------------------------------
+// ---- Tuning --------------------------------------------------------------------------------------------------------
 
 typedef struct tuning {
     const heading_job *job;
@@ -93,8 +91,7 @@ static moray_status tune(const heading_job *job, heading_trial *trial)
     return moray_ok();
 }
 
-// ---- All
-// --------------------------------------------------------------------------------------------------------------
+// ---- All -----------------------------------------------------------------------------------------------------------
 
 static const char *const plan_names[] = {"control-oriented plan", "first-principles plan"};
 static const char *const both_names[] = {"control-or. plan + feedback", "first-pr. plan + feedback"};

@@ -24,8 +24,7 @@ moray_path_spec path_spec(const path_job *job, moray_model model, bool averaged)
                              .reach = job->reach};
 }
 
-// ---- What limits the robot
-// --------------------------------------------------------------------------------------------
+// ---- What limits the robot -----------------------------------------------------------------------------------------
 
 // Speed over ground along a course, crabbing.
 static double way(const path_job *job, double speed, double course)
@@ -132,8 +131,7 @@ static moray_status why_not(const path_job *job, const moray_path_plan *plan)
     return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
 }
 
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 static bool show_iteration(void *observer, const moray_progress *at)
 {

@@ -6,8 +6,7 @@
 static const char *const model_names[] = {"control-oriented", "first-principles"};
 enum { text_size = 1200 };
 
-// ---- Tables
-// -----------------------------------------------------------------------------------------------------------
+// ---- Tables --------------------------------------------------------------------------------------------------------
 
 enum { tables = 4, most_rows = 16 };
 
@@ -120,8 +119,7 @@ static void make_tables(const path_job *job, report_tables *t, char (*leg_names)
         t->table[k].rows = t->rows[k];
 }
 
-// ---- In words
-// ---------------------------------------------------------------------------------------------------------
+// ---- In words ------------------------------------------------------------------------------------------------------
 
 // The best on the first-principles model of guidance without a plan, or of the optimised.
 static const path_trial *best_trial(const path_job *job, bool sight)
@@ -167,8 +165,7 @@ static void print_solver(const char *what, const path_job *job, const moray_path
     printf("%s: %s\n", what, line);
 }
 
-// ---- Standard output
-// --------------------------------------------------------------------------------------------------
+// ---- Standard output -----------------------------------------------------------------------------------------------
 
 static void print_all(const path_job *job, const report_tables *t)
 {
@@ -196,8 +193,7 @@ static void print_all(const path_job *job, const report_tables *t)
     }
 }
 
-// ---- Figures
-// ----------------------------------------------------------------------------------------------------------
+// ---- Figures -------------------------------------------------------------------------------------------------------
 
 enum { shown = 3, path_points = 400 };
 
@@ -289,8 +285,7 @@ static moray_status draw(path_job *job)
     return status;
 }
 
-// ---- Files
-// ------------------------------------------------------------------------------------------------------------
+// ---- Files ---------------------------------------------------------------------------------------------------------
 
 static moray_status write_files(path_job *job, const report_tables *t, const moray_json *json)
 {

@@ -8,8 +8,7 @@ static const double rough = 1e-6, careful = 1e-8; // tolerances of simulations
 static const double patience = 1.5;               // times the duration of the plan, before the end is given up
 enum { per_second = 20 };
 
-// ---- Helms
-// ------------------------------------------------------------------------------------------------------------
+// ---- Helms ---------------------------------------------------------------------------------------------------------
 
 // All that a helm may need, for one trial on one model.
 typedef struct helmsman {
@@ -98,8 +97,7 @@ double path_real_time(const path_job *job, const path_trial *trial, const moray_
     return record->plans * job->replan_periods * period / record->seconds;
 }
 
-// ---- Swimming
-// ---------------------------------------------------------------------------------------------------------
+// ---- Swimming ------------------------------------------------------------------------------------------------------
 
 static moray_status swim(const path_job *job, path_trial *trial, moray_model model, double tolerance,
                          moray_voyage *voyage)
@@ -145,8 +143,7 @@ static moray_status score(const path_job *job, path_trial *trial, moray_model mo
     return moray_ok();
 }
 
-// ---- Tuning
-// -----------------------------------------------------------------------------------------------------------
+// ---- Tuning --------------------------------------------------------------------------------------------------------
 
 enum { most = 4 };
 
@@ -221,8 +218,7 @@ static moray_status tune(const path_job *job, path_trial *trial, const path_tria
     return tune_from(job, trial, again);
 }
 
-// ---- All
-// --------------------------------------------------------------------------------------------------------------
+// ---- All -----------------------------------------------------------------------------------------------------------
 
 static const char *const plan_names[] = {"control-oriented plan", "first-principles plan"};
 static const char *const both_names[] = {"control-or. plan + feedback", "first-pr. plan + feedback"};

@@ -69,8 +69,7 @@ steer_saturation steer_saturation_of(const moray_solution *solution, const moray
 // The first sentences of a solution's diagnosis, on one line.
 void steer_diagnosis(const moray_solution *solution, char *text, size_t size);
 
-// ---- Gaits and models
-// ----------------------------------------------------------------------------------------------------
+// ---- Gaits and models ----------------------------------------------------------------------------------------------
 
 // From *gait to the fastest one of the first-principles model straight ahead, within the ranges and the power [W].
 // Error: those of moray_gait_search_new and _run; MORAY_NOT_SOLVED when no gait gets by with the power.
@@ -93,8 +92,7 @@ bool steer_go_on(void *observer, const moray_search_progress *progress);
 // MORAY_INTERRUPTED after Ctrl-C.
 moray_status steer_interruption(void);
 
-// ---- Figures
-// ----------------------------------------------------------------------------------------------------------
+// ---- Figures -------------------------------------------------------------------------------------------------------
 
 // A voyage to be drawn.
 typedef struct steer_curve {

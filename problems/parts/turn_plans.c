@@ -28,8 +28,7 @@ static moray_turn_spec spec_of(const turn_job *job, moray_model model, bool aver
                              .steering = job->weight_steering};
 }
 
-// ---- What limits the robot
-// --------------------------------------------------------------------------------------------
+// ---- What limits the robot -----------------------------------------------------------------------------------------
 
 void turn_explain(const turn_job *job, char *text, size_t size)
 {
@@ -70,8 +69,7 @@ static moray_status why_not(const turn_job *job, const moray_turn_plan *plan)
     return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
 }
 
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 static bool show_iteration(void *observer, const moray_progress *at)
 {

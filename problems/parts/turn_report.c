@@ -6,8 +6,7 @@
 static const char *const model_names[] = {"control-oriented", "first-principles"};
 enum { text_size = 1200 };
 
-// ---- Table, words
-// ----------------------------------------------------------------------------------------------------
+// ---- Table, words --------------------------------------------------------------------------------------------------
 
 static moray_table make_table(const turn_job *job, moray_table_row *rows)
 {
@@ -96,8 +95,7 @@ static void print_all(const turn_job *job, const moray_table *table)
     }
 }
 
-// ---- JSON
-// -------------------------------------------------------------------------------------------------------------
+// ---- JSON ----------------------------------------------------------------------------------------------------------
 
 static void json_score(moray_json *json, const turn_job *job, const char *key, const turn_score *score)
 {
@@ -167,8 +165,7 @@ static moray_json *make_json(const turn_job *job)
     return json;
 }
 
-// ---- Figures
-// ----------------------------------------------------------------------------------------------------------
+// ---- Figures -------------------------------------------------------------------------------------------------------
 
 enum { shown = 3 };
 
@@ -241,8 +238,7 @@ static moray_status draw(const turn_job *job)
     return status;
 }
 
-// ---- Files
-// ------------------------------------------------------------------------------------------------------------
+// ---- Files ---------------------------------------------------------------------------------------------------------
 
 static moray_status write_files(turn_job *job, const moray_table *table, const moray_json *json)
 {

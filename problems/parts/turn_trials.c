@@ -8,8 +8,7 @@ static const double rough = 1e-6, careful = 1e-8; // tolerances of simulations
 static const int periods_after = 6;               // swum behind the last plan
 enum { per_second = 20 };
 
-// ---- Helms
-// ------------------------------------------------------------------------------------------------------------
+// ---- Helms ---------------------------------------------------------------------------------------------------------
 
 // The offset ramps up to its limit, stays there, goes to the other limit if it brakes, and comes to rest.
 typedef struct bang {
@@ -84,8 +83,7 @@ static void set_helm(const turn_job *job, const turn_trial *trial, moray_model m
         h->helm = (moray_helm){.offset = bang_offset, .self = &h->bang};
 }
 
-// ---- Swimming
-// ---------------------------------------------------------------------------------------------------------
+// ---- Swimming ------------------------------------------------------------------------------------------------------
 
 static moray_status swim(const turn_job *job, const turn_trial *trial, moray_model model, double tolerance,
                          moray_voyage *voyage)
@@ -142,8 +140,7 @@ static moray_status score(const turn_job *job, turn_trial *trial, moray_model mo
     return moray_ok();
 }
 
-// ---- Tuning
-// -----------------------------------------------------------------------------------------------------------
+// ---- Tuning --------------------------------------------------------------------------------------------------------
 
 typedef struct tuning {
     const turn_job *job;
@@ -203,8 +200,7 @@ static moray_status tune(const turn_job *job, turn_trial *trial, const turn_tria
     return moray_ok();
 }
 
-// ---- All
-// --------------------------------------------------------------------------------------------------------------
+// ---- All -----------------------------------------------------------------------------------------------------------
 
 static const char *const plan_names[] = {"control-oriented plan", "first-principles plan"};
 static const char *const both_names[] = {"control-or. plan + feedback", "first-pr. plan + feedback"};

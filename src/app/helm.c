@@ -6,8 +6,7 @@
 
 #include "moray/orbit.h"
 
-// ---- Straight swimming
-// ------------------------------------------------------------------------------------------------
+// ---- Straight swimming ---------------------------------------------------------------------------------------------
 
 enum { samples = 72 };
 
@@ -101,8 +100,7 @@ double moray_cruise_heading(const moray_cruise *cruise, double t, double heading
     return heading - cruise->undulation[0] * cos(phase) - cruise->undulation[1] * sin(phase);
 }
 
-// ---- Plans carried out
-// ------------------------------------------------------------------------------------------------
+// ---- Plans carried out ---------------------------------------------------------------------------------------------
 
 moray_offset moray_plan_offset(const moray_plan *plan, double t)
 {
@@ -123,8 +121,7 @@ moray_helm moray_plan_helm(const moray_plan *plan)
     return (moray_helm){.offset = blind, .self = (void *)plan};
 }
 
-// ---- Feedback
-// ---------------------------------------------------------------------------------------------------------
+// ---- Feedback ------------------------------------------------------------------------------------------------------
 
 static moray_offset straight(double t, const void *self)
 {

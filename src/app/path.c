@@ -9,8 +9,7 @@
 
 static const double degree = M_PI / 180;
 
-// ---- Reading
-// ----------------------------------------------------------------------------------------------------------
+// ---- Reading -------------------------------------------------------------------------------------------------------
 
 typedef struct waypoints {
     double (*at)[2];
@@ -78,8 +77,7 @@ static moray_status read_waypoints(waypoints *points, const char *text)
     return status;
 }
 
-// ---- Legs and arcs
-// ----------------------------------------------------------------------------------------------------
+// ---- Legs and arcs -------------------------------------------------------------------------------------------------
 
 static void add_piece(moray_path *path, int leg, double x, double y, double course, double length, double curvature)
 {
@@ -160,8 +158,7 @@ void moray_path_free(moray_path *path)
     *path = (moray_path){0};
 }
 
-// ---- Points
-// -----------------------------------------------------------------------------------------------------------
+// ---- Points --------------------------------------------------------------------------------------------------------
 
 moray_path_point moray_path_at(const moray_path *path, moray_num along)
 {

@@ -8,8 +8,7 @@
 
 enum { states = MORAY_STEERING_STATES };
 
-// ---- Guesses
-// ----------------------------------------------------------------------------------------------------------
+// ---- Guesses -------------------------------------------------------------------------------------------------------
 
 // A point that swims where it heads at the cruise's speed, and turns no faster than the robot.
 typedef struct dot {
@@ -77,8 +76,7 @@ static moray_status guess_by_dot(steering_guess *guess, const moray_path_spec *s
     return moray_ok();
 }
 
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 // Begins in the plan's cruise at the position; averaged, without its undulation.
 static moray_status pose_problem(moray_path_plan *plan, moray_path_spec *spec, const double position[2], double heading)
@@ -158,8 +156,7 @@ void moray_path_plan_free(moray_path_plan *plan)
     *plan = (moray_path_plan){0};
 }
 
-// ---- Receding horizon
-// ---------------------------------------------------------------------------------------------------
+// ---- Receding horizon ----------------------------------------------------------------------------------------------
 
 static moray_status make_again(void *self, double t, const double state[states], void **problem, const moray_ocp **ocp)
 {

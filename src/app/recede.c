@@ -27,8 +27,7 @@ static double processor(void)
     return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
 }
 
-// ---- From the swimmer to the plan
-// -------------------------------------------------------------------------------------
+// ---- From the swimmer to the plan ----------------------------------------------------------------------------------
 
 // Undulation of the heading and its rate at t.
 static void undulation(const moray_cruise *cruise, double t, double *angle, double *rate)
@@ -62,8 +61,7 @@ static void measure(const moray_recede *r, const moray_swim_sample *sample, doub
     state[7] = fmin(fmax(state[7], -limits->offset_rate), limits->offset_rate);
 }
 
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 // The last plan, moved on; without one a straight line from the start.
 static moray_guess guess_of(moray_recede *r, double t, const double state[states], moray_samples *samples, double *s)
@@ -162,8 +160,7 @@ moray_helm moray_recede_helm(moray_recede *recede)
         .offset = offset, .look = look, .period = spec->look > 0 ? spec->look : spec->interval, .self = recede};
 }
 
-// ---- Handling
-// ---------------------------------------------------------------------------------------------------------
+// ---- Handling ------------------------------------------------------------------------------------------------------
 
 moray_status moray_recede_new(moray_recede **result, const moray_recede_spec *spec)
 {
@@ -195,8 +192,7 @@ const moray_recede_record *moray_recede_record_of(const moray_recede *recede)
     return &recede->record;
 }
 
-// ---- Heading tracking
-// -------------------------------------------------------------------------------------------------
+// ---- Heading tracking ----------------------------------------------------------------------------------------------
 
 static moray_status make_heading(void *self, double t, const double state[states], void **problem,
                                  const moray_ocp **ocp)

@@ -58,8 +58,7 @@ static bool fill(struct track *t, int p)
     return true;
 }
 
-// ---- Figures
-// ---------------------------------------------------------------------------------------------------------
+// ---- Figures -------------------------------------------------------------------------------------------------------
 
 // "states", "states_ascent", "states_ascent_2"; what is no letter or digit becomes a dash.
 static void figure_name(const struct track *t, const char *kind, int p, int group, char *name, size_t size)

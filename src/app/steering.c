@@ -38,8 +38,7 @@ moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const 
     return mapped;
 }
 
-// ---- Checks
-// -----------------------------------------------------------------------------------------------------------
+// ---- Checks --------------------------------------------------------------------------------------------------------
 
 static moray_status check_range(const char *name, moray_bounds range, double least, double most, double unit)
 {
@@ -75,8 +74,7 @@ static moray_status check_spec(const moray_steering_spec *spec)
     return moray_ok();
 }
 
-// ---- Ends
-// -------------------------------------------------------------------------------------------------------------
+// ---- Ends ----------------------------------------------------------------------------------------------------------
 
 // a / (L cos(delta/2)) = sin theta_max of (33), or alpha / (2 sin(delta/2)) = theta_max of (27).
 static moray_num amplitude_event(const moray_steering_spec *spec, const moray_num *s)
@@ -108,8 +106,7 @@ static void ends(const moray_ends *at, moray_verdict *out, const void *data)
     out->e[1] = work / duration;
 }
 
-// ---- Building
-// ---------------------------------------------------------------------------------------------------------
+// ---- Building ------------------------------------------------------------------------------------------------------
 
 // The task's functions on the inputs of the phase, joined to the plant's.
 static moray_status make_plant(moray_steering *problem)
@@ -245,8 +242,7 @@ void moray_steering_free(moray_steering *problem)
     free(problem);
 }
 
-// ---- Reading
-// ----------------------------------------------------------------------------------------------------------
+// ---- Reading -------------------------------------------------------------------------------------------------------
 
 const moray_ocp *moray_steering_ocp(const moray_steering *problem)
 {

@@ -100,8 +100,7 @@ void moray_turn_free(moray_turn *problem)
     *problem = (moray_turn){0};
 }
 
-// ---- Plans
-// ------------------------------------------------------------------------------------------------------------
+// ---- Plans ---------------------------------------------------------------------------------------------------------
 
 // How long it takes at least, roughly.
 static double likely(const moray_turn_spec *spec, double speed, double turn_rate)

@@ -160,8 +160,7 @@ static int jacobian_pattern(const free_plant *plant, moray_pattern *pattern)
     return put_full_row(plant, pattern, at, nx + plant->size.nc);
 }
 
-// ---- Hessian: by columns, those of all that is not ubar
-// --------------------------------------------------------------
+// ---- Hessian: by columns, those of all that is not ubar ------------------------------------------------------------
 
 static void hessian(void *self, const double *in, const double *weight, double *values)
 {
