@@ -225,7 +225,8 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
     if (!set_options(problem, session->nlp, settings, session->last))
         return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
                            settings->tolerance, settings->max_iterations, settings->print_level);
-    if (settings->timing && ipopt_timing_open(timing) && OpenIpoptOutputFile(problem, timing->path, ipopt_timing_level))
+    if (settings->timing && moray_ipopt_timing_open(timing) &&
+        OpenIpoptOutputFile(problem, timing->path, ipopt_timing_level))
         AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
     session->info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective,
                                                    iterate->lambda, iterate->z_lower, iterate->z_upper, session));
@@ -258,7 +259,7 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     free(block);
     info->seconds = now(CLOCK_MONOTONIC) - start;
     info->cpu_seconds = cpu() - cpu_start;
-    info->linear_seconds = ipopt_timing_close(&timing);
+    info->linear_seconds = moray_ipopt_timing_close(&timing);
     return status;
 }
 
