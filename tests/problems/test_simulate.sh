@@ -95,7 +95,7 @@ turn() {
 }
 run --current 0.1,0.1 --schedule "$root/problems/schedules/turning.csv" --duration 190 --model fp
 found end_position_m 38.27 0.1
-turn phi0_deg -1.1401 1.1401 complex 26.2 38.27 23.22
+turn phi0_deg -1.1401 1.1401 fp 26.2 38.27 23.22
 turn phi0_m 0.0038063 -0.0038063 control 25.3 39.10 23.27
 turn phi0_deg -1.1401 1.1401 control 25.3 39.10 23.27
 
