@@ -143,7 +143,6 @@ static moray_status match_by(trier *by, moray_gait *gait, const aim *to, moray_s
                        to->name, to->target, to->unit, to->is_power ? steady->power : steady->speed, gait->omega);
 }
 
-// The orbit's offset is the one that holds the heading, so that a gait that turns has none.
 static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
                                     moray_steady *steady)
 {
@@ -159,8 +158,8 @@ static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *g
     return status;
 }
 
-// The search goes over orbits, which take a hundredth of the time of a simulation from rest; a simulation then has to
-// find the same. Where there is no orbit, or another, the search is by simulation.
+// The search goes over orbits, which take a hundredth of the time of a simulation from rest; what is returned is
+// simulated, from there on, so that it does not depend on there being an orbit or on its offset being the gait's.
 static moray_status match(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
                           moray_steady *steady)
 {
@@ -169,11 +168,8 @@ static moray_status match(const moray_swim_setup *setup, moray_gait *gait, doubl
                            to->unit);
     trier by = {.setup = setup, .course = course, .heading = course};
     moray_gait tried = *gait;
-    if (!gait->series && gait->offset == 0 && !moray_failed(match_on_orbits(setup, &tried, course, to, steady)) &&
-        !moray_failed(try_gait(&by, &tried, steady)) && fabs(mismatch(to, steady)) <= MATCHED) {
+    if (!gait->series && !moray_failed(match_on_orbits(setup, &tried, course, to, steady)))
         gait->omega = tried.omega;
-        return moray_ok();
-    }
     return match_by(&by, gait, to, steady);
 }
 
