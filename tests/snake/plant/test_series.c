@@ -57,9 +57,10 @@ static void reference(void *self, const num *in, num *out)
     fp_link_z links[MAX_LINKS];
     moray_fp_angles_z(N, in[j.angle], j.phi[0], theta);
     moray_fp_angles_z(N, in[j.rate], j.phi[1], dtheta);
+    const fp_robot robot = moray_fp_robot_of(&spec->robot);
     const fp_motion_z motion = {theta, dtheta, in[j.rate + 1], in[j.rate + 2], j.phi[2]};
-    moray_fp_accelerations_z(&spec->robot, spec->current, &motion, links, ddtheta, ddp);
-    const num power = moray_fp_torques_z(&spec->robot, &motion, links, ddtheta, u);
+    moray_fp_accelerations_z(&robot, spec->current, &motion, links, ddtheta, ddp);
+    const num power = moray_fp_torques_z(&robot, &motion, links, ddtheta, u);
     for (int i = 0; i < N; i++)
         mean += ddtheta[i] / N;
     const num rates[] = {mean, ddp[0], ddp[1]};
