@@ -95,6 +95,10 @@ static void evaluate(void *context, const double complex *in, double complex *ou
     out[3] = b->turning * y.v_tr * y.s - b->damping * v_theta; // (20)
     out[4] = dv_t;
     out[5] = dv_n;
+    if (b->frame != 0) {
+        out[4] += v_theta * v_n;
+        out[5] -= v_theta * v_t;
+    }
     out[6] = in[7];
     out[7] = in[8];
     out[8] = b->c_n * (a2 * omega * omega * of.G_1 / 2 + in[7] * in[7] * self->G_0) +
