@@ -41,8 +41,9 @@ static bool swim(const scene *s, double *accelerations, double *u)
 static void check_maximal_coordinates(random_seed *seed, int N)
 {
     double accelerations_error = 0, torques_error = 0, forward_error = 0;
-    for (int trial = 0; trial < 5; trial++) {
-        const scene s = random_scene(seed, N);
+    for (int trial = 0; trial < HYDRO_VARIANTS; trial++) {
+        scene s = random_scene(seed, N);
+        s.robot.hydro = hydro_variant(trial);
         const maximal_state state = maximal_from_reduced(&s.robot, s.V, s.x);
         double a[MAX_STATES], a_want[MAX_STATES], u[MAX_LINKS], u_want[MAX_LINKS];
         CHECK(swim(&s, a, u), "state %d of %d links is regular", trial, N);
@@ -255,9 +256,11 @@ static void difference(const scene *s, const scene *direction, double h, double 
         out[k] = (ends[1][k] - ends[0][k]) / (2 * h);
 }
 
-static void check_number_types(random_seed *seed, int N)
+static void check_number_types(random_seed *seed, int N, moray_hydrodynamics hydro)
 {
-    const scene s = random_scene(seed, N), direction = random_scene(seed, N);
+    scene s = random_scene(seed, N);
+    const scene direction = random_scene(seed, N);
+    s.robot.hydro = hydro;
     const int n_out = 2 * N + 2;
     const double tiny = 1e-100, h = 1e-3;
     double complex x[MAX_STATES], ubar[MAX_LINKS], out_z[MAX_OUT];
@@ -299,7 +302,8 @@ int main(void)
         check_moving_frame(&seed, N, false);
         check_moving_frame(&seed, N, true);
         check_turned(&seed, N);
-        check_number_types(&seed, N);
+        check_number_types(&seed, N, hydro_variant(0));
+        check_number_types(&seed, N, moray_hydrodynamics_consistent());
     }
     return tap_done();
 }
