@@ -289,9 +289,10 @@ static void check_number_types(random_seed *seed, int N, moray_hydrodynamics hyd
 int main(void)
 {
     random_seed seed = 20;
+    for (int N = 2; N <= MAX_LINKS; N++)
+        check_maximal_coordinates(&seed, N);
     for (int k = 0; k < ROBOT_SIZES; k++) {
         const int N = robot_links[k];
-        check_maximal_coordinates(&seed, N);
         check_energy_balance(&seed, N, false);
         check_energy_balance(&seed, N, true);
         check_straight(&seed, N, 0, 0);
