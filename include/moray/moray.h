@@ -7,6 +7,7 @@
 #include "moray/app/program.h"
 #include "moray/app/results.h"
 #include "moray/app/run.h"
+#include "moray/control/path.h"
 #include "moray/dense.h"
 #include "moray/map.h"
 #include "moray/nlp.h"

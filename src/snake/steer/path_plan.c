@@ -24,8 +24,8 @@ static void step(dot *d, double seconds)
     double across;
     moray_path_project(d->spec->path, d->x, d->y, &d->along, &across);
     const double course = creal(moray_path_at(d->spec->path, d->along + 0.5 * lookahead).course);
-    const double crab = asin((V[1] * cos(course) - V[0] * sin(course)) / d->speed);
-    const double error = remainder(course - crab - atan(across / lookahead) - d->heading, 2 * M_PI);
+    const double crab = moray_crab_angle(d->speed, V, course);
+    const double error = remainder(course + crab - atan(across / lookahead) - d->heading, 2 * M_PI);
     const double fastest = fabs(d->turn_rate);
     d->rate = fmin(fmax(error / settling, -fastest), fastest);
     d->x += seconds * (d->speed * cos(d->heading) + V[0]);
