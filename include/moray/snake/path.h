@@ -87,7 +87,7 @@ typedef struct moray_guidance {
     double plan_scale;           // offsets of the swimmer per offset of the plan
     double lookahead, ahead;     // [m]
     double gain;                 // of the integral [m/s]
-    double period;               // between two looks [s]
+    double period;               // between two measurements [s]
     double along, integral;      // now; integral y [m]
 } moray_guidance;
 

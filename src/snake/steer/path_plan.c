@@ -158,7 +158,7 @@ void moray_path_plan_free(moray_path_plan *plan)
 
 // ---- Receding horizon ----------------------------------------------------------------------------------------------
 
-static moray_status make_again(void *self, double t, const double state[states], void **problem, const moray_ocp **ocp)
+static moray_status make_again(void *self, double t, const double *state, void **problem, const moray_ocp **ocp)
 {
     moray_path_replanner *r = self;
     double across;
@@ -187,5 +187,10 @@ static void free_again(void *problem)
 
 moray_replanner moray_path_replan(moray_path_replanner *replanner)
 {
-    return (moray_replanner){.make = make_again, .free = free_again, .self = replanner, .nu = 2};
+    return (moray_replanner){.nx = states,
+                             .nu = 2,
+                             .ns = MORAY_STEERING_PARAMETERS,
+                             .make = make_again,
+                             .free = free_again,
+                             .self = replanner};
 }

@@ -175,7 +175,7 @@ static void test_score(void)
     enum { n = 60 };
     double t[n], energy[n];
     moray_pose pose[n] = {{0}};
-    const moray_closed_loop closed_loop = {.track = {.n = n, .t = t, .energy = energy, .pose = pose}};
+    const moray_swim_closed_loop closed_loop = {.track = {.n = n, .t = t, .energy = energy, .pose = pose}};
     moray_path path;
     CHECK_OK(moray_path_read(&path, "0,0 10,0", 1), "a leg");
     for (int k = 0; k < n; k++) {
@@ -184,7 +184,7 @@ static void test_score(void)
         pose[k].p_x = 0.25 * k - 0.1;
         pose[k].p_y = k < 8 ? 0.3 : -0.1;
     }
-    const moray_path_score score = moray_closed_loop_path_score(&closed_loop, &path, 2);
+    const moray_path_score score = moray_swim_closed_loop_path_score(&closed_loop, &path, 2);
     CHECK_NEAR(score.time, 10.1 / 0.25, 1e-12, "past the end, between two samples");
     CHECK_NEAR(score.power, 0.2, 1e-14, "power");
     CHECK_NEAR(score.settled_rms, 0.1, 1e-14, "settled");
@@ -198,8 +198,8 @@ static void test_score(void)
             CHECK(false, "sample %d: %s", k, on ? "goes on" : "ends");
     }
     CHECK_NEAR(seeker.along, 0.25 * 41 - 0.1, 1e-9, "where it was last");
-    const moray_path_score short_of = moray_closed_loop_path_score(
-        &(moray_closed_loop){.track = {.n = 30, .t = t, .energy = energy, .pose = pose}}, &path, 2);
+    const moray_path_score short_of = moray_swim_closed_loop_path_score(
+        &(moray_swim_closed_loop){.track = {.n = 30, .t = t, .energy = energy, .pose = pose}}, &path, 2);
     CHECK(isnan(short_of.time), "no time where the end is not reached");
     moray_path_free(&path);
 }
@@ -209,17 +209,17 @@ static void test_last_sample(void)
 {
     const moray_robot robot = moray_robot_paper();
     moray_straight_motion straight;
-    moray_closed_loop closed_loop;
+    moray_swim_closed_loop closed_loop;
     int n = 3;
     const double duration = 0.295627;
     while (n < 5000 && !(duration * n / n > duration))
         n++;
     CHECK(n < 5000, "%d intervals of %.6g s come out longer", n, duration);
     CHECK_OK(moray_straight_motion_find(&straight, &robot, MORAY_CONTROL_ORIENTED, paper_gait(&robot)), "straight");
-    const moray_closed_loop_spec plan = {
+    const moray_swim_closed_loop_spec plan = {
         .robot = &robot, .straight = &straight, .duration = duration, .intervals = n, .tolerance = 1e-6};
-    CHECK_OK(moray_closed_loop_run(&closed_loop, &plan), "a closed_loop of so many");
-    moray_closed_loop_free(&closed_loop);
+    CHECK_OK(moray_swim_closed_loop_run(&closed_loop, &plan), "a closed_loop of so many");
+    moray_swim_closed_loop_free(&closed_loop);
 }
 
 // ---- Guidance ------------------------------------------------------------------------------------------------------
