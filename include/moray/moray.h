@@ -9,6 +9,7 @@
 #include "moray/app/run.h"
 #include "moray/control/closed_loop.h"
 #include "moray/control/path.h"
+#include "moray/control/periodic_orbit.h"
 #include "moray/control/receding_horizon.h"
 #include "moray/dense.h"
 #include "moray/map.h"
