@@ -89,7 +89,8 @@ static void drop(const moray_receding_horizon *r, void *problem, moray_solution 
         r->spec.replanner.free(problem);
 }
 
-// Puts a new plan in force; `why` tells the failure when the old one stays. Error: problems of other sizes.
+// Puts a new plan in force; `why` tells the failure when the old one stays. Error: problems of other sizes; no memory,
+// which is no failure of the plan.
 static moray_status plan(moray_receding_horizon *r, double t, const double *state, int *iterations, moray_status *why)
 {
     const moray_replanner *replanner = &r->spec.replanner;
@@ -98,13 +99,15 @@ static moray_status plan(moray_receding_horizon *r, double t, const double *stat
     moray_solution *solution = NULL;
     *why = replanner->make(replanner->self, t, state, &problem, &ocp);
     if (moray_failed(*why))
-        return moray_ok();
-    const moray_status sizes = check_sizes(replanner, ocp, "the problem");
-    if (!moray_failed(sizes))
+        return why->code == MORAY_MEMORY ? *why : moray_ok();
+    moray_status status = check_sizes(replanner, ocp, "the problem");
+    if (!moray_failed(status))
         *why = solve(r, t, state, ocp, &solution, iterations);
-    if (moray_failed(sizes) || moray_failed(*why)) {
+    if (why->code == MORAY_MEMORY)
+        status = *why;
+    if (moray_failed(status) || moray_failed(*why)) {
         drop(r, problem, solution);
-        return sizes;
+        return status;
     }
     drop(r, r->problem, r->solution);
     r->problem = problem;
