@@ -100,7 +100,7 @@ moray_status steer_interruption(void);
 // A closed_loop to be drawn.
 typedef struct steer_curve {
     const char *label;
-    const moray_closed_loop *closed_loop;
+    const moray_swim_closed_loop *closed_loop;
 } steer_curve;
 
 // Draws a figure; where gnuplot does not, says so on standard error unless quiet. Error: MORAY_MEMORY, MORAY_INPUT.
@@ -111,9 +111,10 @@ moray_status steer_draw_path(const moray_common *common, const char *program, co
                              const moray_curve *more, int n_more);
 
 // joints.svg: joints at the tail, in the middle and at the head while the closed_loop steers most.
-moray_status steer_draw_joints(const moray_common *common, const char *program, const moray_closed_loop *closed_loop);
+moray_status steer_draw_joints(const moray_common *common, const char *program,
+                               const moray_swim_closed_loop *closed_loop);
 
 // trajectory.csv of a closed_loop. Error: MORAY_IO, MORAY_MEMORY.
-moray_status steer_write_trajectory(const moray_common *common, const moray_closed_loop *closed_loop);
+moray_status steer_write_trajectory(const moray_common *common, const moray_swim_closed_loop *closed_loop);
 
 #endif

@@ -48,7 +48,7 @@ static void make_arrow(const double current[2], const moray_curve *curves, int n
 moray_status steer_draw_path(const moray_common *common, const char *program, const steer_curve *curves, int n,
                              const moray_curve *more, int n_more)
 {
-    const moray_closed_loop *last = curves[n - 1].closed_loop;
+    const moray_swim_closed_loop *last = curves[n - 1].closed_loop;
     moray_curve all[most_curves];
     double *x, *y, arrow_x[arrow_points], arrow_y[arrow_points];
     int points, used = 0;
@@ -81,7 +81,7 @@ moray_status steer_draw_path(const moray_common *common, const char *program, co
 }
 
 // Ten seconds either side of the largest offset: first sample and how many.
-static int busiest(const moray_closed_loop *closed_loop, int *first)
+static int busiest(const moray_swim_closed_loop *closed_loop, int *first)
 {
     const moray_swim_track *track = &closed_loop->track;
     const double around = 10;
@@ -96,7 +96,8 @@ static int busiest(const moray_closed_loop *closed_loop, int *first)
     return n;
 }
 
-moray_status steer_draw_joints(const moray_common *common, const char *program, const moray_closed_loop *closed_loop)
+moray_status steer_draw_joints(const moray_common *common, const char *program,
+                               const moray_swim_closed_loop *closed_loop)
 {
     enum { shown = 3 };
     const moray_swim_track *track = &closed_loop->track;
@@ -129,7 +130,7 @@ moray_status steer_draw_joints(const moray_common *common, const char *program, 
     return status;
 }
 
-moray_status steer_write_trajectory(const moray_common *common, const moray_closed_loop *closed_loop)
+moray_status steer_write_trajectory(const moray_common *common, const moray_swim_closed_loop *closed_loop)
 {
     const moray_swim_track *track = &closed_loop->track;
     const int pose = sizeof *track->pose / sizeof(double);

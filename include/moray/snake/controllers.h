@@ -45,7 +45,7 @@ typedef struct moray_plan {
 moray_offset moray_plan_offset(const moray_plan *plan, double t);
 
 // Blindly. The plan must outlive the controller.
-moray_controller moray_plan_controller(const moray_plan *plan);
+moray_swim_controller moray_plan_controller(const moray_plan *plan);
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------
 
@@ -63,6 +63,6 @@ typedef struct moray_feedback {
 } moray_feedback;
 
 // The feedback must outlive the controller.
-moray_controller moray_feedback_controller(moray_feedback *feedback);
+moray_swim_controller moray_feedback_controller(moray_feedback *feedback);
 
 #endif

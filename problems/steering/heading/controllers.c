@@ -87,22 +87,22 @@ static moray_status set_receding(const heading_job *job, const heading_trial *tr
     h->replanner.spec.limits = replanning_limits(job, trial, model, scale);
     h->replanner.spec.max_error = MORAY_INFINITY;
     memcpy(h->replanner.spec.undulation, straight->undulation, sizeof straight->undulation);
-    moray_receding_horizon_spec spec = {.links = job->common.robot.links,
-                                        .replanner = moray_heading_replan(&h->replanner),
-                                        .settings = moray_settings_default(),
-                                        .limits = &h->replanner.spec.limits,
-                                        .planned = straight,
-                                        .measured = &job->straight[trial->gait][model],
-                                        .scale = scale,
-                                        .horizon = horizon,
-                                        .interval = job->replan_periods * period,
-                                        .look = trial->preview ? 0 : look_every};
+    moray_swim_receding_horizon_spec spec = {.links = job->common.robot.links,
+                                             .replanner = moray_heading_replan(&h->replanner),
+                                             .settings = moray_settings_default(),
+                                             .limits = &h->replanner.spec.limits,
+                                             .planned = straight,
+                                             .measured = &job->straight[trial->gait][model],
+                                             .scale = scale,
+                                             .horizon = horizon,
+                                             .interval = job->replan_periods * period,
+                                             .watch = trial->preview ? 0 : look_every};
     spec.settings.scheme = "radau3";
     spec.settings.intervals = (int)ceil(4 * job->look_ahead_periods);
     spec.settings.tolerance = 1e-6;
     spec.settings.max_iterations = 200;
-    MORAY_TRY(moray_receding_horizon_new(&h->receding, &spec));
-    h->controller = moray_receding_horizon_controller(h->receding);
+    MORAY_TRY(moray_swim_receding_horizon_new(&h->receding, &spec));
+    h->controller = moray_swim_receding_horizon_controller(h->receding);
     return moray_ok();
 }
 

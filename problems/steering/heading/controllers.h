@@ -18,12 +18,12 @@ typedef struct heading_steersman {
     moray_plan plan;
     moray_feedback feedback;
     moray_heading_replanner replanner;
-    moray_receding_horizon *receding;
-    moray_controller controller;
+    moray_swim_receding_horizon *receding;
+    moray_swim_controller controller;
 } heading_steersman;
 
 // The controller of a trial on a model, in h->controller; h must stay where it is, and h->receding be freed. Error:
-// that of moray_receding_horizon_new.
+// that of moray_swim_receding_horizon_new.
 moray_status heading_set_controller(const heading_job *job, const heading_trial *trial, moray_model model,
                                     heading_steersman *h);
 

@@ -41,13 +41,14 @@ static moray_offset steer(double t, const void *self)
 }
 
 // The simulation stops here: every edge of the offset is a multiple of the period.
-static void look(const moray_swim_sample *sample, void *self)
+static moray_status measure(const moray_swim_sample *sample, void *self)
 {
     (void)sample, (void)self;
+    return moray_ok();
 }
 
 static moray_status make_reference(heading_job *job, const moray_straight_motion *straight,
-                                   const moray_closed_loop *closed_loop)
+                                   const moray_swim_closed_loop *closed_loop)
 {
     const int n = closed_loop->track.n;
     double *block = malloc(2 * (size_t)n * sizeof *block);
@@ -64,9 +65,9 @@ static moray_status make_reference(heading_job *job, const moray_straight_motion
 moray_status heading_fig8_prepare(heading_job *job)
 {
     const moray_gait gait = gait_of(job, MORAY_FIRST_PRINCIPLES);
-    const moray_controller controller = {.offset = steer, .look = look, .period = 10, .self = job};
+    const moray_swim_controller controller = {.offset = steer, .measure = measure, .period = 10, .self = job};
     moray_straight_motion straight;
-    moray_closed_loop closed_loop;
+    moray_swim_closed_loop closed_loop;
     for (int side = 0; side < 2; side++) {
         job->input.theta_max[side] = theta_max;
         job->input.omega[side] = omega;
@@ -75,16 +76,16 @@ moray_status heading_fig8_prepare(heading_job *job)
     if (isnan(job->horizon))
         job->horizon = horizon;
     MORAY_TRY(moray_straight_motion_find(&straight, &job->common.robot, MORAY_FIRST_PRINCIPLES, &gait));
-    const moray_closed_loop_spec plan = {.robot = &job->common.robot,
-                                         .straight = &straight,
-                                         .current = {job->common.current[0], job->common.current[1]},
-                                         .controller = &controller,
-                                         .duration = job->horizon,
-                                         .intervals = (int)ceil(per_second * job->horizon),
-                                         .tolerance = 1e-8};
-    MORAY_TRY(moray_closed_loop_run(&closed_loop, &plan));
+    const moray_swim_closed_loop_spec plan = {.robot = &job->common.robot,
+                                              .straight = &straight,
+                                              .current = {job->common.current[0], job->common.current[1]},
+                                              .controller = &controller,
+                                              .duration = job->horizon,
+                                              .intervals = (int)ceil(per_second * job->horizon),
+                                              .tolerance = 1e-8};
+    MORAY_TRY(moray_swim_closed_loop_run(&closed_loop, &plan));
     const moray_status status = make_reference(job, &straight, &closed_loop);
-    moray_closed_loop_free(&closed_loop);
+    moray_swim_closed_loop_free(&closed_loop);
     return status;
 }
 

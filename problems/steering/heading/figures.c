@@ -16,7 +16,7 @@ static void choose_shown(heading_job *job, heading_trial **trials)
 }
 
 static moray_status draw_over_time(const heading_job *job, heading_trial *const *trials,
-                                   const moray_closed_loop *closed_loops)
+                                   const moray_swim_closed_loop *closed_loops)
 {
     const int n = closed_loops->track.n;
     const double *t = closed_loops->track.t;
@@ -90,7 +90,8 @@ static moray_status draw_manoeuvre(const heading_job *job)
     return status;
 }
 
-static moray_status draw_shown(heading_job *job, heading_trial *const *trials, const moray_closed_loop *closed_loops)
+static moray_status draw_shown(heading_job *job, heading_trial *const *trials,
+                               const moray_swim_closed_loop *closed_loops)
 {
     const steer_curve paths[shown] = {
         {trials[0]->name, &closed_loops[0]}, {trials[1]->name, &closed_loops[1]}, {trials[2]->name, &closed_loops[2]}};
@@ -103,7 +104,7 @@ static moray_status draw_shown(heading_job *job, heading_trial *const *trials, c
 moray_status heading_draw(heading_job *job)
 {
     heading_trial *trials[shown];
-    moray_closed_loop closed_loops[shown] = {{0}};
+    moray_swim_closed_loop closed_loops[shown] = {{0}};
     moray_status status = moray_ok();
     choose_shown(job, trials);
     for (int k = 0; k < shown && !moray_failed(status); k++)
@@ -111,7 +112,7 @@ moray_status heading_draw(heading_job *job)
     if (!moray_failed(status))
         status = draw_shown(job, trials, closed_loops);
     for (int k = 0; k < shown; k++)
-        moray_closed_loop_free(&closed_loops[k]);
+        moray_swim_closed_loop_free(&closed_loops[k]);
     if (!moray_failed(status) && heading_is_fig8(job))
         status = draw_manoeuvre(job);
     return status;

@@ -71,7 +71,7 @@ moray_status heading_plan_last(heading_job *job);
 bool heading_is_fig8(const heading_job *job);
 
 // Sets gait, reference, and the horizon unless it is given. Error: those of moray_straight_motion_find and
-// moray_closed_loop_run.
+// moray_swim_closed_loop_run.
 moray_status heading_fig8_prepare(heading_job *job);
 
 // The paper's offset at t [m or rad].
@@ -103,14 +103,14 @@ void heading_explain(const heading_job *job, char *text, size_t size);
 
 void heading_choose_trials(heading_job *job);
 
-// Tunes and swims every trial not yet run whose gait and plan are known. Error: those of moray_closed_loop_run.
+// Tunes and swims every trial not yet run whose gait and plan are known. Error: those of moray_swim_closed_loop_run.
 moray_status heading_run_trials(heading_job *job);
 
 // Swims one of them again, to be drawn.
 moray_status heading_swim(const heading_job *job, heading_trial *trial, moray_model model,
-                          moray_closed_loop *closed_loop);
+                          moray_swim_closed_loop *closed_loop);
 
-// Figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of moray_closed_loop_run.
+// Figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of moray_swim_closed_loop_run.
 moray_status heading_draw(heading_job *job);
 
 moray_json *heading_json(const heading_job *job);

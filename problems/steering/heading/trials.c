@@ -10,39 +10,39 @@ static const accuracy rough = {1e-6, 10}, careful = {1e-8, 20};
 // ---- Swimming ------------------------------------------------------------------------------------------------------
 
 static moray_status swim(const heading_job *job, heading_trial *trial, moray_model model, accuracy how,
-                         moray_closed_loop *closed_loop)
+                         moray_swim_closed_loop *closed_loop)
 {
     heading_steersman h;
     double rate;
     MORAY_TRY(heading_set_controller(job, trial, model, &h));
-    const moray_closed_loop_spec plan = {.robot = &job->common.robot,
-                                         .straight = &job->straight[trial->gait][model],
-                                         .heading = moray_reference_at(&job->reference, 0, &rate),
-                                         .current = {job->common.current[0], job->common.current[1]},
-                                         .controller = &h.controller,
-                                         .duration = job->horizon,
-                                         .intervals = (int)ceil(how.per_second * job->horizon),
-                                         .tolerance = how.tolerance};
-    const moray_status status = moray_closed_loop_run(closed_loop, &plan);
+    const moray_swim_closed_loop_spec plan = {.robot = &job->common.robot,
+                                              .straight = &job->straight[trial->gait][model],
+                                              .heading = moray_reference_at(&job->reference, 0, &rate),
+                                              .current = {job->common.current[0], job->common.current[1]},
+                                              .controller = &h.controller,
+                                              .duration = job->horizon,
+                                              .intervals = (int)ceil(how.per_second * job->horizon),
+                                              .tolerance = how.tolerance};
+    const moray_status status = moray_swim_closed_loop_run(closed_loop, &plan);
     if (h.receding)
-        trial->record[model] = *moray_receding_horizon_record_of(h.receding);
-    moray_receding_horizon_free(h.receding);
+        trial->record[model] = *moray_receding_horizon_record_of(moray_swim_receding_horizon_engine(h.receding));
+    moray_swim_receding_horizon_free(h.receding);
     return status;
 }
 
 moray_status heading_swim(const heading_job *job, heading_trial *trial, moray_model model,
-                          moray_closed_loop *closed_loop)
+                          moray_swim_closed_loop *closed_loop)
 {
     return swim(job, trial, model, careful, closed_loop);
 }
 
 static moray_status score(const heading_job *job, heading_trial *trial, moray_model model, accuracy how)
 {
-    moray_closed_loop closed_loop;
+    moray_swim_closed_loop closed_loop;
     MORAY_TRY(swim(job, trial, model, how, &closed_loop));
     trial->score[model] =
-        moray_closed_loop_heading_score(&closed_loop, &job->straight[trial->gait][model], &job->reference);
-    moray_closed_loop_free(&closed_loop);
+        moray_swim_closed_loop_heading_score(&closed_loop, &job->straight[trial->gait][model], &job->reference);
+    moray_swim_closed_loop_free(&closed_loop);
     return moray_ok();
 }
 

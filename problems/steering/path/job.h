@@ -77,14 +77,14 @@ void path_explain(const path_job *job, char *text, size_t size);
 // middle of the leg in the last plan [rad].
 void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, double *planned);
 
-// Tunes and swims every trial. Error: those of moray_closed_loop_run.
+// Tunes and swims every trial. Error: those of moray_swim_closed_loop_run.
 moray_status path_run_trials(path_job *job);
 
 // How many times faster plans are made than the robot swims through them.
 double path_real_time(const path_job *job, const path_trial *trial, const moray_receding_horizon_record *record);
 
 // Swims one of them again, to be drawn.
-moray_status path_swim(const path_job *job, path_trial *trial, moray_model model, moray_closed_loop *closed_loop);
+moray_status path_swim(const path_job *job, path_trial *trial, moray_model model, moray_swim_closed_loop *closed_loop);
 
 moray_json *path_json(const path_job *job);
 

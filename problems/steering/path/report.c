@@ -207,7 +207,8 @@ static void choose_shown(path_job *job, path_trial **trials)
             trials[2] = &job->trial[k];
 }
 
-static void fill_over_time(const path_job *job, const moray_closed_loop *closed_loop, double *across, double *offset)
+static void fill_over_time(const path_job *job, const moray_swim_closed_loop *closed_loop, double *across,
+                           double *offset)
 {
     double along = 0;
     for (int k = 0; k < closed_loop->track.n; k++) {
@@ -219,7 +220,7 @@ static void fill_over_time(const path_job *job, const moray_closed_loop *closed_
 }
 
 static moray_status draw_over_time(const path_job *job, path_trial *const *trials,
-                                   const moray_closed_loop *closed_loops)
+                                   const moray_swim_closed_loop *closed_loops)
 {
     moray_curve across[shown], offset[shown];
     int most = 0;
@@ -254,7 +255,7 @@ static moray_status draw_over_time(const path_job *job, path_trial *const *trial
     return status;
 }
 
-static moray_status draw_shown(path_job *job, path_trial *const *trials, const moray_closed_loop *closed_loops)
+static moray_status draw_shown(path_job *job, path_trial *const *trials, const moray_swim_closed_loop *closed_loops)
 {
     const steer_curve curves[shown] = {
         {trials[0]->name, &closed_loops[0]}, {trials[1]->name, &closed_loops[1]}, {trials[2]->name, &closed_loops[2]}};
@@ -274,7 +275,7 @@ static moray_status draw_shown(path_job *job, path_trial *const *trials, const m
 static moray_status draw(path_job *job)
 {
     path_trial *trials[shown];
-    moray_closed_loop closed_loops[shown] = {{0}};
+    moray_swim_closed_loop closed_loops[shown] = {{0}};
     moray_status status = moray_ok();
     choose_shown(job, trials);
     for (int k = 0; k < shown && !moray_failed(status); k++)
@@ -282,7 +283,7 @@ static moray_status draw(path_job *job)
     if (!moray_failed(status))
         status = draw_shown(job, trials, closed_loops);
     for (int k = 0; k < shown; k++)
-        moray_closed_loop_free(&closed_loops[k]);
+        moray_swim_closed_loop_free(&closed_loops[k]);
     return status;
 }
 

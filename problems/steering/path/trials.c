@@ -17,8 +17,8 @@ typedef struct steersman {
     moray_plan plan;
     moray_feedback feedback;
     moray_path_replanner replanner;
-    moray_receding_horizon *receding;
-    moray_controller controller;
+    moray_swim_receding_horizon *receding;
+    moray_swim_controller controller;
 } steersman;
 
 static moray_steering_limits limits_of(const path_job *job, moray_model model)
@@ -60,22 +60,22 @@ static moray_status set_receding(const path_job *job, const path_trial *trial, m
     h->replanner.spec.limits = steer_replanning_limits(&job->common.robot, straight, &own, &swum, scale);
     h->replanner.spec.tube = MORAY_INFINITY;
     h->replanner.spec.speed = job->path.length / seconds;
-    moray_receding_horizon_spec spec = {.links = job->common.robot.links,
-                                        .replanner = moray_path_replan(&h->replanner),
-                                        .settings = moray_settings_default(),
-                                        .limits = &h->replanner.spec.limits,
-                                        .planned = straight,
-                                        .measured = &job->straight[trial->gait][model],
-                                        .scale = scale,
-                                        .horizon = horizon,
-                                        .interval = job->replan_periods * period,
-                                        .first = job->plan[trial->plan].solution};
+    moray_swim_receding_horizon_spec spec = {.links = job->common.robot.links,
+                                             .replanner = moray_path_replan(&h->replanner),
+                                             .settings = moray_settings_default(),
+                                             .limits = &h->replanner.spec.limits,
+                                             .planned = straight,
+                                             .measured = &job->straight[trial->gait][model],
+                                             .scale = scale,
+                                             .horizon = horizon,
+                                             .interval = job->replan_periods * period,
+                                             .first = job->plan[trial->plan].solution};
     spec.settings.scheme = "radau4";
     spec.settings.intervals = (int)ceil(4 * job->look_ahead_periods);
     spec.settings.tolerance = 1e-6;
     spec.settings.max_iterations = 200;
-    MORAY_TRY(moray_receding_horizon_new(&h->receding, &spec));
-    h->controller = moray_receding_horizon_controller(h->receding);
+    MORAY_TRY(moray_swim_receding_horizon_new(&h->receding, &spec));
+    h->controller = moray_swim_receding_horizon_controller(h->receding);
     return moray_ok();
 }
 
@@ -101,7 +101,7 @@ double path_real_time(const path_job *job, const path_trial *trial, const moray_
 // ---- Swimming ------------------------------------------------------------------------------------------------------
 
 static moray_status swim(const path_job *job, path_trial *trial, moray_model model, double tolerance,
-                         moray_closed_loop *closed_loop)
+                         moray_swim_closed_loop *closed_loop)
 {
     steersman h;
     double t0, tf;
@@ -109,38 +109,38 @@ static moray_status swim(const path_job *job, path_trial *trial, moray_model mod
     MORAY_TRY(set_controller(job, trial, model, &h));
     moray_solution_times(path_last_plan(job)->solution, 0, &t0, &tf);
     const double duration = patience * tf;
-    const moray_closed_loop_spec plan = {.robot = &job->common.robot,
-                                         .straight = &job->straight[trial->gait][model],
-                                         .heading = job->heading,
-                                         .position = {job->start[0], job->start[1]},
-                                         .current = {job->common.current[0], job->common.current[1]},
-                                         .controller = &h.controller,
-                                         .duration = duration,
-                                         .intervals = (int)ceil(per_second * duration),
-                                         .tolerance = tolerance,
-                                         .observe = moray_path_seek,
-                                         .observer = &seeker};
-    const moray_status status = moray_closed_loop_run(closed_loop, &plan);
+    const moray_swim_closed_loop_spec plan = {.robot = &job->common.robot,
+                                              .straight = &job->straight[trial->gait][model],
+                                              .heading = job->heading,
+                                              .position = {job->start[0], job->start[1]},
+                                              .current = {job->common.current[0], job->common.current[1]},
+                                              .controller = &h.controller,
+                                              .duration = duration,
+                                              .intervals = (int)ceil(per_second * duration),
+                                              .tolerance = tolerance,
+                                              .observe = moray_path_seek,
+                                              .observer = &seeker};
+    const moray_status status = moray_swim_closed_loop_run(closed_loop, &plan);
     if (h.receding)
-        trial->record[model] = *moray_receding_horizon_record_of(h.receding);
-    moray_receding_horizon_free(h.receding);
+        trial->record[model] = *moray_receding_horizon_record_of(moray_swim_receding_horizon_engine(h.receding));
+    moray_swim_receding_horizon_free(h.receding);
     return status;
 }
 
-moray_status path_swim(const path_job *job, path_trial *trial, moray_model model, moray_closed_loop *closed_loop)
+moray_status path_swim(const path_job *job, path_trial *trial, moray_model model, moray_swim_closed_loop *closed_loop)
 {
     return swim(job, trial, model, careful, closed_loop);
 }
 
 static moray_status score(const path_job *job, path_trial *trial, moray_model model, double tolerance)
 {
-    moray_closed_loop closed_loop;
+    moray_swim_closed_loop closed_loop;
     moray_path_score *s = &trial->score[model];
     MORAY_TRY(swim(job, trial, model, tolerance, &closed_loop));
-    *s = moray_closed_loop_path_score(&closed_loop, &job->path, job->reach);
+    *s = moray_swim_closed_loop_path_score(&closed_loop, &job->path, job->reach);
     const double seconds = isnan(s->time) ? 2 * closed_loop.track.t[closed_loop.track.n - 1] : s->time;
     trial->cost[model] = 100 * s->rms * s->rms * seconds + job->weight_time * seconds;
-    moray_closed_loop_free(&closed_loop);
+    moray_swim_closed_loop_free(&closed_loop);
     return moray_ok();
 }
 

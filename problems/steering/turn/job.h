@@ -64,11 +64,12 @@ moray_status turn_make_plans(turn_job *job);
 // What keeps the robot from turning faster, in one paragraph.
 void turn_explain(const turn_job *job, char *text, size_t size);
 
-// Tunes and swims every trial. Error: those of moray_closed_loop_run.
+// Tunes and swims every trial. Error: those of moray_swim_closed_loop_run.
 moray_status turn_run_trials(turn_job *job);
 
 // Swims one of them again, to be drawn.
-moray_status turn_swim(const turn_job *job, const turn_trial *trial, moray_model model, moray_closed_loop *closed_loop);
+moray_status turn_swim(const turn_job *job, const turn_trial *trial, moray_model model,
+                       moray_swim_closed_loop *closed_loop);
 
 // Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status turn_report(turn_job *job);

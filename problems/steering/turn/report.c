@@ -180,7 +180,7 @@ static void choose_shown(const turn_job *job, const turn_trial **trials)
 }
 
 static moray_status draw_over_time(const turn_job *job, const turn_trial *const *trials,
-                                   const moray_closed_loop *closed_loops)
+                                   const moray_swim_closed_loop *closed_loops)
 {
     const int n = closed_loops->track.n;
     const double *t = closed_loops->track.t;
@@ -216,7 +216,7 @@ static moray_status draw_over_time(const turn_job *job, const turn_trial *const 
 }
 
 static moray_status draw_shown(const turn_job *job, const turn_trial *const *trials,
-                               const moray_closed_loop *closed_loops)
+                               const moray_swim_closed_loop *closed_loops)
 {
     const steer_curve curves[shown] = {
         {trials[0]->name, &closed_loops[0]}, {trials[1]->name, &closed_loops[1]}, {trials[2]->name, &closed_loops[2]}};
@@ -229,7 +229,7 @@ static moray_status draw_shown(const turn_job *job, const turn_trial *const *tri
 static moray_status draw(const turn_job *job)
 {
     const turn_trial *trials[shown];
-    moray_closed_loop closed_loops[shown] = {{0}};
+    moray_swim_closed_loop closed_loops[shown] = {{0}};
     moray_status status = moray_ok();
     choose_shown(job, trials);
     for (int k = 0; k < shown && !moray_failed(status); k++)
@@ -237,7 +237,7 @@ static moray_status draw(const turn_job *job)
     if (!moray_failed(status))
         status = draw_shown(job, trials, closed_loops);
     for (int k = 0; k < shown; k++)
-        moray_closed_loop_free(&closed_loops[k]);
+        moray_swim_closed_loop_free(&closed_loops[k]);
     return status;
 }
 

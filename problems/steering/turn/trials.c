@@ -41,7 +41,7 @@ typedef struct steersman {
     moray_plan plan;
     const moray_straight_motion *planned; // straight of the plan
     moray_feedback feedback;
-    moray_controller controller;
+    moray_swim_controller controller;
 } steersman;
 
 static double planned_heading(const moray_swim_sample *sample, void *self)
@@ -82,29 +82,30 @@ static void set_controller(const turn_job *job, const turn_trial *trial, moray_m
     else if (trial->law == TURN_BOTH)
         h->controller = moray_feedback_controller(&h->feedback);
     else
-        h->controller = (moray_controller){.offset = bang_offset, .self = &h->bang};
+        h->controller = (moray_swim_controller){.offset = bang_offset, .self = &h->bang};
 }
 
 // ---- Swimming ------------------------------------------------------------------------------------------------------
 
 static moray_status swim(const turn_job *job, const turn_trial *trial, moray_model model, double tolerance,
-                         moray_closed_loop *closed_loop)
+                         moray_swim_closed_loop *closed_loop)
 {
     steersman h;
     set_controller(job, trial, model, &h);
     const double period = 2 * M_PI / job->straight[model].gait.omega;
     const double duration = 1.5 * turn_duration(turn_last_plan(job)) + periods_after * period;
-    const moray_closed_loop_spec plan = {.robot = &job->common.robot,
-                                         .straight = &job->straight[model],
-                                         .current = {job->common.current[0], job->common.current[1]},
-                                         .controller = &h.controller,
-                                         .duration = duration,
-                                         .intervals = (int)ceil(per_second * duration),
-                                         .tolerance = tolerance};
-    return moray_closed_loop_run(closed_loop, &plan);
+    const moray_swim_closed_loop_spec plan = {.robot = &job->common.robot,
+                                              .straight = &job->straight[model],
+                                              .current = {job->common.current[0], job->common.current[1]},
+                                              .controller = &h.controller,
+                                              .duration = duration,
+                                              .intervals = (int)ceil(per_second * duration),
+                                              .tolerance = tolerance};
+    return moray_swim_closed_loop_run(closed_loop, &plan);
 }
 
-moray_status turn_swim(const turn_job *job, const turn_trial *trial, moray_model model, moray_closed_loop *closed_loop)
+moray_status turn_swim(const turn_job *job, const turn_trial *trial, moray_model model,
+                       moray_swim_closed_loop *closed_loop)
 {
     return swim(job, trial, model, careful, closed_loop);
 }
@@ -135,10 +136,10 @@ static turn_score score_of(const turn_job *job, const moray_straight_motion *str
 
 static moray_status score(const turn_job *job, turn_trial *trial, moray_model model, double tolerance)
 {
-    moray_closed_loop closed_loop;
+    moray_swim_closed_loop closed_loop;
     MORAY_TRY(swim(job, trial, model, tolerance, &closed_loop));
     trial->score[model] = score_of(job, &job->straight[model], &closed_loop.track);
-    moray_closed_loop_free(&closed_loop);
+    moray_swim_closed_loop_free(&closed_loop);
     return moray_ok();
 }
 

@@ -116,9 +116,9 @@ static moray_offset blind(double t, const void *self)
     return moray_plan_offset(self, t);
 }
 
-moray_controller moray_plan_controller(const moray_plan *plan)
+moray_swim_controller moray_plan_controller(const moray_plan *plan)
 {
-    return (moray_controller){.offset = blind, .self = (void *)plan};
+    return (moray_swim_controller){.offset = blind, .self = (void *)plan};
 }
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------
@@ -134,7 +134,7 @@ static double clamp(double value, double limit)
     return fmin(fmax(value, -limit), limit);
 }
 
-static void look(const moray_swim_sample *sample, void *self)
+static moray_status measure(const moray_swim_sample *sample, void *self)
 {
     moray_feedback *feedback = self;
     const double t = sample->t, heading = moray_straight_motion_heading(feedback->straight, t, sample->pose.heading);
@@ -145,9 +145,12 @@ static void look(const moray_swim_sample *sample, void *self)
     feedback->from = t;
     feedback->slope =
         clamp((clamp(wanted, feedback->offset) - feedback->value) / feedback->period, feedback->offset_rate);
+    return moray_ok();
+    return moray_ok();
 }
 
-moray_controller moray_feedback_controller(moray_feedback *feedback)
+moray_swim_controller moray_feedback_controller(moray_feedback *feedback)
 {
-    return (moray_controller){.offset = straight, .look = look, .period = feedback->period, .self = feedback};
+    return (moray_swim_controller){
+        .offset = straight, .measure = measure, .period = feedback->period, .self = feedback};
 }

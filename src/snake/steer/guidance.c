@@ -27,6 +27,14 @@ static double plan_across(const moray_guidance *guidance, double t, double *head
     return across;
 }
 
+bool moray_path_seek(const moray_swim_sample *sample, void *self)
+{
+    moray_path_seeker *seeker = self;
+    double across;
+    moray_path_project(seeker->path, sample->pose.p_x, sample->pose.p_y, &seeker->along, &across);
+    return seeker->along < seeker->path->length;
+}
+
 double moray_guidance_target(const moray_swim_sample *sample, void *self)
 {
     moray_guidance *g = self;

@@ -24,8 +24,8 @@ static void step(dot *d, double seconds)
     double across;
     moray_path_project(d->spec->path, d->x, d->y, &d->along, &across);
     const double course = creal(moray_path_at(d->spec->path, d->along + 0.5 * lookahead).course);
-    const double crab = asin((V[1] * cos(course) - V[0] * sin(course)) / d->speed);
-    const double error = remainder(course - crab - atan(across / lookahead) - d->heading, 2 * M_PI);
+    const double crab = moray_crab_angle(d->speed, V, course);
+    const double error = remainder(course + crab - atan(across / lookahead) - d->heading, 2 * M_PI);
     const double fastest = fabs(d->turn_rate);
     d->rate = fmin(fmax(error / settling, -fastest), fastest);
     d->x += seconds * (d->speed * cos(d->heading) + V[0]);
@@ -158,7 +158,7 @@ void moray_path_plan_free(moray_path_plan *plan)
 
 // ---- Receding horizon ----------------------------------------------------------------------------------------------
 
-static moray_status make_again(void *self, double t, const double state[states], void **problem, const moray_ocp **ocp)
+static moray_status make_again(void *self, double t, const double *state, void **problem, const moray_ocp **ocp)
 {
     moray_path_replanner *r = self;
     double across;
@@ -187,5 +187,10 @@ static void free_again(void *problem)
 
 moray_replanner moray_path_replan(moray_path_replanner *replanner)
 {
-    return (moray_replanner){.make = make_again, .free = free_again, .self = replanner, .nu = 2};
+    return (moray_replanner){.nx = states,
+                             .nu = 2,
+                             .ns = MORAY_STEERING_PARAMETERS,
+                             .make = make_again,
+                             .free = free_again,
+                             .self = replanner};
 }

@@ -87,8 +87,7 @@ typedef struct listener {
     bool fail;
 } listener;
 
-static moray_status listen(void *self, double t, const double state[MORAY_STEERING_STATES], void **problem,
-                           const moray_ocp **ocp)
+static moray_status listen(void *self, double t, const double *state, void **problem, const moray_ocp **ocp)
 {
     listener *l = self;
     l->t[l->n] = t;
@@ -107,7 +106,7 @@ typedef struct scene {
     moray_straight_motion straight[2];
     moray_heading_replanner replanner;
     listener listener;
-    moray_receding_horizon *receding;
+    moray_swim_receding_horizon *receding;
     double scale;
 } scene;
 
@@ -122,7 +121,7 @@ static moray_straight_motion straight_motion_of(moray_model model)
 }
 
 // Plans of the control-oriented model, 6 s long, every 3 s, for a step of 20 deg at 4.05 s.
-static void set(scene *s, bool preview, moray_model swum, double look)
+static void set(scene *s, bool preview, moray_model swum, double watch)
 {
     const moray_straight_motion *planned = &s->straight[0];
     const double unit = 10 * DEG;
@@ -136,38 +135,40 @@ static void set(scene *s, bool preview, moray_model swum, double look)
                                              .preview = preview,
                                              .tolerance = 1 * DEG};
     s->listener = (listener){.inner = moray_heading_replan(&s->replanner)};
-    moray_receding_horizon_spec spec = {.links = 10,
-                                        .replanner = {.make = listen,
-                                                      .free = s->listener.inner.free,
-                                                      .changed = pass_on,
-                                                      .self = &s->listener,
-                                                      .nu = 1},
-                                        .settings = moray_settings_default(),
-                                        .limits = &s->replanner.spec.limits,
-                                        .planned = planned,
-                                        .measured = &s->straight[swum],
-                                        .scale = s->scale,
-                                        .horizon = 6,
-                                        .interval = 3,
-                                        .look = look};
+    moray_swim_receding_horizon_spec spec = {.links = 10,
+                                             .replanner = {.nx = MORAY_STEERING_STATES,
+                                                           .nu = 1,
+                                                           .ns = MORAY_STEERING_PARAMETERS,
+                                                           .make = listen,
+                                                           .free = s->listener.inner.free,
+                                                           .changed = pass_on,
+                                                           .self = &s->listener},
+                                             .settings = moray_settings_default(),
+                                             .limits = &s->replanner.spec.limits,
+                                             .planned = planned,
+                                             .measured = &s->straight[swum],
+                                             .scale = s->scale,
+                                             .horizon = 6,
+                                             .interval = 3,
+                                             .watch = watch};
     spec.settings.scheme = "radau3";
     spec.settings.intervals = 8;
     spec.settings.tolerance = 1e-6;
-    CHECK_OK(moray_receding_horizon_new(&s->receding, &spec), "receding horizon");
+    CHECK_OK(moray_swim_receding_horizon_new(&s->receding, &spec), "receding horizon");
 }
 
-static moray_closed_loop sail(scene *s, moray_model swum, double seconds)
+static moray_swim_closed_loop sail(scene *s, moray_model swum, double seconds)
 {
     const moray_robot robot = moray_robot_paper();
-    const moray_controller controller = moray_receding_horizon_controller(s->receding);
-    const moray_closed_loop_spec plan = {.robot = &robot,
-                                         .straight = &s->straight[swum],
-                                         .controller = &controller,
-                                         .duration = seconds,
-                                         .intervals = (int)(20 * seconds),
-                                         .tolerance = 1e-8};
-    moray_closed_loop closed_loop;
-    CHECK_OK(moray_closed_loop_run(&closed_loop, &plan), "closed_loop");
+    const moray_swim_controller controller = moray_swim_receding_horizon_controller(s->receding);
+    const moray_swim_closed_loop_spec plan = {.robot = &robot,
+                                              .straight = &s->straight[swum],
+                                              .controller = &controller,
+                                              .duration = seconds,
+                                              .intervals = (int)(20 * seconds),
+                                              .tolerance = 1e-8};
+    moray_swim_closed_loop closed_loop;
+    CHECK_OK(moray_swim_closed_loop_run(&closed_loop, &plan), "closed_loop");
     return closed_loop;
 }
 
@@ -178,8 +179,9 @@ static void test_times(scene *s)
     for (int preview = 0; preview < 2; preview++) {
         const double *expected = preview ? regular : at_once;
         set(s, preview, MORAY_CONTROL_ORIENTED, preview ? 0 : 0.1);
-        moray_closed_loop closed_loop = sail(s, MORAY_CONTROL_ORIENTED, 9.5);
-        const moray_receding_horizon_record *record = moray_receding_horizon_record_of(s->receding);
+        moray_swim_closed_loop closed_loop = sail(s, MORAY_CONTROL_ORIENTED, 9.5);
+        const moray_receding_horizon_record *record =
+            moray_receding_horizon_record_of(moray_swim_receding_horizon_engine(s->receding));
         CHECK(s->listener.n == 4 && record->plans == 4 && record->failures == 0, "%d plans", s->listener.n);
         for (int k = 0; k < 4; k++)
             CHECK_NEAR(s->listener.t[k], expected[k], 1e-9, "time of a plan [s]");
@@ -191,8 +193,8 @@ static void test_times(scene *s)
         CHECK_NEAR(end / DEG, 20, 3, "heading in the end [deg]");
         CHECK(preview == (closed_loop.offset[20 * 4 - 2] != 0 && fabs(closed_loop.offset[20 * 4 - 2]) > 1e-4),
               "steers before the step only if it knows: %g m", closed_loop.offset[20 * 4 - 2]);
-        moray_closed_loop_free(&closed_loop);
-        moray_receding_horizon_free(s->receding);
+        moray_swim_closed_loop_free(&closed_loop);
+        moray_swim_receding_horizon_free(s->receding);
     }
 }
 
@@ -200,7 +202,7 @@ static void test_times(scene *s)
 static void test_measured(scene *s, moray_model swum)
 {
     set(s, true, swum, 0);
-    moray_closed_loop closed_loop = sail(s, swum, 6.5);
+    moray_swim_closed_loop closed_loop = sail(s, swum, 6.5);
     for (int k = 1; k < s->listener.n; k++) {
         const int sample = (int)lround(20 * s->listener.t[k]);
         const double t = closed_loop.track.t[sample], *state = s->listener.state[k];
@@ -215,8 +217,8 @@ static void test_measured(scene *s, moray_model swum)
         CHECK_NEAR(state[6], closed_loop.offset[sample] / s->scale, 1e-6, "offset of the planning model [m]");
     }
     CHECK(s->listener.n == 3, "%d plans", s->listener.n);
-    moray_closed_loop_free(&closed_loop);
-    moray_receding_horizon_free(s->receding);
+    moray_swim_closed_loop_free(&closed_loop);
+    moray_swim_receding_horizon_free(s->receding);
 }
 
 // Where no plan comes about the swimmer goes straight on, and the first reason is kept.
@@ -224,18 +226,20 @@ static void test_failures(scene *s)
 {
     set(s, true, MORAY_CONTROL_ORIENTED, 0);
     s->listener.fail = true;
-    moray_closed_loop closed_loop = sail(s, MORAY_CONTROL_ORIENTED, 7);
-    const moray_receding_horizon_record *record = moray_receding_horizon_record_of(s->receding);
+    moray_swim_closed_loop closed_loop = sail(s, MORAY_CONTROL_ORIENTED, 7);
+    const moray_receding_horizon_record *record =
+        moray_receding_horizon_record_of(moray_swim_receding_horizon_engine(s->receding));
     CHECK(record->plans == 3 && record->failures == 3, "%d plans, %d failures", record->plans, record->failures);
-    CHECK(strstr(record->first_failure, "t = 0 s: ") && strstr(record->first_failure, "it rains"), "%s",
+    CHECK(strstr(record->first_failure, "t = 0: ") && strstr(record->first_failure, "it rains"), "%s",
           record->first_failure);
     CHECK(closed_loop.offset[100] == 0, "goes straight on");
-    moray_closed_loop_free(&closed_loop);
-    moray_receding_horizon_free(s->receding);
-    moray_receding_horizon_free(NULL);
-    const moray_receding_horizon_spec bad = {.horizon = 1, .interval = 2};
-    const moray_status status = moray_receding_horizon_new(&s->receding, &bad);
-    CHECK(status.code == MORAY_INPUT && strstr(status.text, "horizon = 1 s"), "%s", status.text);
+    moray_swim_closed_loop_free(&closed_loop);
+    moray_swim_receding_horizon_free(s->receding);
+    moray_swim_receding_horizon_free(NULL);
+    const moray_swim_receding_horizon_spec bad = {
+        .replanner = {.nx = 4, .nu = 1, .ns = MORAY_STEERING_PARAMETERS}, .horizon = 2, .interval = 1};
+    const moray_status status = moray_swim_receding_horizon_new(&s->receding, &bad);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "plans of 4 states") && !s->receding, "%s", status.text);
 }
 
 int main(void)
