@@ -6,10 +6,9 @@
 
 #include <math.h>
 
+#include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
-
-#define DEG (M_PI / 180)
 
 typedef struct steer_input {
     double theta_max[2], omega[2], delta[2]; // ranges

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <tgmath.h>
 
-static const double degree = M_PI / 180;
+#include "moray/angle.h"
 
 // ---- Reading -------------------------------------------------------------------------------------------------------
 
@@ -115,7 +115,7 @@ static moray_status lay(moray_path *path, const waypoints *points, double radius
             return moray_error(MORAY_INPUT,
                                "path: leg %d is %.4g m long, too short for arcs of radius %.4g m that turn by %.4g deg "
                                "at its end",
-                               k + 1, leg, radius, turn / degree);
+                               k + 1, leg, radius, turn / MORAY_DEGREE);
         add_piece(path, k + 1, from[0] + before * c, from[1] + before * s, course, leg - before - taken, 0);
         if (turn != 0)
             add_piece(path, k + 1, to[0] - taken * c, to[1] - taken * s, course, radius * fabs(turn),
@@ -242,7 +242,8 @@ moray_status moray_path_passable(const moray_path *path, double speed, const dou
                 "the current is too strong for the path: %s leg %d, %.4g m along the path, its course is "
                 "%.4g deg, %.4g m/s run across it and %.4g m/s against it, and the robot swims %.4g m/s",
                 piece->curvature != 0 ? "in the corner behind" : "on", piece->leg,
-                piece->start + piece->length * i / (points - 1), course / degree, fabs(side), against + 0.0, speed);
+                piece->start + piece->length * i / (points - 1), course / MORAY_DEGREE, fabs(side), against + 0.0,
+                speed);
         }
     return moray_ok();
 }

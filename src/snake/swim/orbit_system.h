@@ -12,7 +12,7 @@
 #include "moray/snake/orbit.h"
 #include "moray/scheme.h"
 
-enum { ORBIT_STATES = 6, ORBIT_PARAMETERS = 5, ORBIT_INPUTS = ORBIT_STATES + ORBIT_PARAMETERS + 1 };
+enum { ORBIT_STATES = MORAY_BODY_STATES, ORBIT_PARAMETERS = 5, ORBIT_INPUTS = ORBIT_STATES + ORBIT_PARAMETERS + 1 };
 enum { ORBIT_OMEGA = 1, ORBIT_OFFSET = 3 };                                               // of the parameters
 enum { ORBIT_TIME = ORBIT_INPUTS - 1, ORBIT_OFFSET_INPUT = ORBIT_STATES + ORBIT_OFFSET }; // of the plant's input
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Paths against closed forms, the problem of following one, and guidance towards one.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
@@ -8,8 +9,6 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/path.h"
 #include "moray/snake/closed_loop.h"
-
-#define DEG (M_PI / 180)
 
 // ---- Geometry ------------------------------------------------------------------------------------------------------
 
