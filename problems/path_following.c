@@ -3,9 +3,8 @@
 // Gait and joint offset phi_0(t) that take the robot along a path of legs and arcs in a current: found by optimisation,
 // tried on both models, blindly, with feedback and in receding horizon, against line-of-sight guidance tuned on the
 // same path.
-#include <string.h>
-
-#include "steering/path/job.h"
+#include "steering/options.h"
+#include "steering/path/path.h"
 
 static const moray_option options[] = {
     {.section = "problem",
@@ -24,109 +23,94 @@ static const moray_option options[] = {
      .help = "position at the start, near the first leg"},
     STEER_REAL(path_job, heading, "problem", "start_heading_deg", -360, 360, "deg",
                "mean heading there; by default the course of the first leg"),
-    STEER_OPTIONS(path_job, input),
-    STEER_REAL(
-        path_job, weight_time, "problem", "weight_time", 0, 1e6, NULL,
+    STEER_GAIT_OPTIONS(path_job),
+    STEER_WEIGHT(
+        path_job, weight_time, "weight_time", 0,
         "of the time in s, against 1 for the integral over s of the squared cross-track error in units of 10 cm"),
-    STEER_REAL(path_job, weight_steering, "problem", "weight_steering", 1e-9, 1e6, NULL,
-               "of the integral over s of the square of phi_0'' in units of its limit per s^2, likewise"),
+    STEER_WEIGHT(path_job, steer.weight_steering, "weight_steering", 1e-9,
+                 "of the integral over s of the square of phi_0'' in units of its limit per s^2, likewise"),
     STEER_LIMIT(path_job, tube, "tube_m", "m", "largest cross-track error allowed of the plan"),
     STEER_REAL(path_job, reach, "problem", "reach_m", 1e-3, 1e4, "m",
                "way made within which a start off the path is to come to it"),
-    STEER_INT(path_job, intervals_per_period, "solver", "intervals_per_period", 1, 100, "of the mesh, an undulation"),
-    STEER_INT(path_job, refinements, "solver", "refinements", 0, 20,
-              "finer meshes tried where the first is too coarse"),
+    STEER_MESH_OPTIONS(path_job),
     {.section = "solver",
      .key = "find_gait",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(path_job, find_gait),
      .help = "first-principles plan on the gait fastest straight ahead within the limits; no: on the first gait"},
-    {.section = "receding",
-     .key = "receding",
-     .type = MORAY_OPTION_BOOL,
-     MORAY_AT(path_job, receding),
-     .help = "try receding horizon too"},
-    STEER_REAL(path_job, replan_periods, "receding", "replan_periods", 0.01, 1000, NULL,
-               "undulations between two plans"),
-    STEER_REAL(path_job, look_ahead_periods, "receding", "look_ahead_periods", 0.1, 1000, NULL,
-               "undulations that a plan looks ahead"),
-    STEER_INT(path_job, evaluations, "baseline", "evaluations", 1, 10000,
-              "simulations spent on tuning, for every number that is tuned"),
+    STEER_RECEDING_OPTIONS(path_job),
+    STEER_TUNING_OPTION(path_job, "simulations spent on tuning, for every number that is tuned"),
 };
 
-static const moray_program program = {
-    .name = "path_following",
-    .summary = "Optimises gait and joint offset of an underwater snake robot to follow a path in a current, and proves "
-               "them on the first-principles model against tuned line-of-sight guidance.",
-    .options = options,
-    .n_options = sizeof options / sizeof *options,
-};
-
-static path_job defaults(void)
+static moray_status work(steer_job *steer)
 {
-    path_job job = {.common = moray_common_defaults(),
-                    .path_text = "0,0 8,0 8,8 16,8",
-                    .radius = 3,
-                    .start = {0, 0.5},
-                    .heading = NAN,
-                    .input = steer_input_default(),
-                    .weight_time = 1,
-                    .weight_steering = 0.3,
-                    .tube = INFINITY,
-                    .reach = 3,
-                    .intervals_per_period = 5,
-                    .refinements = 4,
-                    .replan_periods = 1,
-                    .look_ahead_periods = 6,
-                    .receding = true,
-                    .find_gait = true,
-                    .evaluations = 10};
-    job.common.model = MORAY_FIRST_PRINCIPLES;
-    memcpy(job.common.current, (const double[]){-0.05, 0.1}, sizeof job.common.current);
-    strcpy(job.common.scheme, "radau5");
-    job.common.intervals = 0; // by the period
-    return job;
-}
-
-static moray_status work(path_job *job)
-{
-    moray_family family;
-    int stages;
-    MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
+    path_job *job = (path_job *)steer;
     MORAY_TRY(moray_path_read(&job->path, job->path_text, job->radius));
     MORAY_TRY(path_make_plans(job));
-    return path_run_trials(job);
+    path_choose_trials(steer);
+    return steer_run_trials(steer);
 }
 
-static bool certified(const path_job *job)
+static void release(steer_job *steer)
 {
-    return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->common.model].pass;
-}
-
-static void release(path_job *job)
-{
+    path_job *job = (path_job *)steer;
     moray_path_plan_free(&job->averaged);
     for (int model = 0; model < 2; model++)
         moray_path_plan_free(&job->plan[model]);
     moray_path_free(&job->path);
 }
 
+static const steer_program program = {
+    .app = {.name = "path_following",
+            .summary = "Optimises gait and joint offset of an underwater snake robot to follow a path in a current, "
+                       "and proves them on the first-principles model against tuned line-of-sight guidance.",
+            .options = options,
+            .n_options = sizeof options / sizeof *options},
+    .work = work,
+    .release = release,
+    .laws = path_laws,
+    .numbers = path_numbers,
+    .n_numbers = PATH_NUMBERS,
+    .x_tolerance = 1e-3,
+    .f_tolerance = 1e-4,
+    .rough_per_second = 20,
+    .start = path_start,
+    .judge = path_judge,
+    .scores = path_scores,
+    .n_scores = PATH_SCORES,
+    .score_title = "Cross-track error, cm (settled: without the first way to the path); time to the end, s; cost as in "
+                   "the objective; power, W",
+    .columns = path_columns,
+    .tables = path_tables,
+    .headline = path_headline,
+    .conclude = path_conclude,
+    .explain = path_explain,
+    .swum = path_swum,
+    .tells_name = true,
+    .json_head = path_json_head,
+    .json_plan = path_json_plan,
+    .json_tail = path_json_tail,
+    .over_time = {.name = "across",
+                  .title = "Cross-track error, first-principles model",
+                  .y_label = "to the left of the path [cm]"},
+    .values = path_values,
+    .path = path_points,
+};
+
 int main(int argc, char **argv)
 {
-    path_job job = defaults();
-    int exit_code;
-    if (!moray_app_start(&program, argc, argv, &job, &exit_code))
-        return exit_code;
-    job.ticker = moray_ticker_start(stderr, job.common.quiet);
-    moray_interrupt_begin();
-    moray_status status = work(&job);
-    moray_interrupt_end();
-    moray_ticker_end(&job.ticker);
-    if (!moray_failed(status))
-        status = path_report(&job);
-    exit_code = moray_app_end(&program, &job, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !certified(&job))
-        exit_code = MORAY_EXIT_CERTIFICATE;
-    release(&job);
-    return exit_code;
+    path_job job = {.steer = steer_defaults(),
+                    .path_text = "0,0 8,0 8,8 16,8",
+                    .radius = 3,
+                    .start = {0, 0.5},
+                    .heading = NAN,
+                    .weight_time = 1,
+                    .tube = INFINITY,
+                    .reach = 3,
+                    .find_gait = true};
+    job.steer.weight_steering = 0.3;
+    job.steer.evaluations = 10;
+    job.steer.common.current[0] = -0.05;
+    job.steer.common.current[1] = 0.1;
+    return steer_main(&program, argc, argv, &job.steer);
 }

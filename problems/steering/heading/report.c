@@ -1,151 +1,61 @@
 // SPDX-License-Identifier: MIT
-#include "job.h"
-
-static const char *const model_names[] = {"control-oriented", "first-principles"};
-enum { text_size = 1200 };
+#include "heading.h"
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
-enum { most_tables = 4, most_rows = HEADING_TRIALS + 2 };
+const steer_score heading_scores[HEADING_SCORES] = {
+    {"rms_deg", DEG}, {"final_deg", DEG}, {"largest_deg", DEG}, {"power_W", 1}};
 
-typedef struct report_tables {
-    int n;
-    moray_table table[most_tables];
-    moray_table_row rows[most_tables][most_rows];
-} report_tables;
+const steer_column heading_columns[] = {{"control: RMS", MORAY_CONTROL_ORIENTED, HEADING_RMS, .unit = DEG},
+                                        {"final", MORAY_CONTROL_ORIENTED, HEADING_FINAL, .unit = DEG, .rounded = true},
+                                        {"first-pr.: RMS", MORAY_FIRST_PRINCIPLES, HEADING_RMS, .unit = DEG},
+                                        {"final", MORAY_FIRST_PRINCIPLES, HEADING_FINAL, .unit = DEG, .rounded = true},
+                                        {"largest", MORAY_FIRST_PRINCIPLES, HEADING_LARGEST, .unit = DEG},
+                                        {"power", MORAY_FIRST_PRINCIPLES, HEADING_POWER, .unit = 1}};
+enum { columns = sizeof heading_columns / sizeof *heading_columns };
 
-// Zero where it is as good as zero, so that tables show no rounding.
-static double small(double value)
+static void fig8_table(const heading_job *job, steer_tables *tables)
 {
-    return fabs(value) < 5e-4 ? 0 : value;
-}
-
-static void score_rows(const heading_job *job, moray_table_row *rows)
-{
-    for (int k = 0; k < job->n_trials; k++) {
-        const heading_trial *trial = &job->trial[k];
-        const moray_heading_score *control = &trial->score[0], *revolute = &trial->score[1];
-        rows[k] = (moray_table_row){.label = trial->name,
-                                    .value = {control->rms / DEG, small(control->final / DEG), revolute->rms / DEG,
-                                              small(revolute->final / DEG), revolute->largest / DEG, revolute->power}};
+    static const char *const units[] = {"cm", "deg"};
+    const moray_table table = {.title = "Offset that the plans found beside the paper's",
+                               .columns = {"paper's", "turning", "back", "straight on", "RMS difference"},
+                               .n_columns = FIG8_VALUES,
+                               .n_rows = 1 + (int)job->steer.common.model};
+    for (int model = 0; model < table.n_rows; model++) {
+        moray_table_row *row = &tables->rows[tables->n][model];
+        *row = (moray_table_row){.label = steer_model_names[model], .unit = units[model]};
+        heading_fig8_compare(job, (moray_model)model, row->value);
+        for (int k = 0; k < FIG8_VALUES; k++)
+            row->value[k] /= model == MORAY_CONTROL_ORIENTED ? 0.01 : DEG;
     }
+    steer_add_table(tables, &table);
 }
 
-static int gait_rows(const heading_job *job, moray_table_row *rows)
+void heading_tables(const steer_job *job, steer_tables *tables)
 {
-    static const char *const labels[][2] = {{"theta_max, amplitude of (24)", "deg"},
-                                            {"omega, frequency", "deg/s"},
-                                            {"delta, phase shift", "deg"},
-                                            {"a, by (33)", "cm"},
-                                            {"alpha, by (27)", "deg"},
-                                            {"speed, control-oriented", "m/s"},
-                                            {"speed, first-principles", "m/s"},
-                                            {"power straight ahead there", "W"}};
-    enum { count = sizeof labels / sizeof *labels };
-    for (int i = 0; i < count; i++)
-        rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
-    const int first = steer_gait_given(&job->input); // the paper's is not swum then
-    for (int g = first; g <= 1 + (int)job->common.model; g++) {
-        const moray_straight_motion *control = &job->straight[g][0], *revolute = &job->straight[g][1];
-        const double values[count] = {moray_theta_max_from_amplitude(&job->common.robot, MORAY_CONTROL_ORIENTED,
-                                                                     control->gait.amplitude, control->gait.delta) /
-                                          DEG,
-                                      control->gait.omega / DEG,
-                                      control->gait.delta / DEG,
-                                      100 * control->gait.amplitude,
-                                      revolute->gait.amplitude / DEG,
-                                      control->speed,
-                                      revolute->speed,
-                                      revolute->power};
-        for (int i = 0; i < count; i++)
-            rows[i].value[g - first] = values[i];
-    }
-    return count;
-}
-
-static int tuning_rows(const heading_job *job, moray_table_row *rows)
-{
-    int n = 0;
-    for (int k = 0; k < job->n_trials; k++) {
-        const heading_trial *trial = &job->trial[k];
-        if (trial->evaluations > 0)
-            rows[n++] = (moray_table_row){
-                .label = trial->name,
-                .value = {100 * trial->gain * DEG, trial->preview ? trial->lead : NAN, trial->evaluations}};
-    }
-    return n;
-}
-
-static int fig8_rows(const heading_job *job, moray_table_row *rows)
-{
-    int model = 0;
-    for (; model <= (int)job->common.model; model++) {
-        const heading_fig8_match match = heading_fig8_compare(job, (moray_model)model);
-        const double unit = model == MORAY_CONTROL_ORIENTED ? 0.01 : DEG;
-        rows[model] = (moray_table_row){.label = model_names[model],
-                                        .unit = model == MORAY_CONTROL_ORIENTED ? "cm" : "deg",
-                                        .value = {match.paper / unit, match.there / unit, match.back / unit,
-                                                  match.straight / unit, match.rms / unit}};
-    }
-    return model;
-}
-
-static void make_tables(const heading_job *job, report_tables *t)
-{
-    score_rows(job, t->rows[1]);
-    const bool given = steer_gait_given(&job->input);
-    t->table[0] = (moray_table){.title = "Gait",
-                                .columns = {given ? "given" : "paper's", "control opt.", "first-pr. opt."},
-                                .n_columns = given ? 1 : 2 + (int)job->common.model,
-                                .rows = t->rows[0],
-                                .n_rows = gait_rows(job, t->rows[0])};
-    t->table[1] = (moray_table){.title = "Heading error, without the undulation, deg; power, W",
-                                .columns = {"control: RMS", "final", "first-pr.: RMS", "final", "largest", "power"},
-                                .n_columns = 6,
-                                .rows = t->rows[1],
-                                .n_rows = job->n_trials};
-    t->table[2] = (moray_table){.title = "Tuned on the first-principles model",
-                                .columns = {"gain, cm/deg", "ahead, s", "simulations"},
-                                .n_columns = 3,
-                                .rows = t->rows[2],
-                                .n_rows = tuning_rows(job, t->rows[2])};
-    t->n = 3;
-    if (heading_is_fig8(job))
-        t->table[t->n++] = (moray_table){.title = "Offset that the plans found beside the paper's",
-                                         .columns = {"paper's", "turning", "back", "straight on", "RMS difference"},
-                                         .n_columns = 5,
-                                         .rows = t->rows[3],
-                                         .n_rows = fig8_rows(job, t->rows[3])};
+    steer_gait_table(job, tables, steer_gait_given(job)); // the paper's is not swum then
+    steer_score_table(job, tables, columns);
+    steer_tuning_table(job, tables);
+    if (heading_is_fig8((const heading_job *)job))
+        fig8_table((const heading_job *)job, tables);
 }
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
-// Whether the trial swims on the paper's gait, and that takes more than the power allowed.
-static bool beyond_power(const heading_job *job, const heading_trial *trial)
+void heading_headline(const steer_job *steer, FILE *file)
 {
-    const moray_straight_motion *paper = &job->straight[0][job->common.model];
-    return trial->gait == 0 && paper->power > (1 + 1e-6) * heading_spec(job, paper->model, false).limits.power;
+    const heading_job *job = (const heading_job *)steer;
+    fprintf(file, "reference %s over %g s", job->reference_text, job->horizon);
 }
 
-// The best of the trials that pass the filter and keep the limits, by RMS on the first-principles model.
-static const heading_trial *best_trial(const heading_job *job, bool feedback, bool preview)
+void heading_conclude(const steer_job *job, char *text, size_t size)
 {
-    const heading_trial *best = NULL;
-    for (int k = 0; k < job->n_trials; k++) {
-        const heading_trial *trial = &job->trial[k];
-        if ((trial->law == HEADING_FEEDBACK) == feedback && trial->preview == preview && !beyond_power(job, trial) &&
-            (!best || trial->score[1].rms < best->score[1].rms))
-            best = trial;
-    }
-    return best;
-}
-
-static void verdict(const heading_job *job, char *text, size_t size)
-{
-    const heading_trial *optimised = best_trial(job, false, true), *plain = best_trial(job, true, false);
-    const heading_trial *ahead = best_trial(job, true, true);
-    const double ours = optimised->score[1].rms / DEG, theirs = plain->score[1].rms / DEG;
-    const double cunning = ahead->score[1].rms / DEG;
+    const steer_trial *optimised =
+        steer_best(job, 1 << HEADING_PLAN | 1 << HEADING_BOTH | 1 << HEADING_RECEDING, HEADING_RMS);
+    const steer_trial *plain = steer_best(job, 1 << HEADING_FEEDBACK, HEADING_RMS);
+    const steer_trial *ahead = steer_best(job, 1 << HEADING_AHEAD, HEADING_RMS);
+    const double ours = optimised->score[1][HEADING_RMS] / DEG, theirs = plain->score[1][HEADING_RMS] / DEG;
+    const double cunning = ahead->score[1][HEADING_RMS] / DEG;
     snprintf(
         text, size,
         "First-principles model, same limits: the best optimised steering (%s) has an RMS heading error of %.3f "
@@ -155,92 +65,85 @@ static void verdict(const heading_job *job, char *text, size_t size)
         ours < cunning ? "still behind" : "ahead of the plans");
 }
 
-static void receding_line(const heading_job *job, const heading_trial *trial, char *text, size_t size)
+void heading_notes(const steer_job *steer, FILE *file)
 {
-    const moray_receding_horizon_record *r = &trial->record[MORAY_FIRST_PRINCIPLES];
-    snprintf(
-        text, size,
-        "%s: %d plans of %.3g periods, each %.2g s of processor time on average (the longest after the first %.2g s) "
-        "and %.1f iterations; %.1f times faster than real time on one core%s%s",
-        trial->name, r->plans, job->look_ahead_periods, r->seconds / r->plans, r->longest,
-        (double)r->iterations / r->plans, job->horizon / r->seconds, r->failures ? "; not solved at first: " : "",
-        r->failures ? r->first_failure : "");
-}
-
-static void solver_line(const char *what, const char *scheme, const moray_heading_plan *plan, char *text, size_t size)
-{
-    char line[300];
-    int meshes;
-    const moray_mesh_record *record = moray_solution_history(plan->solution, &meshes);
-    moray_solver_line(plan->solution, scheme, record[meshes - 1].intervals, line, sizeof line);
-    snprintf(text, size, "%s: %s", what, line);
-}
-
-// ---- Standard output -----------------------------------------------------------------------------------------------
-
-static void print_all(const heading_job *job, const report_tables *t)
-{
-    char text[text_size];
-    printf("%d links, current (%g, %g) m/s, reference %s over %g s\n\n", job->common.robot.links,
-           job->common.current[0], job->common.current[1], job->reference_text, job->horizon);
-    for (int k = 0; k < t->n; k++) {
-        moray_table_print(&t->table[k], stdout);
-        printf("\n");
-    }
-    verdict(job, text, sizeof text);
-    printf("%s\n\n", text);
-    heading_explain(job, text, sizeof text);
-    printf("%s\n\n", text);
+    const heading_job *job = (const heading_job *)steer;
     if (job->gaits_tried > 0)
-        printf("gait of the first-principles plan: %d tried; the objective of the best is %.2f %% below that of the "
-               "first\n",
-               job->gaits_tried, 100 * (1 - job->best_objective / job->first_objective));
-    for (int k = 0; k < job->n_trials; k++)
-        if (job->trial[k].law == HEADING_RECEDING) {
-            receding_line(job, &job->trial[k], text, sizeof text);
-            printf("%s\n", text);
-        }
-    solver_line("period-averaged plan", HEADING_AVERAGED_SCHEME, &job->averaged, text, sizeof text);
-    printf("%s\n", text);
-    for (int model = 0; model <= (int)job->common.model; model++) {
-        solver_line(model_names[model], job->common.scheme, &job->plan[model], text, sizeof text);
-        printf("%s\n", text);
-        moray_certificate_line(&job->certificate[model], text, sizeof text);
-        printf("    %s\n", text);
+        fprintf(file,
+                "gait of the first-principles plan: %d tried; the objective of the best is %.2f %% below that of the "
+                "first\n",
+                job->gaits_tried, 100 * (1 - job->best_objective / job->first_objective));
+}
+
+double heading_swum(const steer_job *job, const steer_trial *trial)
+{
+    (void)trial;
+    return ((const heading_job *)job)->horizon;
+}
+
+// ---- JSON, figures -------------------------------------------------------------------------------------------------
+
+void heading_json_head(const steer_job *steer, moray_json *json)
+{
+    const heading_job *job = (const heading_job *)steer;
+    moray_json_text(json, "reference", job->reference_text);
+    moray_json_number(json, "horizon_s", job->horizon);
+    moray_json_text(json, "scheme", steer->common.scheme);
+}
+
+void heading_json_plan(const steer_job *job, moray_json *json, moray_model model)
+{
+    steer_json_gait(job, json, 1 + (int)model);
+}
+
+static void json_fig8(moray_json *json, const heading_job *job)
+{
+    static const char *const models[] = {"control", "fp"};
+    static const char *const keys[][FIG8_VALUES] = {
+        {"paper_m", "turning_m", "back_m", "straight_m", "rms_difference_m"},
+        {"paper_deg", "turning_deg", "back_deg", "straight_deg", "rms_difference_deg"}};
+    moray_json_open(json, "fig8_offset");
+    for (int model = 0; model <= (int)job->steer.common.model; model++) {
+        double match[FIG8_VALUES];
+        heading_fig8_compare(job, (moray_model)model, match);
+        moray_json_open(json, models[model]);
+        for (int k = 0; k < FIG8_VALUES; k++)
+            moray_json_number(json, keys[model][k], match[k] / (model == MORAY_CONTROL_ORIENTED ? 1 : DEG));
+        moray_json_close(json);
     }
+    moray_json_close(json);
 }
 
-// ---- Files ---------------------------------------------------------------------------------------------------------
-
-static moray_status write_files(heading_job *job, const report_tables *t, const moray_json *json)
+void heading_json_tail(const steer_job *steer, moray_json *json)
 {
-    moray_output *output = job->common.output;
-    char text[2 * text_size];
-    FILE *file;
-    MORAY_TRY(moray_output_file(output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(heading_draw(job));
-    verdict(job, text, text_size);
-    const moray_report report = {.title = "heading_tracking",
-                                 .text = text,
-                                 .tables = t->table,
-                                 .n_tables = t->n,
-                                 .argc = job->common.argc,
-                                 .argv = job->common.argv};
-    MORAY_TRY(moray_output_report(output, &report));
-    return moray_output_commit(output);
+    const heading_job *job = (const heading_job *)steer;
+    char text[STEER_TEXT];
+    heading_explain(steer, text, sizeof text);
+    if (heading_is_fig8(job))
+        json_fig8(json, job);
+    moray_json_number(json, "gaits_tried", job->gaits_tried);
+    moray_json_open(json, "limits");
+    moray_json_number(json, "turn_rate_deg_s", fabs(steer->turn_rate[steer->common.model]) / DEG);
+    moray_json_number(json, "reference_rate_deg_s", moray_reference_fastest(&job->reference, 0, job->horizon) / DEG);
+    steer_json_saturation(steer, json, steer->common.model);
+    moray_json_text(json, "in_words", text);
+    moray_json_close(json);
 }
 
-moray_status heading_report(heading_job *job)
+bool heading_values(const steer_job *job, const steer_trial *trial, const moray_swim_track *track, double *values)
 {
-    report_tables t;
-    make_tables(job, &t);
-    moray_json *json = heading_json(job);
-    moray_status status = job->common.output ? write_files(job, &t, json) : moray_ok();
-    if (!moray_failed(status) && job->common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print_all(job, &t);
-    moray_json_free(json);
-    return status;
+    double rate;
+    for (int k = 0; k < track->n; k++) {
+        const double t = track->t[k];
+        values[k] = (trial ? moray_straight_motion_heading(&job->straight[trial->gait][1], t, track->pose[k].heading)
+                           : moray_reference_at(&((const heading_job *)job)->reference, t, &rate)) /
+                    DEG;
+    }
+    return true;
+}
+
+moray_status heading_draw(const steer_job *steer)
+{
+    const heading_job *job = (const heading_job *)steer;
+    return heading_is_fig8(job) ? heading_fig8_draw(job) : moray_ok();
 }
