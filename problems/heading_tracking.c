@@ -36,79 +36,12 @@ static const moray_option options[] = {
     STEER_TUNING_OPTION(heading_job, "simulations spent on tuning each gain, twice as many for a gain and a lead"),
 };
 
-// Who swims on the paper's gait where that takes more than the power allowed is no rival.
-static void bar_trials(steer_job *job)
-{
-    const moray_model model = job->common.model;
-    const bool beyond = job->straight[0][model].power > (1 + 1e-6) * steer_limits(job, model).power;
-    for (int k = 0; k < job->n_trials; k++)
-        job->trial[k].barred = job->trial[k].gait == 0 && beyond;
-}
-
-static moray_status work(steer_job *steer)
-{
-    heading_job *job = (heading_job *)steer;
-    if (heading_is_fig8(job))
-        MORAY_TRY(heading_fig8_prepare(job));
-    else
-        MORAY_TRY(moray_reference_read(&job->reference, job->reference_text));
-    if (isnan(job->horizon))
-        job->horizon = 100;
-    heading_choose_trials(steer);
-    MORAY_TRY(heading_plan_first(job));
-    bar_trials(steer);
-    MORAY_TRY(steer_run_trials(steer));
-    if (steer->common.model == MORAY_CONTROL_ORIENTED)
-        return moray_ok();
-    MORAY_TRY(heading_plan_last(job));
-    return steer_run_trials(steer);
-}
-
-static void release(steer_job *steer)
-{
-    heading_job *job = (heading_job *)steer;
-    moray_heading_plan_free(&job->averaged);
-    for (int model = 0; model < 2; model++)
-        moray_heading_plan_free(&job->plan[model]);
-    moray_reference_free(&job->reference);
-}
-
-static const steer_program program = {
-    .app = {.name = "heading_tracking",
-            .summary = "Optimises gait and joint offset of an underwater snake robot to follow a heading in a current, "
-                       "and proves them on the first-principles model against tuned feedback.",
-            .options = options,
-            .n_options = sizeof options / sizeof *options},
-    .work = work,
-    .release = release,
-    .laws = heading_laws,
-    .numbers = heading_numbers,
-    .n_numbers = HEADING_NUMBERS,
-    .x_tolerance = 3e-3,
-    .f_tolerance = 3e-4,
-    .rough_per_second = 10,
-    .start = heading_start,
-    .judge = heading_judge,
-    .scores = heading_scores,
-    .n_scores = HEADING_SCORES,
-    .score_title = "Heading error, without the undulation, deg; power, W",
-    .columns = heading_columns,
-    .tables = heading_tables,
-    .headline = heading_headline,
-    .conclude = heading_conclude,
-    .explain = heading_explain,
-    .notes = heading_notes,
-    .swum = heading_swum,
-    .tells_preview = true,
-    .json_head = heading_json_head,
-    .json_plan = heading_json_plan,
-    .json_tail = heading_json_tail,
-    .over_time = {.name = "heading",
-                  .title = "Heading without its undulation, first-principles model",
-                  .y_label = "heading [deg]"},
-    .values = heading_values,
-    .draw = heading_draw,
-};
+static const moray_program program = {
+    .name = "heading_tracking",
+    .summary = "Optimises gait and joint offset of an underwater snake robot to follow a heading in a current, "
+               "and proves them on the first-principles model against tuned feedback.",
+    .options = options,
+    .n_options = sizeof options / sizeof *options};
 
 int main(int argc, char **argv)
 {
@@ -120,5 +53,5 @@ int main(int argc, char **argv)
     job.steer.weight_steering = 0.003;
     job.steer.refinements = 8;
     job.steer.evaluations = 15;
-    return steer_main(&program, argc, argv, &job.steer);
+    return steer_main(&program, &heading_steering, argc, argv, &job.steer);
 }

@@ -31,59 +31,13 @@ static const moray_option options[] = {
     STEER_TUNING_OPTION(turn_job, "simulations spent on tuning, for every number that is tuned"),
 };
 
-static moray_status work(steer_job *steer)
-{
-    turn_job *job = (turn_job *)steer;
-    if (job->angle == 0 && !turn_to_position(job))
-        return moray_error(MORAY_INPUT, "angle_deg = 0: must not be, unless there is an end_m");
-    MORAY_TRY(turn_make_plans(job));
-    turn_choose_trials(job);
-    return steer_run_trials(steer);
-}
-
-static void release(steer_job *steer)
-{
-    turn_job *job = (turn_job *)steer;
-    moray_turn_plan_free(&job->averaged);
-    for (int model = 0; model < 2; model++)
-        moray_turn_plan_free(&job->plan[model]);
-}
-
-static const steer_program program = {
-    .app = {.name = "min_time_turn",
-            .summary = "Optimises the joint offset of an underwater snake robot for the fastest change of heading, or "
-                       "from pose to pose, and proves it on the first-principles model against tuned bang-bang "
-                       "steering.",
-            .options = options,
-            .n_options = sizeof options / sizeof *options},
-    .work = work,
-    .release = release,
-    .one_gait = true,
-    .laws = turn_laws,
-    .numbers = turn_numbers,
-    .n_numbers = TURN_NUMBERS,
-    .x_tolerance = 1e-4,
-    .f_tolerance = 1e-5,
-    .rough_per_second = 20,
-    .start = turn_start,
-    .judge = turn_judge,
-    .scores = turn_scores,
-    .n_scores = TURN_SCORES,
-    .score_title = "Time until the heading stays in the band, s; the same, weighted by the error within it; final "
-                   "error, deg; power, W; nearest to the end position, m",
-    .columns = turn_columns,
-    .tables = turn_tables,
-    .headline = turn_headline,
-    .conclude = turn_conclude,
-    .explain = turn_explain,
-    .duration = "turn of",
-    .json_head = turn_json_head,
-    .json_plan = turn_json_plan,
-    .over_time = {.name = "heading",
-                  .title = "Heading without its undulation, first-principles model",
-                  .y_label = "heading [deg]"},
-    .values = turn_values,
-};
+static const moray_program program = {
+    .name = "min_time_turn",
+    .summary = "Optimises the joint offset of an underwater snake robot for the fastest change of heading, or "
+               "from pose to pose, and proves it on the first-principles model against tuned bang-bang "
+               "steering.",
+    .options = options,
+    .n_options = sizeof options / sizeof *options};
 
 // The paper's gait.
 int main(int argc, char **argv)
@@ -97,5 +51,5 @@ int main(int argc, char **argv)
     job.steer.input.theta_max[0] = job.steer.input.theta_max[1] = theta_max;
     job.steer.input.omega[0] = job.steer.input.omega[1] = omega;
     job.steer.input.delta[0] = job.steer.input.delta[1] = delta;
-    return steer_main(&program, argc, argv, &job.steer);
+    return steer_main(&program, &turn_steering, argc, argv, &job.steer);
 }

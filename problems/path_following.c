@@ -42,60 +42,12 @@ static const moray_option options[] = {
     STEER_TUNING_OPTION(path_job, "simulations spent on tuning, for every number that is tuned"),
 };
 
-static moray_status work(steer_job *steer)
-{
-    path_job *job = (path_job *)steer;
-    MORAY_TRY(moray_path_read(&job->path, job->path_text, job->radius));
-    MORAY_TRY(path_make_plans(job));
-    path_choose_trials(steer);
-    return steer_run_trials(steer);
-}
-
-static void release(steer_job *steer)
-{
-    path_job *job = (path_job *)steer;
-    moray_path_plan_free(&job->averaged);
-    for (int model = 0; model < 2; model++)
-        moray_path_plan_free(&job->plan[model]);
-    moray_path_free(&job->path);
-}
-
-static const steer_program program = {
-    .app = {.name = "path_following",
-            .summary = "Optimises gait and joint offset of an underwater snake robot to follow a path in a current, "
-                       "and proves them on the first-principles model against tuned line-of-sight guidance.",
-            .options = options,
-            .n_options = sizeof options / sizeof *options},
-    .work = work,
-    .release = release,
-    .laws = path_laws,
-    .numbers = path_numbers,
-    .n_numbers = PATH_NUMBERS,
-    .x_tolerance = 1e-3,
-    .f_tolerance = 1e-4,
-    .rough_per_second = 20,
-    .start = path_start,
-    .judge = path_judge,
-    .scores = path_scores,
-    .n_scores = PATH_SCORES,
-    .score_title = "Cross-track error, cm (settled: without the first way to the path); time to the end, s; cost as in "
-                   "the objective; power, W",
-    .columns = path_columns,
-    .tables = path_tables,
-    .headline = path_headline,
-    .conclude = path_conclude,
-    .explain = path_explain,
-    .swum = path_swum,
-    .tells_name = true,
-    .json_head = path_json_head,
-    .json_plan = path_json_plan,
-    .json_tail = path_json_tail,
-    .over_time = {.name = "across",
-                  .title = "Cross-track error, first-principles model",
-                  .y_label = "to the left of the path [cm]"},
-    .values = path_values,
-    .path = path_points,
-};
+static const moray_program program = {
+    .name = "path_following",
+    .summary = "Optimises gait and joint offset of an underwater snake robot to follow a path in a current, "
+               "and proves them on the first-principles model against tuned line-of-sight guidance.",
+    .options = options,
+    .n_options = sizeof options / sizeof *options};
 
 int main(int argc, char **argv)
 {
@@ -112,5 +64,5 @@ int main(int argc, char **argv)
     job.steer.evaluations = 10;
     job.steer.common.current[0] = -0.05;
     job.steer.common.current[1] = 0.1;
-    return steer_main(&program, argc, argv, &job.steer);
+    return steer_main(&program, &path_steering, argc, argv, &job.steer);
 }

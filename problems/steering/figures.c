@@ -11,7 +11,7 @@ moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure)
     if (status.code != MORAY_IO)
         return status;
     if (!job->common.quiet)
-        fprintf(stderr, "%s: %s\n", job->program->app.name, status.text);
+        fprintf(stderr, "%s: %s\n", job->name, status.text);
     return moray_ok();
 }
 

@@ -72,7 +72,7 @@ void steer_json_saturation(const steer_job *job, moray_json *json, moray_model m
 moray_json *steer_json(const steer_job *job)
 {
     moray_json *json = moray_json_new();
-    moray_json_text(json, "problem", job->program->app.name);
+    moray_json_text(json, "problem", job->name);
     moray_json_text(json, "version", moray_version());
     moray_json_text(json, "model", model_keys[job->common.model]);
     moray_json_open(json, "robot");

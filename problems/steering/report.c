@@ -180,7 +180,7 @@ static moray_status write_files(const steer_job *job, const steer_tables *tables
     MORAY_TRY(moray_json_write(json, file));
     MORAY_TRY(steer_draw(job));
     job->program->conclude(job, text, sizeof text);
-    const moray_report report = {.title = job->program->app.name,
+    const moray_report report = {.title = job->name,
                                  .text = text,
                                  .tables = tables->table,
                                  .n_tables = tables->n,

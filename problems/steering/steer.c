@@ -39,12 +39,13 @@ static bool certified(const steer_job *job)
     return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->common.model].pass;
 }
 
-int steer_main(const steer_program *program, int argc, char **argv, steer_job *job)
+int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job)
 {
     int exit_code;
+    job->name = app->name;
     job->program = program;
     memcpy(job->number, program->numbers, (size_t)program->n_numbers * sizeof *job->number);
-    if (!moray_app_start(&program->app, argc, argv, job, &exit_code))
+    if (!moray_app_start(app, argc, argv, job, &exit_code))
         return exit_code;
     job->ticker = moray_ticker_start(stderr, job->common.quiet);
     moray_interrupt_begin();
@@ -53,7 +54,7 @@ int steer_main(const steer_program *program, int argc, char **argv, steer_job *j
     moray_ticker_end(&job->ticker);
     if (!moray_failed(status))
         status = steer_report(job);
-    exit_code = moray_app_end(&program->app, job, status);
+    exit_code = moray_app_end(app, job, status);
     if (exit_code == MORAY_EXIT_SOLVED && !certified(job))
         exit_code = MORAY_EXIT_CERTIFICATE;
     program->release(job);
@@ -65,8 +66,8 @@ int steer_main(const steer_program *program, int argc, char **argv, steer_job *j
 static bool show_iteration(void *observer, const moray_progress *at)
 {
     const steer_job *job = observer;
-    moray_ticker_show(&job->ticker, "%s: iteration %d, objective %.6g, violation %.1e", job->program->app.name,
-                      at->iteration, at->objective, at->infeasibility);
+    moray_ticker_show(&job->ticker, "%s: iteration %d, objective %.6g, violation %.1e", job->name, at->iteration,
+                      at->objective, at->infeasibility);
     return !moray_interrupted();
 }
 

@@ -87,7 +87,6 @@ enum { STEER_CURVES = 3, STEER_POINTS = 400 };
 typedef struct steer_tables steer_tables;
 
 typedef struct steer_program {
-    moray_program app;
     // Makes plans, chooses trials, runs them. Error: MORAY_NOT_SOLVED saying what limits the robot, MORAY_INTERRUPTED.
     moray_status (*work)(steer_job *job);
     void (*release)(steer_job *job);
@@ -157,6 +156,7 @@ struct steer_job {
     double replan_periods, look_ahead_periods;
     bool receding;
     // found along the way
+    const char *name; // of the program
     const steer_program *program;
     steer_number number[STEER_NUMBERS];
     moray_straight_motion straight[STEER_GAITS][2]; // of the paper's gait, those of the plans; by the model swum on
@@ -172,7 +172,7 @@ struct steer_job {
 steer_job steer_defaults(void);
 
 // Runs a program; the job is what it begins with. Returns the exit code.
-int steer_main(const steer_program *program, int argc, char **argv, steer_job *job);
+int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job);
 
 static inline const steer_plan *steer_last_plan(const steer_job *job)
 {

@@ -88,7 +88,7 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     read(t->job, t->trial, x);
     t->status = try(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
     *f = t->trial->cost[MORAY_FIRST_PRINCIPLES];
-    moray_ticker_show(&t->job->ticker, "%s: tuning %s: %s %.4g: cost %.5g", t->job->program->app.name, t->trial->name,
+    moray_ticker_show(&t->job->ticker, "%s: tuning %s: %s %.4g: cost %.5g", t->job->name, t->trial->name,
                       t->job->number[0].key, t->trial->number[0], *f);
     return !moray_failed(t->status);
 }
@@ -150,7 +150,7 @@ static bool can_run(const steer_job *job, const steer_trial *trial)
 static moray_status run_trial(const steer_job *job, steer_trial *trial)
 {
     const steer_score *first = job->program->scores;
-    moray_ticker_show(&job->ticker, "%s: %s", job->program->app.name, trial->name);
+    moray_ticker_show(&job->ticker, "%s: %s", job->name, trial->name);
     if (trial->law->tuned)
         MORAY_TRY(tune(job, trial));
     for (int model = 0; model < 2; model++) {

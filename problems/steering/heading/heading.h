@@ -56,36 +56,6 @@ moray_status heading_search_gait(heading_job *job, const moray_gait *start, mora
 // What keeps the robot from following more closely, in one paragraph.
 void heading_explain(const steer_job *job, char *text, size_t size);
 
-// ---- Laws ----------------------------------------------------------------------------------------------------------
-
-// phi_0 = k (theta_ref - theta), or of theta_ref ahead of its time; a plan, blindly, and with k (theta_plan - theta);
-// plans made anew from the measured state, without knowing the reference ahead too.
-enum { HEADING_FEEDBACK, HEADING_AHEAD, HEADING_PLAN, HEADING_BOTH, HEADING_RECEDING, HEADING_UNKNOWING, HEADING_LAWS };
-enum { HEADING_GAIN, HEADING_LEAD, HEADING_NUMBERS };
-extern const steer_law heading_laws[HEADING_LAWS];
-extern const steer_number heading_numbers[HEADING_NUMBERS];
-
-// As of moray_heading_score.
-enum { HEADING_RMS, HEADING_FINAL, HEADING_LARGEST, HEADING_POWER, HEADING_SCORES };
-
-void heading_choose_trials(steer_job *job);
-void heading_start(steer_steersman *steersman, moray_closed_loop_spec *spec);
-double heading_judge(const steer_trial *trial, const steer_steersman *steersman, const moray_closed_loop *closed_loop,
-                     double *score);
-
-// ---- Report: of a steer_program ------------------------------------------------------------------------------------
-
-extern const steer_score heading_scores[HEADING_SCORES];
-extern const steer_column heading_columns[];
-void heading_tables(const steer_job *job, steer_tables *tables);
-void heading_headline(const steer_job *job, FILE *file);
-void heading_conclude(const steer_job *job, char *text, size_t size);
-void heading_notes(const steer_job *job, FILE *file);
-double heading_swum(const steer_job *job, const steer_trial *trial);
-void heading_json_head(const steer_job *job, moray_json *json);
-void heading_json_plan(const steer_job *job, moray_json *json, moray_model model);
-void heading_json_tail(const steer_job *job, moray_json *json);
-bool heading_values(const steer_job *job, const steer_trial *trial, const moray_swim_track *track, double *values);
-moray_status heading_draw(const steer_job *job);
+extern const steer_program heading_steering;
 
 #endif
