@@ -6,23 +6,11 @@
 #include "steering/options.h"
 
 static const moray_option options[] = {
-    {.section = "problem",
-     .key = "reference",
-     .flag = "reference",
-     .argument = "TEXT",
-     .type = MORAY_OPTION_TEXT,
-     MORAY_AT(heading_job, reference_text),
-     .help = "steps:T=H,... or ramps:T=H,... (s, deg), sine:AMPLITUDE,PERIOD, a CSV file with the columns "
-             "t_s,heading_deg, or fig8: the manoeuvre and gait of Sec. V-C"},
-    {.section = "problem",
-     .key = "horizon_s",
-     .flag = "horizon",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(heading_job, horizon),
-     .min = 1,
-     .max = 1e5,
-     .unit = "s",
-     .help = "how long the reference is followed; by default 100, fig8 190"},
+    STEER_TEXT_OPTION(heading_job, reference_text, "reference",
+                      "steps:T=H,... or ramps:T=H,... (s, deg), sine:AMPLITUDE,PERIOD, a CSV file with the columns "
+                      "t_s,heading_deg, or fig8: the manoeuvre and gait of Sec. V-C"),
+    STEER_FLAG(heading_job, horizon, "horizon_s", "horizon", 1, 1e5, "s",
+               "how long the reference is followed; by default 100, fig8 190"),
     STEER_GAIT_OPTIONS(heading_job),
     STEER_LIMIT(heading_job, max_error, "max_error_deg", "deg", "largest heading error allowed of the plan"),
     STEER_WEIGHT(heading_job, weight_power, "weight_power", 0,

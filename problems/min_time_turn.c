@@ -6,21 +6,9 @@
 #include "steering/turn/turn.h"
 
 static const moray_option options[] = {
-    {.section = "problem",
-     .key = "angle_deg",
-     .flag = "angle",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(turn_job, angle),
-     .min = -720,
-     .max = 720,
-     .unit = "deg",
-     .help = "by which the heading is to change, from 0; positive to the left"},
-    {.section = "problem",
-     .key = "end_m",
-     .type = MORAY_OPTION_PAIR,
-     MORAY_AT(turn_job, end),
-     .unit = "m",
-     .help = "where the turn is to end over ground, from 0,0; by default anywhere"},
+    STEER_FLAG(turn_job, angle, "angle_deg", "angle", -720, 720, "deg",
+               "by which the heading is to change, from 0; positive to the left"),
+    STEER_PAIR(turn_job, end, "end_m", "m", "where the turn is to end over ground, from 0,0; by default anywhere"),
     STEER_GAIT_OPTIONS(turn_job),
     STEER_WEIGHT(
         turn_job, steer.weight_steering, "weight_steering", 1e-9,

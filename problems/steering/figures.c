@@ -3,16 +3,18 @@
 
 #include "steer.h"
 
-enum { arrow_points = 5 };
-
-moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure)
+static moray_status drawn(const steer_job *job, moray_status status)
 {
-    const moray_status status = moray_output_figure(job->common.output, figure);
     if (status.code != MORAY_IO)
         return status;
     if (!job->common.quiet)
         fprintf(stderr, "%s: %s\n", job->name, status.text);
     return moray_ok();
+}
+
+moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure)
+{
+    return drawn(job, moray_output_figure(job->common.output, figure));
 }
 
 // ---- Over time -----------------------------------------------------------------------------------------------------
@@ -60,156 +62,30 @@ static moray_status draw_over_time(const steer_job *job, const steer_trial *cons
     return status;
 }
 
-// ---- Over ground ---------------------------------------------------------------------------------------------------
+// ---- All -----------------------------------------------------------------------------------------------------------
 
-// Extent of the curves along one axis.
-static void extent(const moray_curve *curves, int n, bool y, double *low, double *high)
-{
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (int c = 0; c < n; c++)
-        for (int k = 0; k < curves[c].n; k++) {
-            const double *values = y ? curves[c].y : curves[c].x;
-            const double value = values[(size_t)k * (curves[c].stride ? curves[c].stride : 1)];
-            *low = fmin(*low, value); // which passes over NaN
-            *high = fmax(*high, value);
-        }
-}
-
-// An arrow along the current beside the upper left of what is drawn, a tenth of it long.
-static void make_arrow(const double current[2], const moray_curve *curves, int n, double x[arrow_points],
-                       double y[arrow_points])
-{
-    double left, right, bottom, top;
-    extent(curves, n, false, &left, &right);
-    extent(curves, n, true, &bottom, &top);
-    const double speed = hypot(current[0], current[1]), size = 0.1 * fmax(right - left, top - bottom);
-    const double c = current[0] / speed, s = current[1] / speed;
-    const double along[arrow_points] = {-0.5, 0.5, 0.2, 0.5, 0.2}, across[arrow_points] = {0, 0, 0.15, 0, -0.15};
-    for (int k = 0; k < arrow_points; k++) {
-        x[k] = left + size * (0.6 + along[k] * c - across[k] * s);
-        y[k] = top + size * (0.6 + along[k] * s + across[k] * c);
-    }
-}
-
-// path.svg: the paths of the closed loops, the robot along the last, the current as an arrow.
 static moray_status draw_path(const steer_job *job, const steer_trial *const *trials,
                               const moray_closed_loop *closed_loops)
 {
-    const moray_closed_loop *last = &closed_loops[STEER_CURVES - 1];
-    const double *V = job->common.current;
-    moray_curve all[STEER_CURVES + 3];
-    double *x, *y, arrow_x[arrow_points], arrow_y[arrow_points], path_x[STEER_POINTS], path_y[STEER_POINTS];
-    int points, used = 0;
-    char label[60];
-    MORAY_TRY(moray_swim_outline(&last->track, last->swimmer, &x, &y, &points));
-    if (job->program->path) {
-        job->program->path(job, path_x, path_y);
-        all[used++] = (moray_curve){.label = "path", .x = path_x, .y = path_y, .n = STEER_POINTS};
-    }
+    const char *labels[STEER_CURVES];
+    double x[STEER_POINTS], y[STEER_POINTS];
+    const moray_curve path = {.label = "path", .x = x, .y = y, .n = STEER_POINTS};
     for (int k = 0; k < STEER_CURVES; k++)
-        all[used++] = (moray_curve){.label = trials[k]->name,
-                                    .x = &closed_loops[k].track.pose->p_x,
-                                    .y = &closed_loops[k].track.pose->p_y,
-                                    .n = closed_loops[k].track.n,
-                                    .stride = sizeof(moray_pose) / sizeof(double)};
-    all[used++] = (moray_curve){.label = "the robot on the last of these", .x = x, .y = y, .n = points};
-    if (V[0] != 0 || V[1] != 0) {
-        make_arrow(V, all, used, arrow_x, arrow_y);
-        snprintf(label, sizeof label, "current, %.3g m/s", hypot(V[0], V[1]));
-        all[used++] = (moray_curve){.label = label, .x = arrow_x, .y = arrow_y, .n = arrow_points};
-    }
-    const moray_status status = steer_draw_figure(job, &(moray_figure){.name = "path",
-                                                                       .title = "Path over ground",
-                                                                       .x_label = "x [m]",
-                                                                       .y_label = "y [m]",
-                                                                       .equal_axes = true,
-                                                                       .curves = all,
-                                                                       .n_curves = used});
-    free(x);
-    return status;
+        labels[k] = trials[k]->name;
+    if (job->program->path)
+        job->program->path(job, x, y);
+    return drawn(job, moray_closed_loop_draw_path(job->common.output, closed_loops, labels, STEER_CURVES,
+                                                  job->common.current, job->program->path ? &path : NULL));
 }
-
-// ---- One closed loop -----------------------------------------------------------------------------------------------
-
-// Ten seconds either side of the largest offset: first sample and how many.
-static int busiest(const moray_closed_loop *closed_loop, int *first)
-{
-    const moray_swim_track *track = &closed_loop->track;
-    const double around = 10;
-    int most = 0, n = 0;
-    for (int k = 0; k < track->n; k++)
-        if (fabs(closed_loop->offset[k]) > fabs(closed_loop->offset[most]))
-            most = k;
-    for (*first = most; *first > 0 && track->t[*first] > track->t[most] - around;)
-        --*first;
-    while (*first + n < track->n && track->t[*first + n] <= track->t[most] + around)
-        n++;
-    return n;
-}
-
-// joints.svg: joints at the tail, in the middle and at the head while the robot steers most.
-static moray_status draw_joints(const steer_job *job, const moray_closed_loop *closed_loop)
-{
-    enum { shown = 3 };
-    const moray_swim_track *track = &closed_loop->track;
-    const int joints = track->n_joints, joint[shown] = {0, (joints - 1) / 2, joints - 1};
-    const char *const labels[] = {"joint at the tail", "in the middle", "at the head", "offset"};
-    moray_curve curves[shown + 1];
-    int first;
-    const int n = busiest(closed_loop, &first);
-    double *phi = malloc((size_t)(2 * joints + (shown + 1) * n) * sizeof *phi);
-    if (!phi)
-        return moray_error(MORAY_MEMORY, "no memory for a figure");
-    double *values = phi + 2 * joints;
-    for (int k = 0; k < n; k++) {
-        moray_swimmer_joints(closed_loop->swimmer, track->x + (size_t)(first + k) * track->n_states, phi, phi + joints);
-        for (int j = 0; j < shown; j++)
-            values[j * n + k] = phi[joint[j]] / DEG;
-        values[shown * n + k] = closed_loop->offset[first + k] / DEG;
-    }
-    for (int j = 0; j <= shown; j++)
-        curves[j] = (moray_curve){.label = labels[j], .x = track->t + first, .y = values + j * n, .n = n};
-    const moray_status status =
-        steer_draw_figure(job, &(moray_figure){.name = "joints",
-                                               .title = "Joint motion where the robot steers most",
-                                               .x_label = "time [s]",
-                                               .y_label = "joint angle [deg]",
-                                               .curves = curves,
-                                               .n_curves = shown + 1});
-    free(phi);
-    return status;
-}
-
-static moray_status write_trajectory(const steer_job *job, const moray_closed_loop *closed_loop)
-{
-    const moray_swim_track *track = &closed_loop->track;
-    const int pose = sizeof *track->pose / sizeof(double);
-    const moray_column columns[] = {
-        {"t", "s", track->t, 1},
-        {"heading", "rad", &track->pose->heading, pose},
-        {"p_x", "m", &track->pose->p_x, pose},
-        {"p_y", "m", &track->pose->p_y, pose},
-        {"v_x", "m/s", &track->pose->v_x, pose},
-        {"v_y", "m/s", &track->pose->v_y, pose},
-        {"phi_0", "rad", closed_loop->offset, 1},
-        {"energy", "J", track->energy, 1},
-    };
-    FILE *file;
-    MORAY_TRY(moray_output_file(job->common.output, "trajectory.csv", &file));
-    moray_csv_write(file, columns, sizeof columns / sizeof *columns, track->n);
-    return moray_ok();
-}
-
-// ---- All -----------------------------------------------------------------------------------------------------------
 
 static moray_status draw_shown(const steer_job *job, const steer_trial *const *trials,
                                const moray_closed_loop *closed_loops)
 {
+    const moray_closed_loop *last = &closed_loops[STEER_CURVES - 1];
     MORAY_TRY(draw_over_time(job, trials, closed_loops));
     MORAY_TRY(draw_path(job, trials, closed_loops));
-    MORAY_TRY(draw_joints(job, &closed_loops[STEER_CURVES - 1]));
-    MORAY_TRY(write_trajectory(job, &closed_loops[STEER_CURVES - 1]));
+    MORAY_TRY(drawn(job, moray_closed_loop_draw_joints(job->common.output, last)));
+    MORAY_TRY(moray_closed_loop_write(job->common.output, last));
     return job->program->draw ? job->program->draw(job) : moray_ok();
 }
 

@@ -12,6 +12,18 @@
         .section = part, .key = name, .type = MORAY_OPTION_##kind, MORAY_AT(settings, place), .min = low, .max = high, \
         .open = MORAY_OPTION_##kind == MORAY_OPTION_LIMIT, .unit = in, .help = text                                    \
     }
+#define STEER_TEXT_OPTION(settings, place, name, text)                                                                 \
+    {                                                                                                                  \
+        .section = "problem", .key = name, .flag = name, .argument = "TEXT", .type = MORAY_OPTION_TEXT,                \
+        MORAY_AT(settings, place), .help = text                                                                        \
+    }
+#define STEER_PAIR(settings, place, name, in, text) STEER_ROW(PAIR, settings, place, "problem", name, 0, 0, in, text)
+#define STEER_BOOL(settings, place, part, name, text) STEER_ROW(BOOL, settings, place, part, name, 0, 0, NULL, text)
+#define STEER_FLAG(settings, place, name, called, low, high, in, text)                                                 \
+    {                                                                                                                  \
+        .section = "problem", .key = name, .flag = called, .type = MORAY_OPTION_REAL, MORAY_AT(settings, place),       \
+        .min = low, .max = high, .unit = in, .help = text                                                              \
+    }
 #define STEER_RANGE(settings, place, name, low, high, in, text)                                                        \
     STEER_ROW(RANGE, settings, place, "problem", name, low, high, in, text)
 #define STEER_LIMIT(settings, place, name, in, text)                                                                   \
@@ -42,11 +54,7 @@
                   "finer meshes tried where the first is too coarse")
 
 #define STEER_RECEDING_OPTIONS(settings)                                                                               \
-    {.section = "receding",                                                                                            \
-     .key = "receding",                                                                                                \
-     .type = MORAY_OPTION_BOOL,                                                                                        \
-     MORAY_AT(settings, steer.receding),                                                                               \
-     .help = "try receding horizon too"},                                                                              \
+    STEER_BOOL(settings, steer.receding, "receding", "receding", "try receding horizon too"),                          \
         STEER_REAL(settings, steer.replan_periods, "receding", "replan_periods", 0.01, 1000, NULL,                     \
                    "undulations between two plans"),                                                                   \
         STEER_REAL(settings, steer.look_ahead_periods, "receding", "look_ahead_periods", 0.1, 1000, NULL,              \
