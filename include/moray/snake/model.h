@@ -106,18 +106,11 @@ moray_model moray_swimmer_model(const moray_swimmer *swimmer);
 int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
 
 void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
+void moray_swimmer_current(const moray_swimmer *swimmer, double V[2]);
 
-// How a swimmer of the control-oriented model reads the paper. Misprints can be swum as printed, to see what they do;
-// the plants below have no such choice.
-typedef enum {
-    MORAY_READ_CORRECTED = 0,
-    MORAY_READ_23H_PRINTED = 1, // (23h) with h_4 and h_5 as printed (erratum E1)
-    MORAY_READ_L_PRINTED = 2,   // l of (8), (12), (13) half a link, as everywhere else (erratum E2)
-    MORAY_READ_PRINTED = 3      // both
-} moray_reading;
-
-// Corrected unless set; without effect on the first-principles model.
-void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
+// Something that the model leaves out: adds to the state derivative dx[2N+4] in the state x[2N+4]. NULL: nothing.
+typedef void moray_swimmer_extra_fn(const moray_swimmer *swimmer, const double *x, double *dx);
+void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *extra);
 
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].

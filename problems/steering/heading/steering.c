@@ -5,7 +5,6 @@
 
 static const double look_every = 0.1;      // for a new command [s]
 static const double command_change = DEG;  // that calls for a new plan
-static const double error_unit = 10 * DEG; // in what tuning minimises
 
 // ---- Laws ----------------------------------------------------------------------------------------------------------
 
@@ -95,7 +94,7 @@ static double judge(const steer_trial *trial, const steer_steersman *h, const mo
     score[FINAL] = s.final;
     score[LARGEST] = s.largest;
     score[POWER] = s.power;
-    return s.rms * s.rms / (error_unit * error_unit) + job->weight_power * s.power;
+    return s.rms * s.rms / (100 * DEG * DEG) + job->weight_power * s.power;
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
