@@ -4,6 +4,7 @@
 #ifndef MORAY_MORAY_H
 #define MORAY_MORAY_H
 
+#include "moray/angle.h"
 #include "moray/app/program.h"
 #include "moray/app/results.h"
 #include "moray/app/run.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "moray/angle.h"
 #include "moray/control/path.h"
 
 #include <stdlib.h>
 #include <tgmath.h>
-
-static const double degree = M_PI / 180;
 
 // ---- Legs and arcs -------------------------------------------------------------------------------------------------
 
@@ -66,7 +65,7 @@ static moray_status lay(moray_path *path, const waypoints *through, double radiu
             return moray_error(MORAY_INPUT,
                                "path: leg %d is %.4g m long, too short for arcs of radius %.4g m that turn by %.4g deg "
                                "at its end",
-                               k + 1, leg, radius, turn / degree);
+                               k + 1, leg, radius, turn / MORAY_DEGREE);
         add_piece(path, k + 1, from[0] + before * c, from[1] + before * s, course, leg - before - taken, 0);
         if (turn != 0)
             add_piece(path, k + 1, to[0] - taken * c, to[1] - taken * s, course, radius * fabs(turn),

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // Paths against closed forms: points, nearest points, files, currents.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
 
 #include "moray/control/path.h"
-
-#define DEG (M_PI / 180)
 
 // ---- Geometry ------------------------------------------------------------------------------------------------------
 

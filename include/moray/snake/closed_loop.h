@@ -4,6 +4,7 @@
 #ifndef MORAY_SNAKE_CLOSED_LOOP_H
 #define MORAY_SNAKE_CLOSED_LOOP_H
 
+#include "moray/app/results.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/path.h"
@@ -49,5 +50,16 @@ typedef struct moray_path_score {
 } moray_path_score;
 moray_path_score moray_swim_closed_loop_path_score(const moray_swim_closed_loop *closed_loop, const moray_path *path,
                                                    double reach);
+
+// Figures of n closed loops: path.svg, their paths over ground with the robot along the last, the current as an arrow,
+// and a path to be followed (NULL: none); joints.svg, joints at the tail, in the middle and at the head while the robot
+// steers most. Error: as moray_output_figure.
+moray_status moray_swim_closed_loop_draw_path(moray_output *output, const moray_swim_closed_loop *closed_loops,
+                                              const char *const *labels, int n, const double current[2],
+                                              const moray_curve *path);
+moray_status moray_swim_closed_loop_draw_joints(moray_output *output, const moray_swim_closed_loop *closed_loop);
+
+// trajectory.csv. Error: MORAY_IO, MORAY_MEMORY.
+moray_status moray_swim_closed_loop_write(moray_output *output, const moray_swim_closed_loop *closed_loop);
 
 #endif

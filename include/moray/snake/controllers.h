@@ -14,10 +14,10 @@
 // Steady swimming of a gait without offset, in still water, at mean heading 0.
 typedef struct moray_straight_motion {
     moray_model model;
-    moray_gait gait;      // offset 0
-    double speed, power;  // [m/s], [W]
-    double undulation[2]; // of the heading: factors of cos and sin of omega t [rad]
-    double body[6];       // state of moray_state_body where omega t is a multiple of 2 pi, at p = 0
+    moray_gait gait;                // offset 0
+    double speed, power;            // [m/s], [W]
+    double undulation[2];           // of the heading: factors of cos and sin of omega t [rad]
+    double body[MORAY_BODY_STATES]; // state of moray_state_body where omega t is a multiple of 2 pi, at p = 0
 } moray_straight_motion;
 
 // Error: those of moray_orbit_new and moray_orbit_solve.

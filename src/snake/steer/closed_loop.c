@@ -27,7 +27,7 @@ static void start(const moray_swim_closed_loop_spec *plan, const moray_swimmer *
     double state[MORAY_STEERING_STATES];
     moray_gait gait = plan->straight->gait;
     moray_straight_motion_start(plan->straight, plan->heading, plan->current, state);
-    memcpy(state + 1, plan->position, sizeof plan->position);
+    memcpy(state + MORAY_STATE_P_X, plan->position, sizeof plan->position);
     if (plan->controller) {
         const moray_offset offset = plan->controller->offset(0, plan->controller->self);
         gait.offset = offset.value;

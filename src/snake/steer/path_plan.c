@@ -62,8 +62,8 @@ static moray_status guess_by_dot(steering_guess *guess, const moray_path_spec *s
     gait.offset = spec->limits.offset;
     dot d = {.spec = spec, .speed = straight->speed, .heading = heading, .along = spec->along};
     MORAY_TRY(moray_turn_rate(&spec->robot, spec->model, &gait, &d.turn_rate));
-    d.x = spec->start[1];
-    d.y = spec->start[2];
+    d.x = spec->start[MORAY_STATE_P_X];
+    d.y = spec->start[MORAY_STATE_P_Y];
     dot first = d;
     for (; first.along < spec->path->length && arrived < 3 * seconds; arrived += seconds / n)
         step(&first, seconds / n);
@@ -84,10 +84,10 @@ static moray_status pose_problem(moray_path_plan *plan, moray_path_spec *spec, c
     double across;
     moray_straight_motion_start(&plan->straight, heading, spec->current, spec->start);
     if (spec->averaged) {
-        spec->start[0] = heading;
-        spec->start[3] = 0;
+        spec->start[MORAY_STATE_THETA] = heading;
+        spec->start[MORAY_STATE_V_THETA] = 0;
     }
-    memcpy(spec->start + 1, position, 2 * sizeof *position);
+    memcpy(spec->start + MORAY_STATE_P_X, position, 2 * sizeof *position);
     spec->along = 0;
     moray_path_project(spec->path, position[0], position[1], &spec->along, &across);
     spec->t0 = spec->duration = 0;
@@ -168,7 +168,7 @@ static moray_status make_again(void *self, double t, const double *state, void *
     memcpy(r->spec.start, state, sizeof r->spec.start);
     r->spec.t0 = t;
     r->spec.duration = r->horizon;
-    moray_path_project(r->spec.path, state[1], state[2], &r->spec.along, &across);
+    moray_path_project(r->spec.path, state[MORAY_STATE_P_X], state[MORAY_STATE_P_Y], &r->spec.along, &across);
     const moray_status status = moray_path_problem_new(path, &r->spec);
     if (moray_failed(status)) {
         free(path);

@@ -41,17 +41,18 @@ static void state_of(const moray_swim_receding_horizon *r, const moray_swim_samp
         double angle[2], rate[2];
         undulation(from, sample->t, &angle[0], &rate[0]);
         undulation(to, sample->t, &angle[1], &rate[1]);
-        state[0] += angle[1] - angle[0];
-        state[3] += rate[1] - rate[0];
-        const double turn = to->model == MORAY_FIRST_PRINCIPLES ? state[0] : -state[0], v[2] = {state[4], state[5]};
-        state[4] = v[0] * cos(turn) - v[1] * sin(turn);
-        state[5] = v[0] * sin(turn) + v[1] * cos(turn);
+        state[MORAY_STATE_THETA] += angle[1] - angle[0];
+        state[MORAY_STATE_V_THETA] += rate[1] - rate[0];
+        const double turn = to->model == MORAY_FIRST_PRINCIPLES ? state[MORAY_STATE_THETA] : -state[0],
+                     v[2] = {state[MORAY_STATE_V_1], state[MORAY_STATE_V_2]};
+        state[MORAY_STATE_V_1] = v[0] * cos(turn) - v[1] * sin(turn);
+        state[MORAY_STATE_V_2] = v[0] * sin(turn) + v[1] * cos(turn);
     }
-    state[6] = offset.value / r->spec.scale;
-    state[7] = offset.rate / r->spec.scale;
+    state[MORAY_STATE_PHI_0] = offset.value / r->spec.scale;
+    state[MORAY_STATE_V_PHI_0] = offset.rate / r->spec.scale;
     const moray_steering_limits *limits = r->spec.limits; // kept to rounding only
-    state[6] = fmin(fmax(state[6], -limits->offset), limits->offset);
-    state[7] = fmin(fmax(state[7], -limits->offset_rate), limits->offset_rate);
+    state[MORAY_STATE_PHI_0] = fmin(fmax(state[MORAY_STATE_PHI_0], -limits->offset), limits->offset);
+    state[MORAY_STATE_V_PHI_0] = fmin(fmax(state[MORAY_STATE_V_PHI_0], -limits->offset_rate), limits->offset_rate);
 }
 
 static moray_status measure(const moray_swim_sample *sample, void *self)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Cruises, feedback laws and scores against simulation from rest, numbers worked out by hand and closed forms.
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -9,8 +10,6 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/closed_loop.h"
-
-#define DEG (M_PI / 180)
 
 static const moray_model models[] = {MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES};
 

@@ -2,6 +2,7 @@
 //
 // Heading references against what their texts say; plans against a simulation of the whole swimmer under the offset
 // found, which shares with them the model alone.
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -11,8 +12,6 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/closed_loop.h"
-
-#define DEG (M_PI / 180)
 
 // ---- References ----------------------------------------------------------------------------------------------------
 

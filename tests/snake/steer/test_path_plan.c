@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The problem of following a path, plans that do, and guidance towards one.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
@@ -8,8 +9,6 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/path.h"
 #include "moray/snake/closed_loop.h"
-
-#define DEG (M_PI / 180)
 
 // ---- The problem ---------------------------------------------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 //
 // Receding horizon: when plans are made and from what, told by a replanner that listens in; and steering problems: what
 // they refuse, and limits in the other model against (27) and (33).
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -10,8 +11,6 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/receding_horizon.h"
 #include "moray/snake/closed_loop.h"
-
-#define DEG (M_PI / 180)
 
 // ---- Steering problems ---------------------------------------------------------------------------------------------
 
@@ -64,6 +63,9 @@ static void test_refused(void)
     bad = good;
     bad.limits.offset_rate = 0;
     refuse(&bad, "offset rate limit = 0");
+    bad = good;
+    bad.task.nu = 60;
+    refuse(&bad, "further controls of none = 60: must be from 0 to 15");
     bad = good;
     bad.limits.power = NAN;
     refuse(&bad, "power_W = nan");
@@ -214,7 +216,8 @@ static void test_measured(scene *s, moray_model swum)
         CHECK_NEAR(state[2], pose->p_y, 1e-9, "p_y [m]");
         CHECK_NEAR(state[4] * cos(turn) - state[5] * sin(turn), pose->v_x, 1e-9, "velocity over ground [m/s]");
         CHECK_NEAR(state[4] * sin(turn) + state[5] * cos(turn), pose->v_y, 1e-9, "and along y");
-        CHECK_NEAR(state[6], closed_loop.offset[sample] / s->scale, 1e-6, "offset of the planning model [m]");
+        CHECK_NEAR(state[MORAY_STATE_PHI_0], closed_loop.offset[sample] / s->scale, 1e-6,
+                   "offset of the planning model [m]");
     }
     CHECK(s->listener.n == 3, "%d plans", s->listener.n);
     moray_swim_closed_loop_free(&closed_loop);

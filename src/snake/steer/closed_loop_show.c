@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
+//
+// Closed loops as figures and as a file.
+#include <math.h>
 #include <stdlib.h>
 
-#include "steer.h"
+#include "moray/angle.h"
+#include "moray/snake/closed_loop.h"
 
-enum { most_curves = 12, arrow_points = 5 };
+// ---- Over ground ---------------------------------------------------------------------------------------------------
 
-moray_status steer_draw(moray_output *output, bool quiet, const char *program, const moray_figure *figure)
-{
-    const moray_status status = moray_output_figure(output, figure);
-    if (status.code != MORAY_IO)
-        return status;
-    if (!quiet)
-        fprintf(stderr, "%s: %s\n", program, status.text);
-    return moray_ok();
-}
+enum { arrow_points = 5 };
 
 // Extent of the curves along one axis.
 static void extent(const moray_curve *curves, int n, bool y, double *low, double *high)
@@ -45,40 +41,49 @@ static void make_arrow(const double current[2], const moray_curve *curves, int n
     }
 }
 
-moray_status steer_draw_path(const moray_common *common, const char *program, const steer_curve *curves, int n,
-                             const moray_curve *more, int n_more)
+moray_status moray_swim_closed_loop_draw_path(moray_output *output, const moray_swim_closed_loop *closed_loops,
+                                              const char *const *labels, int n, const double current[2],
+                                              const moray_curve *path)
 {
-    const moray_swim_closed_loop *last = curves[n - 1].closed_loop;
-    moray_curve all[most_curves];
+    const moray_swim_closed_loop *last = &closed_loops[n - 1];
     double *x, *y, arrow_x[arrow_points], arrow_y[arrow_points];
     int points, used = 0;
     char label[60];
-    MORAY_TRY(moray_swim_outline(&last->track, last->swimmer, &x, &y, &points));
-    for (int k = 0; k < n_more; k++)
-        all[used++] = more[k];
+    moray_curve *all = calloc((size_t)n + 3, sizeof *all);
+    if (!all)
+        return moray_error(MORAY_MEMORY, "no memory for a figure");
+    moray_status status = moray_swim_outline(&last->track, last->swimmer, &x, &y, &points);
+    if (moray_failed(status)) {
+        free(all);
+        return status;
+    }
+    if (path)
+        all[used++] = *path;
     for (int k = 0; k < n; k++)
-        all[used++] = (moray_curve){.label = curves[k].label,
-                                    .x = &curves[k].closed_loop->track.pose->p_x,
-                                    .y = &curves[k].closed_loop->track.pose->p_y,
-                                    .n = curves[k].closed_loop->track.n,
+        all[used++] = (moray_curve){.label = labels[k],
+                                    .x = &closed_loops[k].track.pose->p_x,
+                                    .y = &closed_loops[k].track.pose->p_y,
+                                    .n = closed_loops[k].track.n,
                                     .stride = sizeof(moray_pose) / sizeof(double)};
     all[used++] = (moray_curve){.label = "the robot on the last of these", .x = x, .y = y, .n = points};
-    if (common->current[0] != 0 || common->current[1] != 0) {
-        make_arrow(common->current, all, used, arrow_x, arrow_y);
-        snprintf(label, sizeof label, "current, %.3g m/s", hypot(common->current[0], common->current[1]));
+    if (current[0] != 0 || current[1] != 0) {
+        make_arrow(current, all, used, arrow_x, arrow_y);
+        snprintf(label, sizeof label, "current, %.3g m/s", hypot(current[0], current[1]));
         all[used++] = (moray_curve){.label = label, .x = arrow_x, .y = arrow_y, .n = arrow_points};
     }
-    const moray_status status = steer_draw(common->output, common->quiet, program,
-                                           &(moray_figure){.name = "path",
-                                                           .title = "Path over ground",
-                                                           .x_label = "x [m]",
-                                                           .y_label = "y [m]",
-                                                           .equal_axes = true,
-                                                           .curves = all,
-                                                           .n_curves = used});
+    status = moray_output_figure(output, &(moray_figure){.name = "path",
+                                                         .title = "Path over ground",
+                                                         .x_label = "x [m]",
+                                                         .y_label = "y [m]",
+                                                         .equal_axes = true,
+                                                         .curves = all,
+                                                         .n_curves = used});
     free(x);
+    free(all);
     return status;
 }
+
+// ---- One closed loop -----------------------------------------------------------------------------------------------
 
 // Ten seconds either side of the largest offset: first sample and how many.
 static int busiest(const moray_swim_closed_loop *closed_loop, int *first)
@@ -96,21 +101,21 @@ static int busiest(const moray_swim_closed_loop *closed_loop, int *first)
     return n;
 }
 
-moray_status steer_draw_joints(const moray_common *common, const char *program,
-                               const moray_swim_closed_loop *closed_loop)
+moray_status moray_swim_closed_loop_draw_joints(moray_output *output, const moray_swim_closed_loop *closed_loop)
 {
     enum { shown = 3 };
     const moray_swim_track *track = &closed_loop->track;
     const int joints = track->n_joints, joint[shown] = {0, (joints - 1) / 2, joints - 1};
     const char *const labels[] = {"joint at the tail", "in the middle", "at the head", "offset"};
     const bool control = moray_swimmer_model(closed_loop->swimmer) == MORAY_CONTROL_ORIENTED;
-    const double unit = control ? 0.01 : DEG;
+    const double unit = control ? 0.01 : MORAY_DEGREE;
     moray_curve curves[shown + 1];
     int first;
     const int n = busiest(closed_loop, &first);
-    double *phi = malloc((size_t)(2 * joints + (shown + 1) * n) * sizeof *phi), *values = phi + 2 * joints;
+    double *phi = malloc((size_t)(2 * joints + (shown + 1) * n) * sizeof *phi);
     if (!phi)
         return moray_error(MORAY_MEMORY, "no memory for a figure");
+    double *values = phi + 2 * joints;
     for (int k = 0; k < n; k++) {
         moray_swimmer_joints(closed_loop->swimmer, track->x + (size_t)(first + k) * track->n_states, phi, phi + joints);
         for (int j = 0; j < shown; j++)
@@ -119,18 +124,18 @@ moray_status steer_draw_joints(const moray_common *common, const char *program,
     }
     for (int j = 0; j <= shown; j++)
         curves[j] = (moray_curve){.label = labels[j], .x = track->t + first, .y = values + j * n, .n = n};
-    const moray_figure figure = {.name = "joints",
-                                 .title = "Joint motion where the robot steers most",
-                                 .x_label = "time [s]",
-                                 .y_label = control ? "joint coordinate [cm]" : "joint angle [deg]",
-                                 .curves = curves,
-                                 .n_curves = shown + 1};
-    const moray_status status = steer_draw(common->output, common->quiet, program, &figure);
+    const moray_status status =
+        moray_output_figure(output, &(moray_figure){.name = "joints",
+                                                    .title = "Joint motion where the robot steers most",
+                                                    .x_label = "time [s]",
+                                                    .y_label = control ? "joint coordinate [cm]" : "joint angle [deg]",
+                                                    .curves = curves,
+                                                    .n_curves = shown + 1});
     free(phi);
     return status;
 }
 
-moray_status steer_write_trajectory(const moray_common *common, const moray_swim_closed_loop *closed_loop)
+moray_status moray_swim_closed_loop_write(moray_output *output, const moray_swim_closed_loop *closed_loop)
 {
     const moray_swim_track *track = &closed_loop->track;
     const int pose = sizeof *track->pose / sizeof(double);
@@ -146,7 +151,7 @@ moray_status steer_write_trajectory(const moray_common *common, const moray_swim
         {"energy", "J", track->energy, 1},
     };
     FILE *file;
-    MORAY_TRY(moray_output_file(common->output, "trajectory.csv", &file));
+    MORAY_TRY(moray_output_file(output, "trajectory.csv", &file));
     moray_csv_write(file, columns, sizeof columns / sizeof *columns, track->n);
     return moray_ok();
 }
