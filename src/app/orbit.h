@@ -3,7 +3,7 @@
 #define APP_ORBIT_H
 
 #include "app/orbit_system.h"
-#include "nlp/klu.h"
+#include "linear/klu.h"
 
 // Where the largest joint effort was sampled.
 typedef struct orbit_peak {

@@ -2,8 +2,8 @@
 //
 // Sparse LU factors of square matrices of one pattern: ordered once, factored for every set of values, solved with the
 // matrix or its transpose.
-#ifndef NLP_KLU_H
-#define NLP_KLU_H
+#ifndef LINEAR_KLU_H
+#define LINEAR_KLU_H
 
 #include "moray/map.h"
 
