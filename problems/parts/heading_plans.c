@@ -116,6 +116,7 @@ moray_settings heading_settings(heading_job *job, bool averaged, double period)
     if (!averaged && job->common.intervals > 0)
         settings.intervals = job->common.intervals;
     settings.tolerance = job->common.tol;
+    settings.linear_solver = job->common.linear_solver;
     settings.mesh_tolerance = 1e-5;
     settings.max_refinements = averaged ? 0 : job->refinements;
     settings.barrier = averaged ? 0.1 : 1e-4;

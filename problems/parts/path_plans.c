@@ -151,6 +151,7 @@ static moray_settings settings_of(path_job *job, bool averaged, const moray_crui
     if (!averaged && job->common.intervals > 0)
         settings.intervals = job->common.intervals;
     settings.tolerance = job->common.tol;
+    settings.linear_solver = job->common.linear_solver;
     settings.mesh_tolerance = 1e-4; // a corner begins and ends with a kink
     settings.max_refinements = averaged ? 0 : job->refinements;
     settings.barrier = averaged ? 0.1 : 1e-4;

@@ -88,6 +88,7 @@ static moray_settings settings_of(turn_job *job, const moray_turn_plan *from, do
     if (from && job->common.intervals > 0)
         settings.intervals = job->common.intervals;
     settings.tolerance = job->common.tol;
+    settings.linear_solver = job->common.linear_solver;
     settings.mesh_tolerance = 1e-4; // steering at its limits has kinks
     settings.max_refinements = from ? job->refinements : 0;
     settings.barrier = from ? 1e-3 : 0.1;
