@@ -3,7 +3,7 @@
 // What the solver costs: where the time of a solve goes, how it grows with the mesh and the robot, and how near it is
 // to the floor that evaluations free of charge would leave. Times are the processor's, medians of several measurements
 // in this run.
-#include "parts/benchmark.h"
+#include "benchmark/benchmark.h"
 
 enum part { ALL, S1, PROBLEMS, CLASSICS, INTERVALS, LINKS, HORIZON, SIMULATION };
 static const char *const parts[] = {"all",   "s1",      "problems",   "classics", "intervals",

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "classics/classics.h"
-#include "moray/run.h"
+#include "moray/app/run.h"
 #include "moray/sim.h"
 
 enum { most = 64, diagnosis_size = 600 }; // problems, characters
@@ -115,8 +115,8 @@ static void print_line(const struct line *line)
         snprintf(difference, sizeof difference, "%.1e", r->difference);
     history_text(r, history, sizeof history);
     printf("%-21s %14.10g %11s %10s %-11s %5d %6.2f s  %-27s %s\n", line->classic->name, r->value,
-           published(line->classic), difference, classic_verdict(line->classic, r), r->iterations, r->seconds, history,
-           c->pass ? "passes" : failed);
+           published(line->classic), difference, classic_agreement(line->classic, r), r->iterations, r->seconds,
+           history, c->pass ? "passes" : failed);
     if (r->outcome != MORAY_NLP_SOLVED)
         printf("    %s", line->diagnosis);
     fflush(stdout);
@@ -149,7 +149,7 @@ static void line_to_json(moray_json *json, const struct line *line)
     moray_json_number(json, "optimum", r->value);
     moray_json_number(json, "published", printed ? strtod(printed, NULL) : NAN);
     moray_json_number(json, "difference", r->difference);
-    moray_json_text(json, "verdict", classic_verdict(line->classic, r));
+    moray_json_text(json, "verdict", classic_agreement(line->classic, r));
     moray_json_open(json, "solver");
     moray_json_text(json, "status", moray_nlp_outcome_text(r->outcome));
     moray_json_number(json, "iterations", r->iterations);
@@ -167,7 +167,7 @@ static moray_status write_report(const classics_run *run, const struct line *lin
     for (int i = 0; i < n; i++) {
         const struct classic_result *r = &lines[i].result;
         snprintf(text[i], sizeof text[i], "%.10g, published %s: %s", r->value, published(lines[i].classic),
-                 classic_verdict(lines[i].classic, r));
+                 classic_agreement(lines[i].classic, r));
         rows[i] = (moray_table_row){
             .label = lines[i].classic->title,
             .text = text[i],
@@ -218,7 +218,7 @@ static moray_status judge(const struct line *lines, int n)
     for (int i = 0; i < n; i++) {
         if (lines[i].result.outcome == MORAY_NLP_INTERRUPTED)
             return moray_error(MORAY_INTERRUPTED, "interrupted at %s", lines[i].classic->name);
-        const char *verdict = classic_verdict(lines[i].classic, &lines[i].result);
+        const char *verdict = classic_agreement(lines[i].classic, &lines[i].result);
         differ += strcmp(verdict, "DIFFERS") == 0;
         unsolved += strcmp(verdict, "NOT SOLVED") == 0;
     }

@@ -2,7 +2,7 @@
 //
 // What the gait (25) leaves on the table: the motion of the joints freed step by step from the best gait to Fourier
 // series in every joint, at equal power and limits, on either model; each motion swum on the first-principles model.
-#include "parts/free_gait.h"
+#include "gait/free_gait/free_gait.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -68,7 +68,7 @@ static moray_status solve_from(free_gait *run, motion *m, const stage *from, dou
     double *s = calloc(MORAY_GAIT_PARAMETERS + 1 + (size_t)coefficients_of(run, m->harmonics), sizeof *s);
     if (!s)
         return moray_error(MORAY_MEMORY, "no memory for a guess");
-    guess_parameters(run, m, &from->promise.gait, share, s);
+    guess_parameters(run, m, &from->prediction.gait, share, s);
     const moray_status status = moray_gait_problem_continue(m->at.problem, &settings, from->solution, s, &solution);
     free(s);
     if (!moray_failed(status))
@@ -105,10 +105,10 @@ static moray_status keep_motion(const free_gait *run, motion *m)
 {
     const int n = run->job.common.robot.links - 1, count = coefficients_of(run, m->harmonics);
     const moray_robot *robot = &run->job.common.robot;
-    m->at.promise = moray_gait_problem_promise(m->at.problem, m->at.solution);
+    m->at.prediction = moray_gait_problem_prediction(m->at.problem, m->at.solution);
     if (m->harmonics == 0) {
         for (int model = 0; model < 2; model++)
-            m->at.trial.gait[model] = moray_gait_map(robot, &m->at.promise.gait, m->at.model, (moray_model)model);
+            m->at.trial.gait[model] = moray_gait_map(robot, &m->at.prediction.gait, m->at.model, (moray_model)model);
         return moray_ok();
     }
     m->coefficients = calloc(2 * (size_t)count, sizeof *m->coefficients);
@@ -116,13 +116,13 @@ static moray_status keep_motion(const free_gait *run, motion *m)
         return moray_error(MORAY_MEMORY, "no memory for a series of %d harmonics", m->harmonics);
     for (int model = 0; model < 2; model++) {
         m->series[model] = (moray_series){n, m->harmonics, m->coefficients + model * count};
-        m->at.trial.gait[model] = (moray_gait){.omega = m->at.promise.gait.omega, .series = &m->series[model]};
+        m->at.trial.gait[model] = (moray_gait){.omega = m->at.prediction.gait.omega, .series = &m->series[model]};
     }
     memcpy(m->coefficients + (int)m->at.model * count, moray_solution_parameters(m->at.solution) + 1,
            (size_t)count * sizeof *m->coefficients);
     if (m->at.model == MORAY_CONTROL_ORIENTED)
         moray_series_to_first_principles(robot, &m->series[0], m->coefficients + count);
-    m->at.promise.gait = m->at.trial.gait[m->at.model];
+    m->at.prediction.gait = m->at.trial.gait[m->at.model];
     return moray_ok();
 }
 
@@ -133,17 +133,17 @@ static moray_status prove(free_gait *run, motion *m)
     moray_ticker_show(&job->ticker, "%s: %s, swum on the first-principles model", job->name, m->name);
     MORAY_TRY(gait_job_certify(job, &m->at));
     for (int model = (int)m->at.model; model <= (int)MORAY_FIRST_PRINCIPLES; model++)
-        MORAY_TRY(moray_gait_trial_swim(&job->basin, (moray_model)model, &m->at.trial));
-    m->at.gain = moray_gait_gain_over(&job->basin, &m->at.trial, &job->paper);
-    m->over_best = moray_gait_gain_over(&job->basin, &m->at.trial, &last_stage(job)->trial);
-    m->over_alike = moray_gait_gain_over(&job->basin, &m->at.trial, &run->motion[0].at.trial);
+        MORAY_TRY(moray_gait_trial_swim(&job->rig, (moray_model)model, &m->at.trial));
+    m->at.gain = moray_gait_gain_over(&job->rig, &m->at.trial, &job->paper);
+    m->over_best = moray_gait_gain_over(&job->rig, &m->at.trial, &last_stage(job)->trial);
+    m->over_alike = moray_gait_gain_over(&job->rig, &m->at.trial, &run->motion[0].at.trial);
     return moray_ok();
 }
 
 double free_gait_disagreement(const motion *m)
 {
     const moray_steady *swum = &m->at.trial.steady[m->at.model];
-    return fmax(fabs(swum->speed - m->at.promise.speed), fabs(swum->power - m->at.promise.power));
+    return fmax(fabs(swum->speed - m->at.prediction.speed), fabs(swum->power - m->at.prediction.power));
 }
 
 // ---- All of them ---------------------------------------------------------------------------------------------------
@@ -174,7 +174,7 @@ static moray_status finish_motion(free_gait *run, motion *m)
 static moray_status find_gait(free_gait *run)
 {
     motion *m = start_motion(run, 0, 0);
-    const gait_starts starts = {{last_stage(&run->job)->promise.gait, run->job.paper.gait[m->at.model]}, 2};
+    const gait_starts starts = {{last_stage(&run->job)->prediction.gait, run->job.paper.gait[m->at.model]}, 2};
     MORAY_TRY(gait_job_optimise(&run->job, &m->at, &starts));
     return finish_motion(run, m);
 }

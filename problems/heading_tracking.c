@@ -4,7 +4,7 @@
 // both models, blindly, with feedback and in receding horizon, against heading feedback tuned for the same reference.
 #include <string.h>
 
-#include "parts/heading_job.h"
+#include "steering/heading/job.h"
 
 static const moray_option options[] = {
     {.section = "problem",
@@ -37,9 +37,9 @@ static const moray_option options[] = {
     STEER_INT(heading_job, gait_evaluations, "solver", "gait_evaluations", 0, 10000,
               "gaits tried for the first-principles plan; 0: the paper's"),
     {.section = "receding",
-     .key = "recede",
+     .key = "receding",
      .type = MORAY_OPTION_BOOL,
-     MORAY_AT(heading_job, recede),
+     MORAY_AT(heading_job, receding),
      .help = "try receding horizon too"},
     STEER_REAL(heading_job, replan_periods, "receding", "replan_periods", 0.01, 1000, NULL,
                "undulations between two plans"),
@@ -71,7 +71,7 @@ static heading_job defaults(void)
                        .refinements = 8,
                        .replan_periods = 1,
                        .look_ahead_periods = 6,
-                       .recede = true,
+                       .receding = true,
                        .gait_evaluations = 12,
                        .evaluations = 15};
     job.common.model = MORAY_FIRST_PRINCIPLES;

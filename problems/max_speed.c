@@ -2,7 +2,7 @@
 //
 // The fastest gait along a course in a current: optimised on the control-oriented model, from there on the
 // first-principles model, and proved by simulating both.
-#include "parts/gait_job.h"
+#include "gait/job/job.h"
 
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",

@@ -2,7 +2,7 @@
 //
 // The gait of least joint work per distance along a course, at or above a speed: optimised on the control-oriented
 // model, from there on the first-principles model, and proved by simulating both.
-#include "parts/gait_job.h"
+#include "gait/job/job.h"
 
 static const moray_option options[] = {
     GAIT_LIMIT("speed_m_s", speed, "m/s",

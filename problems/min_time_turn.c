@@ -4,7 +4,7 @@
 // offset and its rate, tried on both models, against bang-bang steering tuned for the same turn.
 #include <string.h>
 
-#include "parts/turn_job.h"
+#include "steering/turn/job.h"
 
 static const moray_option options[] = {
     {.section = "problem",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The paper, to be run: its figures, propositions and properties as studies on both models.
-#include "parts/paper_main.h"
+#include "paper/main.h"
 
 static const paper_study studies[] = {
     {"straight", "straight motion with growing amplitude: Fig. 7", paper_straight},
@@ -95,9 +95,9 @@ static moray_status prepare(paper *p, const paper_settings *settings)
         p->gait[model] = (moray_gait){.omega = settings->omega, .delta = settings->delta};
         p->gait[model] = paper_gait(p, (moray_model)model, settings->theta_max);
     }
-    MORAY_TRY(moray_basin_new(&p->basin, p->robot, settings->common.current, 0));
-    p->basin.settings.sim.max_steps = 20000; // between samples; a misprint can make motion without end
-    moray_swimmer_set_reading(p->basin.swimmer[MORAY_CONTROL_ORIENTED], settings->reading);
+    MORAY_TRY(moray_test_rig_new(&p->rig, p->robot, settings->common.current, 0));
+    p->rig.settings.sim.max_steps = 20000; // between samples; a misprint can make motion without end
+    moray_swimmer_set_reading(p->rig.swimmer[MORAY_CONTROL_ORIENTED], settings->reading);
     p->json = moray_json_new();
     paper_json_head(p->json, settings);
     return moray_ok();
@@ -179,7 +179,7 @@ int main(int argc, char **argv)
         status = work(&p);
     exit_code = moray_app_end(&program, &settings, status);
     moray_json_free(p.json);
-    moray_basin_free(&p.basin);
+    moray_test_rig_free(&p.rig);
     paper_release(&p);
     return exit_code;
 }

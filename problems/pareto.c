@@ -2,7 +2,7 @@
 //
 // Fronts of speed against power, by continuation: the fastest gaits within ever less mean joint power, of lateral
 // undulation and of eel-like motion, on both models; every gait swum on the first-principles model.
-#include "parts/pareto.h"
+#include "gait/pareto/pareto.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -63,7 +63,7 @@ static moray_status follow(pareto *run, pareto_front *front, const pareto_front 
         MORAY_TRY(gait_job_continue(job, at, like->at));
     else
         MORAY_TRY(gait_job_optimise(job, at, &paper));
-    const double most = like ? like->at->promise.power : at->promise.power;
+    const double most = like ? like->at->prediction.power : at->prediction.power;
     for (int k = 1; k < front->n; k++)
         limit_power(&at[k], front, k, most, run->least_share);
     for (int way = 1; way >= -1; way -= 2)
@@ -81,18 +81,18 @@ static moray_status prove(pareto *run, pareto_front *front)
 {
     const double no_price = 1e-5; // of a power limit that makes no difference [m/s per W]
     gait_job *job = &run->job;
-    const moray_integrator integrator = moray_sim_integrator(&job->basin.settings.sim);
+    const moray_integrator integrator = moray_sim_integrator(&job->rig.settings.sim);
     const int all = front->n;
     front->n = 0;
     for (int k = 0; k < all && !moray_interrupted(); k++) {
         stage *at = &front->at[k];
-        if (!solved(at) || (k > 0 && at->promise.power_price < no_price)) {
+        if (!solved(at) || (k > 0 && at->prediction.power_price < no_price)) {
             gait_job_stage_free(at);
             continue;
         }
         show(run, front, k, "swum on both models");
         MORAY_TRY(moray_certify(at->solution, &integrator, &at->certificate));
-        MORAY_TRY(moray_gait_trial_run(&job->basin, &at->promise.gait, front->model, &at->trial));
+        MORAY_TRY(moray_gait_trial_run(&job->rig, &at->prediction.gait, front->model, &at->trial));
         const stage kept = *at;
         *at = (stage){0};
         front->at[front->n++] = kept;
@@ -156,13 +156,15 @@ static void release(gait_job *job)
 double pareto_speed_at(const pareto_front *front, double power)
 {
     const stage *above = NULL;
-    if (front->n > 0 && power >= front->at[0].promise.power)
-        return front->at[0].promise.course_speed;
+    if (front->n > 0 && power >= front->at[0].prediction.power)
+        return front->at[0].prediction.course_speed;
     for (int k = 0; k < front->n; k++) {
         const stage *at = &front->at[k];
-        if (above && at->promise.power <= power && power <= above->promise.power) {
-            const double share = log(power / at->promise.power) / log(above->promise.power / at->promise.power);
-            return at->promise.course_speed * pow(above->promise.course_speed / at->promise.course_speed, share);
+        if (above && at->prediction.power <= power && power <= above->prediction.power) {
+            const double share =
+                log(power / at->prediction.power) / log(above->prediction.power / at->prediction.power);
+            return at->prediction.course_speed *
+                   pow(above->prediction.course_speed / at->prediction.course_speed, share);
         }
         above = at;
     }
@@ -173,7 +175,7 @@ bool pareto_is_lateral(const pareto_front *front)
 {
     bool none = true;
     for (int k = 0; k < front->n; k++)
-        none = none && fabs(front->at[k].promise.gait.taper) < 1e-4;
+        none = none && fabs(front->at[k].prediction.gait.taper) < 1e-4;
     return none;
 }
 

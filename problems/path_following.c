@@ -5,7 +5,7 @@
 // same path.
 #include <string.h>
 
-#include "parts/path_job.h"
+#include "steering/path/job.h"
 
 static const moray_option options[] = {
     {.section = "problem",
@@ -42,9 +42,9 @@ static const moray_option options[] = {
      MORAY_AT(path_job, find_gait),
      .help = "first-principles plan on the gait fastest straight ahead within the limits; no: on the first gait"},
     {.section = "receding",
-     .key = "recede",
+     .key = "receding",
      .type = MORAY_OPTION_BOOL,
-     MORAY_AT(path_job, recede),
+     MORAY_AT(path_job, receding),
      .help = "try receding horizon too"},
     STEER_REAL(path_job, replan_periods, "receding", "replan_periods", 0.01, 1000, NULL,
                "undulations between two plans"),
@@ -78,7 +78,7 @@ static path_job defaults(void)
                     .refinements = 4,
                     .replan_periods = 1,
                     .look_ahead_periods = 6,
-                    .recede = true,
+                    .receding = true,
                     .find_gait = true,
                     .evaluations = 10};
     job.common.model = MORAY_FIRST_PRINCIPLES;

@@ -2,7 +2,7 @@
 //
 // All optima of the gait within limits: local searches from many starts and a global one, each point of them a periodic
 // orbit found by Newton's method; every optimum polished by collocation and proved by simulation.
-#include "parts/search_gait.h"
+#include "gait/search_gait/search_gait.h"
 
 static const char *const goals[] = {"speed", "economy", NULL};
 

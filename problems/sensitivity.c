@@ -2,7 +2,7 @@
 //
 // The fastest gait of max_speed, and how it moves with robot, current and limits: from the factors of its KKT matrix,
 // beside solving again; and the gait for another current, predicted without solving.
-#include "parts/sensitivity.h"
+#include "gait/sensitivity/sensitivity.h"
 
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",

@@ -3,7 +3,7 @@
 // Swims any gait or schedule of gaits, on either model, in any current.
 #include <math.h>
 
-#include "parts/simulate.h"
+#include "simulate/simulate.h"
 
 const char *const simulate_integrators[] = {
     [SIMULATE_EXPLICIT] = "explicit", [SIMULATE_TR_BDF2] = "tr-bdf2", [SIMULATE_PAPER] = "paper", NULL};

@@ -26,7 +26,7 @@ static void push(const moray_node *at, moray_rates *out, const void *data)
 }
 
 // What is minimised, from the ends of the phases (x0, t0, xf, tf), their integrals q and the parameters s.
-static void effort(const moray_ends *at, moray_verdict *out, const void *data)
+static void effort(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].q[0];

@@ -2,8 +2,8 @@
 //
 // Small dense matrices and the shape matrices of Sec. III-A by their definition: the slow references of the snake
 // tests.
-#ifndef DENSE_H
-#define DENSE_H
+#ifndef TESTS_DENSE_H
+#define TESTS_DENSE_H
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Random robots and points, exact derivatives of the dense model, and their comparison with those of a map.
-#ifndef DENSE_DERIVATIVES_H
-#define DENSE_DERIVATIVES_H
+#ifndef TESTS_DENSE_DERIVATIVES_H
+#define TESTS_DENSE_DERIVATIVES_H
 
 #include "dense_plant.h"
 

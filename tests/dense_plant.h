@@ -3,14 +3,14 @@
 // The control-oriented model as the paper prints it, for the tests: dense matrices of Sec. III-A, joint forces from
 // (22) with the matrices of (18), accelerations from (16b), (16c), (17), all for complex arguments. With L = 2l for l
 // (erratum E2) and (16c) for (23h) (erratum E1).
-#ifndef DENSE_PLANT_H
-#define DENSE_PLANT_H
+#ifndef TESTS_DENSE_PLANT_H
+#define TESTS_DENSE_PLANT_H
 
 #include <complex.h>
 #include <string.h>
 
 #include "dense.h"
-#include "moray/snake.h"
+#include "moray/snake/plant.h"
 #include "random_robot.h"
 
 enum {

@@ -3,8 +3,8 @@
 // The first-principles robot in maximal coordinates: x_i, y_i, theta_i of every link, pin joints as constraints with
 // multipliers, one dense linear system. Shares nothing with the reduced form but the force laws (2)-(4), written here
 // as the matrices of (3).
-#ifndef MAXIMAL_H
-#define MAXIMAL_H
+#ifndef TESTS_MAXIMAL_H
+#define TESTS_MAXIMAL_H
 
 #include "dense.h"
 #include "random_robot.h"

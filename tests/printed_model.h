@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The control-oriented model by the formulas and matrices of the paper, in random states.
-#ifndef PRINTED_MODEL_H
-#define PRINTED_MODEL_H
+#ifndef TESTS_PRINTED_MODEL_H
+#define TESTS_PRINTED_MODEL_H
 
 #include "dense.h"
 #include "random_robot.h"

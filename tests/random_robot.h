@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Robots and numbers at random, and how far two vectors differ.
-#ifndef RANDOM_ROBOT_H
-#define RANDOM_ROBOT_H
+#ifndef TESTS_RANDOM_ROBOT_H
+#define TESTS_RANDOM_ROBOT_H
 
-#include "moray/snake.h"
+#include "moray/snake/model.h"
 #include "tap.h"
 
 typedef unsigned long long random_seed;

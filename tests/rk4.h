@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // A fixed-step classical Runge-Kutta integrator, so that tests of the transcription need no other layer.
-#ifndef RK4_H
-#define RK4_H
+#ifndef TESTS_RK4_H
+#define TESTS_RK4_H
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Test Anything Protocol in a header: CHECK states one thing; main ends with `return tap_done();`.
-#ifndef TAP_H
-#define TAP_H
+#ifndef TESTS_TAP_H
+#define TESTS_TAP_H
 
 #include <math.h>
 #include <stdarg.h>

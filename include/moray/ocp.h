@@ -75,11 +75,11 @@ typedef struct moray_ends {
     const moray_phase_ends *phase;
     const moray_num *s;
 } moray_ends;
-typedef struct moray_verdict {
+typedef struct moray_end_values {
     moray_num objective; // minimised
     moray_num *e;        // [ne]
-} moray_verdict;
-typedef void moray_endpoint_fn(const moray_ends *at, moray_verdict *out, const void *data);
+} moray_end_values;
+typedef void moray_endpoint_fn(const moray_ends *at, moray_end_values *out, const void *data);
 
 // The same for code that knows only double: derivatives by sparse differences, see moray_map_from_real.
 typedef struct moray_real_node {
@@ -99,10 +99,10 @@ typedef struct moray_real_ends {
     const moray_real_phase_ends *phase;
     const double *s;
 } moray_real_ends;
-typedef struct moray_real_verdict {
+typedef struct moray_real_end_values {
     double objective, *e;
-} moray_real_verdict;
-typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_verdict *out, const void *data);
+} moray_real_end_values;
+typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_end_values *out, const void *data);
 
 // Of continuous, continuous_real and map, exactly one.
 typedef struct moray_phase_spec {

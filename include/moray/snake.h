@@ -1,199 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
-// Underwater snake robot: parameters, gait, control-oriented and first-principles models. Equation numbers are those of
-// Kelasidi et al., "A control-oriented model of underwater snake robots exposed to currents"; errata E1-E4 in
-// README.md. Units are SI throughout; angles in rad.
+// Underwater snake robots: models, plants, steady swimming, gaits, steering.
 #ifndef MORAY_SNAKE_H
 #define MORAY_SNAKE_H
 
-#include "moray/map.h"
-#include "moray/ode.h"
-
-// The robot. Every field is set; moray_robot_check says whether they make sense.
-typedef struct moray_robot {
-    int links;                           // N >= 2
-    double l;                            // half a link [m]; L = 2l (erratum E2)
-    double m, J;                         // mass [kg] and moment of inertia [kg m^2] of a link
-    double c_t, c_n;                     // tangential and normal drag per link [kg/s]
-    double mu_n;                         // normal added mass per link [kg]
-    double lambda_1, lambda_2, lambda_3; // fluid torque (4): added inertia, linear and quadratic drag
-    double rot_damping, rot_gain;        // lambda~_1 [1/s], lambda~_2 [1/(m^2 s)] of (20), control-oriented model only
-    double k_p, k_d;                     // joint controller (34) [1/s^2], [1/s]
-} moray_robot;
-
-// An elliptic-cylinder link in a fluid, from which the coefficients of moray_robot follow (Sec. V-A).
-typedef struct moray_link_geometry {
-    double length;             // 2l [m]
-    double a_e, b_e;           // in-plane and vertical semi-axis [m]
-    double rho;                // fluid density [kg/m^3]
-    double C_f, C_D, C_A, C_M; // drag and added-mass constants [-]
-} moray_link_geometry;
-
-// The robot of Sec. V-A (a_e = 0.05, b_e = 0.03, 2l = 0.14, N = 10) and its links.
-moray_robot moray_robot_paper(void);
-moray_link_geometry moray_link_geometry_paper(void);
-
-// Sets l, m, J, c_t, c_n, mu_n and lambda_1..3 of the robot; leaves the rest. J is that of the solid elliptic cylinder.
-void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *geometry);
-
-// Error: MORAY_INPUT naming the first field that is not usable, its value and what is allowed.
-moray_status moray_robot_check(const moray_robot *robot);
-
-typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
-
-// A free periodic motion of the joints, beyond the paper: a truncated Fourier series in each of them,
-//     phi_i(t) = c_i + sum_k p_ik sin(k omega t) + q_ik cos(k omega t),   k = 1..harmonics.
-// at[joints (1 + 2 harmonics)], borrowed: c of all joints, then p and q of all joints for one harmonic after the other.
-typedef struct moray_series {
-    int joints, harmonics;
-    const double *at;
-} moray_series;
-enum { MORAY_SERIES_HARMONICS = 12 }; // at most
-
-// Gait (25): phi_ref,i(t) = A_i sin(omega t + (i-1) delta) + offset, i = 1..N-1. A_i and offset are a and phi_0 in m
-// for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Where the offset moves,
-// offset_rate and offset_acceleration are phi_0' and phi_0'' at t, fed forward. Eel-like motion, beyond the paper, with
-// a negative taper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail,
-// to 1 at the last (0 where N = 2). And beyond that, what swims heeds a series to be added, plants and orbits do not.
-typedef struct moray_gait {
-    double amplitude, omega, delta, offset, taper, offset_rate, offset_acceleration;
-    const moray_series *series; // of the gait's omega, for N-1 joints; NULL: none
-} moray_gait;
-
-// phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
-void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi);
-
-// Amplitude from the link-angle amplitude theta_max of (24), and back: (27) alpha = 2 sin(delta/2) theta_max;
-// (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body. The wave of link angles
-// whose differences (1) are a tapered gait has in link i
-//     theta_max,i = alpha/(2 sin(delta/2)) sqrt((1 + taper s)^2 + (taper cot(delta/2)/(N-2))^2),
-// and that which gives one by (29), phi_i = l sin theta_i + l sin theta_{i+1},
-//     sin theta_max,i = a/(2l cos(delta/2)) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2),
-// where s is s_i halfway between its two joints: -+ (N-1)/(N-2) for the first and the last link.
-double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta);
-double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude, double delta);
-
-// That of link i = 1..N of a gait with a taper; the largest is that of link N, the head, or link 1, the tail.
-double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
-
-// The same gait for the other model: equal theta_max, omega, delta, taper; offset and its derivatives in the same ratio
-// to the amplitude, with the opposite sign (erratum E3). A series is not mapped but left out.
-moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
-
-// The gait with its constant offset and its series as one series of so many harmonics (those of its own beyond them are
-// left out): at[joints (1 + 2 harmonics)].
-void moray_series_of_gait(const moray_gait *gait, int joints, int harmonics, double *at);
-
-// A series of the control-oriented model for the first-principles model, into at as long as series->at: every joint's
-// share in every harmonic keeps the wave of link angles that it has in its surroundings, of a phase shift delta taken
-// from its neighbours, with (27) and (33) for that delta. Of a gait (25) it is moray_gait_map; offsets go by the ratio
-// of the first harmonics.
-void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at);
-
-// ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------
-//
-// State of the control-oriented model, (21), 2N+4: phi (N-1), theta, p_x, p_y, v_phi (N-1), v_theta, v_t, v_n.
-// State of the first-principles model, 2N+4: theta_1..N, p_x, p_y, and their time derivatives in the same order.
-
-typedef struct moray_swimmer moray_swimmer; // one robot, one model, its scratch space; not for two threads at once
-
-// Makes a swimmer of a copy of the robot. Error: MORAY_INPUT (moray_robot_check), MORAY_MEMORY.
-moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model);
-void moray_swimmer_free(moray_swimmer *swimmer);
-
-const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer);
-moray_model moray_swimmer_model(const moray_swimmer *swimmer);
-int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
-
-void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
-
-// How a swimmer of the control-oriented model reads the paper. Misprints can be swum as printed, to see what they do;
-// the plants below have no such choice.
-typedef enum {
-    MORAY_READ_CORRECTED = 0,
-    MORAY_READ_23H_PRINTED = 1, // (23h) with h_4 and h_5 as printed (erratum E1)
-    MORAY_READ_L_PRINTED = 2,   // l of (8), (12), (13) half a link, as everywhere else (erratum E2)
-    MORAY_READ_PRINTED = 3      // both
-} moray_reading;
-
-// Corrected unless set; without effect on the first-principles model.
-void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
-
-// State at rest over ground: all velocities zero, straight body at heading
-// theta, position (p_x, p_y). x[2N+4].
-void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
-
-// Joint coordinates and rates (N-1 each) of the state.
-void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
-
-// The six states of the plants with the joints on the gait, see below: of a full state of the model; and the full state
-// whose joints are on the gait at t.
-void moray_state_body(moray_model model, int links, const double *x, double body[6]);
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
-                           double *x);
-
-// State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
-// N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
-bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
-
-// (34): ubar[N-1] that steers the state to the gait at time t.
-void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
-                           double *ubar);
-
-// Outputs of a state: heading (theta, or mean link angle), position, ground velocity, largest |link angle - heading|
-// ((12) for the control-oriented model).
-typedef struct moray_pose {
-    double heading, p_x, p_y, v_x, v_y, link_angle;
-} moray_pose;
-moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
-
-// Centres and orientations of the N links in the plane, for drawing: x_i[N], y_i[N], angle_i[N]. For the
-// control-oriented model the centres of (8) and theta + (12).
-void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i);
-
-// ---- Control-oriented model as maps with analytic derivatives (for the transcription) ------------------------------
-//
-// in  = [state x, controls u, parameters s, time t]
-// out = [f: state derivative | c: path outputs | g: joint power sum u_i v_phi,i in W]
-// path outputs c, each block only when asked for: joint forces u_i of (22) in N (N-1), then link angles theta_i of (12)
-// (N).
-
-typedef enum {
-    MORAY_JOINTS_ON_GAIT,     // x = (theta, p_x, p_y, v_theta, v_t, v_n), s = (a, omega, delta, phi_0, taper); no u
-    MORAY_JOINTS_CLOSED_LOOP, // x of (21), s = (a, omega, delta, phi_0, taper), ubar from (34); no u
-    MORAY_JOINTS_FREE,        // x of (21), u = ubar (N-1); no s
-    MORAY_JOINTS_STEERED, // on a gait without taper, with a moving offset, fed forward: x = (theta, p_x, p_y, v_theta,
-                          // v_t, v_n, phi_0, phi_0'), u = phi_0'', s = (a, omega, delta)
-    MORAY_JOINTS_SERIES   // x as on the gait, s = (omega, coefficients as in moray_series); no u
-} moray_joints;
-
-typedef struct moray_plant_spec {
-    moray_robot robot;
-    moray_joints joints;
-    double current[2];             // V_x, V_y [m/s]
-    bool path_forces, path_angles; // blocks of c wanted
-    bool path_rates;               // and, joints on a series only, behind them the joint rates phi_i' (N-1)
-    int harmonics;                 // of a series, 1..MORAY_SERIES_HARMONICS
-} moray_plant_spec;
-
-// Sizes of the map that moray_control_plant makes.
-typedef struct moray_plant_size {
-    int nx, nu, ns, nc, nq;
-} moray_plant_size;
-moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
-
-// Error: MORAY_INPUT (robot), MORAY_MEMORY. The map owns all it needs; release with moray_map_release.
-moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
-
-// The first-principles model in the same form, for all but MORAY_JOINTS_CLOSED_LOOP, with alpha in place of a:
-// x = (mean link angle, p_x, p_y, and their rates), steered phi_0 and phi_0' too, free phi before each of the two
-// threes as in (21); c: joint torques [N m], then theta_i minus their mean. Exact Jacobians and Hessians by complex
-// step or, free and of a series, by the adjoint. Errors and ownership as above.
-moray_status moray_complex_plant(moray_map *map, const moray_plant_spec *spec);
-
-// The control-oriented model averaged over a period of the gait, to second order in a, in the form of
-// MORAY_JOINTS_STEERED without path outputs: the undulation is gone, so that a mesh need only resolve the turning.
-// Derivatives, errors and ownership as of moray_complex_plant.
-moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec);
+#include "moray/snake/closed_loop.h"
+#include "moray/snake/controllers.h"
+#include "moray/snake/gait_input.h"
+#include "moray/snake/gait_problem.h"
+#include "moray/snake/gait_search.h"
+#include "moray/snake/heading.h"
+#include "moray/snake/model.h"
+#include "moray/snake/orbit.h"
+#include "moray/snake/path.h"
+#include "moray/snake/plant.h"
+#include "moray/snake/receding_horizon.h"
+#include "moray/snake/steering.h"
+#include "moray/snake/swim.h"
+#include "moray/snake/trial.h"
+#include "moray/snake/turn.h"
 
 #endif

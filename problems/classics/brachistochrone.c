@@ -27,7 +27,7 @@ static void slide(const moray_node *at, moray_rates *out, const void *data)
     out->f[2] = wire->g * cos(u);
 }
 
-static void arrival(const moray_ends *at, moray_verdict *out, const void *data)
+static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].tf;

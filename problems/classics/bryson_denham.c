@@ -24,7 +24,7 @@ static void push(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = wall->w * at->u[0] * at->u[0];
 }
 
-static void effort(const moray_ends *at, moray_verdict *out, const void *data)
+static void effort(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].q[0];

@@ -16,7 +16,7 @@ static void react(const moray_node *at, moray_rates *out, const void *data)
     out->f[1] = u * (x1 - 10 * x2) - (1 - u) * x2;
 }
 
-static void yield(const moray_ends *at, moray_verdict *out, const void *data)
+static void yield(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].xf[0] + at->phase[0].xf[1] - 1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Textbook problems whose optimum is published: one a file, each with its equations, data, source and value.
-#ifndef CLASSICS_H
-#define CLASSICS_H
+#ifndef PROBLEMS_CLASSICS_CLASSICS_H
+#define PROBLEMS_CLASSICS_CLASSICS_H
 
 #include "moray/ocp.h"
 
@@ -43,7 +43,7 @@ struct classic_result {
 
 // "agrees", "better" (than what was printed), "by the data" (as they give it, which is worse than was printed),
 // "solved" (where nothing was printed), "DIFFERS" or "NOT SOLVED".
-const char *classic_verdict(const struct classic *classic, const struct classic_result *result);
+const char *classic_agreement(const struct classic *classic, const struct classic_result *result);
 
 // Builds the problem and solves it from its own start. Free both with moray_solution_free and moray_ocp_free, in this
 // order; what an error leaves unmade is NULL.

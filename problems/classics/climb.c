@@ -86,7 +86,7 @@ static void fly(const moray_node *at, moray_rates *out, const void *data)
     out->f[3] = -T / Isp;
 }
 
-static void arrival(const moray_ends *at, moray_verdict *out, const void *data)
+static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].tf;

@@ -25,7 +25,7 @@ static void climb(const moray_node *at, moray_rates *out, const void *data)
     out->f[2] = -2 * T;
 }
 
-static void altitude(const moray_ends *at, moray_verdict *out, const void *data)
+static void altitude(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = -at->phase[0].xf[0];

@@ -28,7 +28,7 @@ static void glide(const moray_node *at, moray_rates *out, const void *data)
     out->f[3] = (L * vx - D * w) / v / m - g;
 }
 
-static void range(const moray_ends *at, moray_verdict *out, const void *data)
+static void range(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = -at->phase[0].xf[0];

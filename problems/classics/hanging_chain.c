@@ -20,7 +20,7 @@ static void hang(const moray_node *at, moray_rates *out, const void *data)
     out->g[1] = ds;
 }
 
-static void energy(const moray_ends *at, moray_verdict *out, const void *data)
+static void energy(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].q[0];

@@ -127,7 +127,7 @@ static void elements(const moray_num *r, const moray_num *v, moray_num *e)
     e[4] = angle(dot(n, eccentric) / (length * e[1]), eccentric[2]);
 }
 
-static void orbit(const moray_ends *at, moray_verdict *out, const void *data)
+static void orbit(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     const moray_phase_ends *end = &at->phase[3];

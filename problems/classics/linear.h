@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef LINEAR_H
-#define LINEAR_H
+#ifndef PROBLEMS_CLASSICS_LINEAR_H
+#define PROBLEMS_CLASSICS_LINEAR_H
 
 #include "moray/ocp.h"
 

@@ -29,7 +29,7 @@ static void spiral(const moray_node *at, moray_rates *out, const void *data)
     out->c[0] = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
 }
 
-static void weight(const moray_ends *at, moray_verdict *out, const void *data)
+static void weight(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     const moray_num *x = at->phase[0].xf, f = x[1], g = x[2], h = x[3], k = x[4];

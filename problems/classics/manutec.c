@@ -54,7 +54,7 @@ static void move(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
 }
 
-static void energy(const moray_ends *at, moray_verdict *out, const void *data)
+static void energy(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].q[0];

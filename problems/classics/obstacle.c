@@ -30,7 +30,7 @@ static void sail(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = square(out->f[0]) + square(out->f[1]);
 }
 
-static void effort(const moray_ends *at, moray_verdict *out, const void *data)
+static void effort(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].q[0];

@@ -2,8 +2,8 @@
 //
 // Orbits about the oblate Earth in modified equinoctial elements (p, f, g, h, k, L), in feet and seconds (Betts 2001,
 // ch. 5; constants as there).
-#ifndef ORBIT_H
-#define ORBIT_H
+#ifndef PROBLEMS_CLASSICS_ORBIT_H
+#define PROBLEMS_CLASSICS_ORBIT_H
 
 #include "moray/ocp.h"
 

@@ -35,7 +35,7 @@ static void turn(const moray_node *at, moray_rates *out, const void *data)
     out->f[5] = at->u[2] / I_phi;
 }
 
-static void arrival(const moray_ends *at, moray_verdict *out, const void *data)
+static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].tf;

@@ -35,7 +35,7 @@ static void reenter(const moray_node *at, moray_rates *out, const void *data)
     out->f[5] = L * sin(beta) / (m * v * cos(gamma)) + v / (r * cos(theta)) * cos(gamma) * sin(psi) * sin(theta);
 }
 
-static void cross_range(const moray_ends *at, moray_verdict *out, const void *data)
+static void cross_range(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = -at->phase[0].xf[2] / degree;

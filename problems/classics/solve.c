@@ -27,7 +27,7 @@ static void sample_start(const struct classic *classic, const moray_ocp *ocp, st
     }
 }
 
-const char *classic_verdict(const struct classic *classic, const struct classic_result *result)
+const char *classic_agreement(const struct classic *classic, const struct classic_result *result)
 {
     if (result->outcome != MORAY_NLP_SOLVED)
         return "NOT SOLVED";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Natural cubic splines through tables, smooth for complex arguments.
-#ifndef SPLINE_H
-#define SPLINE_H
+#ifndef PROBLEMS_CLASSICS_SPLINE_H
+#define PROBLEMS_CLASSICS_SPLINE_H
 
 #include "moray/ocp.h"
 

@@ -67,7 +67,7 @@ static void swim(const moray_node *at, moray_rates *out, const void *data)
     out->f[4] = at->u[1];
 }
 
-static void distance(const moray_ends *at, moray_verdict *out, const void *data)
+static void distance(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = -at->phase[0].xf[0];

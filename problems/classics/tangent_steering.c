@@ -23,7 +23,7 @@ static void steer(const moray_node *at, moray_rates *out, const void *data)
     out->f[3] = a * sin(at->u[0]);
 }
 
-static void arrival(const moray_ends *at, moray_verdict *out, const void *data)
+static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].tf;

@@ -39,7 +39,7 @@ static void burn(const moray_node *at, moray_rates *out, const void *data)
     out->f[6] = -T / Isp;
 }
 
-static void weight(const moray_ends *at, moray_verdict *out, const void *data)
+static void weight(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     moray_num *e = out->e;

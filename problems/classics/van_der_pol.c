@@ -19,7 +19,7 @@ static void oscillate(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = (x1 * x1 + x2 * x2 + u * u) / 2;
 }
 
-static void effort(const moray_ends *at, moray_verdict *out, const void *data)
+static void effort(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->phase[0].q[0];

@@ -48,17 +48,17 @@ static moray_status colour(const moray_pattern *pattern, bool symmetric, int row
     return status;
 }
 
-moray_status colour_columns(const moray_pattern *pattern, int rows, int cols, int *group, int *groups)
+moray_status moray_colour_columns(const moray_pattern *pattern, int rows, int cols, int *group, int *groups)
 {
     return colour(pattern, false, rows, cols, group, groups);
 }
 
-moray_status colour_symmetric(const moray_pattern *lower, int n, int *group, int *groups)
+moray_status moray_colour_symmetric(const moray_pattern *lower, int n, int *group, int *groups)
 {
     return colour(lower, true, n, n, group, groups);
 }
 
-void sort_by_group(moray_pattern *pattern, const int *group)
+void moray_sort_by_group(moray_pattern *pattern, const int *group)
 {
     for (int k = 1; k < pattern->nnz; k++) { // insertion sort: patterns are small and nearly sorted
         const int row = pattern->row[k], col = pattern->col[k];

@@ -89,8 +89,8 @@ static const struct numeric_kind complex_kind = {
     .hessian_step = 6e-6, // near the cube root of the rounding unit
 };
 
-moray_status complex_map_new(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *user,
-                             void (*release_user)(void *user), const double *probe, const double *size)
+moray_status moray_complex_map_new(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *user,
+                                   void (*release_user)(void *user), const double *probe, const double *size)
 {
     struct complex_self *self = calloc(1, sizeof *self);
     double complex *block = calloc((size_t)(n_in + n_out) + 1, sizeof *block);
@@ -99,7 +99,7 @@ moray_status complex_map_new(moray_map *map, int n_in, int n_out, moray_complex_
         *self = (struct complex_self){{.kind = &complex_kind, .n_in = n_in, .n_out = n_out}, function, block, NULL};
         self->map.user = user, self->map.release_user = release_user;
         self->out = block + n_in;
-        const moray_status status = numeric_map_new(map, &self->map, probe, size);
+        const moray_status status = moray_numeric_map_new(map, &self->map, probe, size);
         if (moray_failed(status))
             moray_map_release(map);
         return status;
@@ -114,5 +114,5 @@ moray_status complex_map_new(moray_map *map, int n_in, int n_out, moray_complex_
 moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *user,
                                     void (*release_user)(void *user), const double *probe)
 {
-    return complex_map_new(map, n_in, n_out, function, user, release_user, probe, NULL);
+    return moray_complex_map_new(map, n_in, n_out, function, user, release_user, probe, NULL);
 }

@@ -41,7 +41,7 @@ static void joined_jacobian(void *self, const double *in, double *values)
     struct joined *j = self;
     const moray_map *base = &j->base, *extra = &j->extra;
     gather(j, in);
-    triplets_start(&j->jac, values);
+    moray_triplets_start(&j->jac, values);
     base->jacobian(base->self, j->in, j->values);
     for (int k = 0; k < base->jac.nnz; k++)
         triplets_put(&j->jac, 0, 0, j->values[k]);
@@ -57,7 +57,7 @@ static void joined_hessian(void *self, const double *in, const double *weight, d
     for (int i = 0; i < base->n_out; i++)
         j->weight[i] = weight[base_row(j, i)];
     gather(j, in);
-    triplets_start(&j->hess, values);
+    moray_triplets_start(&j->hess, values);
     base->hessian(base->self, j->in, j->weight, j->values);
     for (int k = 0; k < base->hess.nnz; k++)
         triplets_put(&j->hess, 0, 0, j->values[k]);
@@ -71,8 +71,8 @@ static void joined_release(moray_map *map)
     struct joined *j = map->self;
     moray_map_release(&j->base);
     moray_map_release(&j->extra);
-    triplets_free(&j->jac);
-    triplets_free(&j->hess);
+    moray_triplets_free(&j->jac);
+    moray_triplets_free(&j->hess);
     free(j->place);
     free(j->in);
     free(j);
@@ -81,18 +81,18 @@ static void joined_release(moray_map *map)
 static moray_status record(struct joined *j)
 {
     const moray_map *base = &j->base, *extra = &j->extra;
-    triplets_record(&j->jac);
+    moray_triplets_record(&j->jac);
     for (int k = 0; k < base->jac.nnz; k++)
         triplets_put(&j->jac, base_row(j, base->jac.row[k]), j->place[base->jac.col[k]], 0);
     for (int k = 0; k < extra->jac.nnz; k++)
         triplets_put(&j->jac, j->at + extra->jac.row[k], extra->jac.col[k], 0);
-    MORAY_TRY(triplets_close(&j->jac));
-    triplets_record(&j->hess);
+    MORAY_TRY(moray_triplets_close(&j->jac));
+    moray_triplets_record(&j->hess);
     for (int k = 0; k < base->hess.nnz; k++)
         triplets_put(&j->hess, j->place[base->hess.row[k]], j->place[base->hess.col[k]], 0);
     for (int k = 0; k < extra->hess.nnz; k++)
         triplets_put(&j->hess, extra->hess.row[k], extra->hess.col[k], 0);
-    return triplets_close(&j->hess);
+    return moray_triplets_close(&j->hess);
 }
 
 static int largest_pattern(const moray_map *one, const moray_map *other)

@@ -101,9 +101,9 @@ static moray_status find_patterns(struct numeric_map *self, const double *probe)
 
 static moray_status find_directions(struct numeric_map *self)
 {
-    MORAY_TRY(colour_columns(&self->jac, self->n_out, self->n_in, self->jac_group, &self->jac_groups));
-    sort_by_group(&self->jac, self->jac_group);
-    return colour_symmetric(&self->hess, self->n_in, self->hess_group, &self->hess_groups);
+    MORAY_TRY(moray_colour_columns(&self->jac, self->n_out, self->n_in, self->jac_group, &self->jac_groups));
+    moray_sort_by_group(&self->jac, self->jac_group);
+    return moray_colour_symmetric(&self->hess, self->n_in, self->hess_group, &self->hess_groups);
 }
 
 static void numeric_release(moray_map *map)
@@ -149,7 +149,7 @@ static moray_status check_finite(struct numeric_map *self, const double *probe)
     return moray_ok();
 }
 
-moray_status numeric_map_new(moray_map *map, struct numeric_map *self, const double *probe, const double *size)
+moray_status moray_numeric_map_new(moray_map *map, struct numeric_map *self, const double *probe, const double *size)
 {
     *map = (moray_map){.n_in = self->n_in, .n_out = self->n_out, .self = self, .release = numeric_release};
     MORAY_TRY(numeric_allocate(self, size));

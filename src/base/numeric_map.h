@@ -2,8 +2,8 @@
 //
 // What maps of user functions share whose derivatives the library finds: patterns by trial, directions merged by
 // colouring, Hessians as central differences of Jacobians.
-#ifndef BASE_NUMERIC_MAP_H
-#define BASE_NUMERIC_MAP_H
+#ifndef SRC_BASE_NUMERIC_MAP_H
+#define SRC_BASE_NUMERIC_MAP_H
 
 #include "moray/map.h"
 
@@ -36,12 +36,12 @@ struct numeric_map {
 // Sizes up the map on `self`, whose kind, user, release_user, n_in and n_out are set and whose kind can evaluate.
 // size[n_in]: typical magnitudes, NULL for 1. Whatever it returns, the map's release frees self. Error: MORAY_MEMORY;
 // MORAY_INPUT when the function is not finite at the probe.
-moray_status numeric_map_new(moray_map *map, struct numeric_map *self, const double *probe, const double *size);
+moray_status moray_numeric_map_new(moray_map *map, struct numeric_map *self, const double *probe, const double *size);
 
 // moray_map_from_complex and moray_map_from_real with typical magnitudes of the inputs.
-moray_status complex_map_new(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *user,
-                             void (*release_user)(void *user), const double *probe, const double *size);
-moray_status real_map_new(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *user,
-                          void (*release_user)(void *user), const double *probe, const double *size);
+moray_status moray_complex_map_new(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *user,
+                                   void (*release_user)(void *user), const double *probe, const double *size);
+moray_status moray_real_map_new(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *user,
+                                void (*release_user)(void *user), const double *probe, const double *size);
 
 #endif

@@ -133,8 +133,8 @@ static const struct numeric_kind real_kind = {
     .hessian_step = 1e-4, // with rough_step: near the fourth root of the rounding unit
 };
 
-moray_status real_map_new(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *user,
-                          void (*release_user)(void *user), const double *probe, const double *size)
+moray_status moray_real_map_new(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *user,
+                                void (*release_user)(void *user), const double *probe, const double *size)
 {
     struct real_self *self = calloc(1, sizeof *self);
     double *block = calloc((size_t)(n_in + 4 * n_out) + 1, sizeof *block);
@@ -144,7 +144,7 @@ moray_status real_map_new(moray_map *map, int n_in, int n_out, moray_real_fn *fu
         self->map.user = user, self->map.release_user = release_user;
         for (int k = 0; k < 4; k++)
             self->out[k] = block + n_in + k * n_out;
-        const moray_status status = numeric_map_new(map, &self->map, probe, size);
+        const moray_status status = moray_numeric_map_new(map, &self->map, probe, size);
         if (moray_failed(status))
             moray_map_release(map);
         return status;
@@ -159,5 +159,5 @@ moray_status real_map_new(moray_map *map, int n_in, int n_out, moray_real_fn *fu
 moray_status moray_map_from_real(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *user,
                                  void (*release_user)(void *user), const double *probe)
 {
-    return real_map_new(map, n_in, n_out, function, user, release_user, probe, NULL);
+    return moray_real_map_new(map, n_in, n_out, function, user, release_user, probe, NULL);
 }

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-void triplets_record(triplets *t)
+void moray_triplets_record(triplets *t)
 {
     *t = (triplets){.recording = true};
 }
 
-void triplets_record_put(triplets *t, int row, int col)
+void moray_triplets_record_put(triplets *t, int row, int col)
 {
     if (t->puts == t->room && !t->failed) {
         const int room = t->room ? 2 * t->room : 1024;
@@ -61,7 +61,7 @@ static int merge(triplets *t, const int *order)
     return t->puts ? entries + 1 : 0;
 }
 
-moray_status triplets_close(triplets *t)
+moray_status moray_triplets_close(triplets *t)
 {
     const int n = t->puts, rows = largest(t->row, n) + 1, cols = largest(t->col, n) + 1;
     const int keys = rows > cols ? rows : cols;
@@ -86,18 +86,18 @@ moray_status triplets_close(triplets *t)
     t->row = t->col = NULL;
     t->recording = false;
     if (moray_failed(status))
-        triplets_free(t);
+        moray_triplets_free(t);
     return status;
 }
 
-void triplets_start(triplets *t, double *values)
+void moray_triplets_start(triplets *t, double *values)
 {
     t->next = 0;
     t->values = values;
     memset(values, 0, (size_t)t->pattern.nnz * sizeof *values);
 }
 
-void triplets_free(triplets *t)
+void moray_triplets_free(triplets *t)
 {
     free(t->row);
     free(t->col);

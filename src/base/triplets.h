@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // One walk over a sparse matrix serves its pattern and its values: the walk calls triplets_put for every contribution,
-// always in the same order. The first walk records positions; triplets_close merges repeated ones; later walks add
-// values up.
-#ifndef BASE_TRIPLETS_H
-#define BASE_TRIPLETS_H
+// always in the same order. The first walk records positions; moray_triplets_close merges repeated ones; later walks
+// add values up.
+#ifndef SRC_BASE_TRIPLETS_H
+#define SRC_BASE_TRIPLETS_H
 
 #include "moray/map.h"
 
@@ -18,16 +18,16 @@ typedef struct triplets {
     double *values;
 } triplets;
 
-void triplets_record(triplets *t);        // starts the recording walk
-moray_status triplets_close(triplets *t); // ends it. Error: MORAY_MEMORY
-void triplets_free(triplets *t);
-void triplets_start(triplets *t, double *values); // starts a walk that fills values[pattern.nnz]
-void triplets_record_put(triplets *t, int row, int col);
+void moray_triplets_record(triplets *t);        // starts the recording walk
+moray_status moray_triplets_close(triplets *t); // ends it. Error: MORAY_MEMORY
+void moray_triplets_free(triplets *t);
+void moray_triplets_start(triplets *t, double *values); // starts a walk that fills values[pattern.nnz]
+void moray_triplets_record_put(triplets *t, int row, int col);
 
 static inline void triplets_put(triplets *t, int row, int col, double value)
 {
     if (t->recording)
-        triplets_record_put(t, row, col);
+        moray_triplets_record_put(t, row, col);
     else
         t->values[t->slot[t->next++]] += value;
 }

@@ -117,7 +117,7 @@ static void add_delayed(moray_ldl *ldl, int s, int c, int to)
     }
 }
 
-moray_status front_assemble(moray_ldl *ldl, int s)
+moray_status moray_ldl_front_assemble(moray_ldl *ldl, int s)
 {
     const struct node *node = &ldl->plan.node[s];
     const struct front *f = &ldl->front[s];

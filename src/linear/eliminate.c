@@ -139,8 +139,8 @@ static struct choice choose(const struct panel *p)
 static void update_block(struct panel *p, int depth)
 {
     const size_t h = (size_t)p->height, from = (size_t)(p->done - depth) * h + (size_t)p->done;
-    kernel_update(p->height - p->done, p->end - p->done, depth, p->P + from, p->height, p->W + from, p->height,
-                  p->P + (size_t)p->done * h + p->done, p->height);
+    moray_ldl_kernel_update(p->height - p->done, p->end - p->done, depth, p->P + from, p->height, p->W + from,
+                            p->height, p->P + (size_t)p->done * h + p->done, p->height);
 }
 
 static void take_empty(struct panel *p)
@@ -224,8 +224,8 @@ static void take(struct panel *p, struct choice choice)
 static void settle(struct panel *p)
 {
     const size_t h = (size_t)p->height, from = (size_t)p->settled * h + (size_t)p->end;
-    kernel_update(p->height - p->end, p->width - p->end, p->done - p->settled, p->P + from, p->height, p->W + from,
-                  p->height, p->P + (size_t)p->end * h + p->end, p->height);
+    moray_ldl_kernel_update(p->height - p->end, p->width - p->end, p->done - p->settled, p->P + from, p->height,
+                            p->W + from, p->height, p->P + (size_t)p->end * h + p->end, p->height);
     p->settled = p->done;
 }
 
@@ -261,7 +261,7 @@ static void eliminate(struct panel *p, bool root)
         continue;
 }
 
-void front_eliminate(moray_ldl *ldl, int s)
+void moray_ldl_front_eliminate(moray_ldl *ldl, int s)
 {
     const struct node *node = &ldl->plan.node[s];
     struct front *f = &ldl->front[s];
@@ -275,8 +275,8 @@ void front_eliminate(moray_ldl *ldl, int s)
                       .ldl = ldl};
     eliminate(&p, node->parent < 0);
     f->pivots = p.done;
-    kernel_update(node->rows, node->rows, p.done, p.P + f->width, f->height, p.W + f->width, f->height,
-                  ldl->update + node->update, node->rows);
+    moray_ldl_kernel_update(node->rows, node->rows, p.done, p.P + f->width, f->height, p.W + f->width, f->height,
+                            ldl->update + node->update, node->rows);
     for (int k = 0; k < p.done; k++)
         ldl->statistics.done += (double)(f->height - k) * (f->height - k);
 }

@@ -57,14 +57,14 @@ static void find_places(struct plan *plan, int *place)
     for (int s = 0; s < plan->nodes; s++) {
         const struct node *node = &plan->node[s];
         const int height = node->columns + node->rows;
-        plan_places(plan, s, place);
+        moray_ldl_plan_places(plan, s, place);
         for (int c = 0; c < node->columns; c++)
             for (int k = plan->start[node->first + c]; k < plan->start[node->first + c + 1]; k++)
                 plan->place[k] = c * height + place[plan->row[k]];
     }
 }
 
-moray_status plan_entries(struct plan *plan, const moray_pattern *pattern, int *work)
+moray_status moray_ldl_plan_entries(struct plan *plan, const moray_pattern *pattern, int *work)
 {
     const size_t n = (size_t)plan->n, puts = (size_t)pattern->nnz;
     plan->puts = pattern->nnz;

@@ -113,7 +113,7 @@ static void place_columns(const struct plan *plan, const struct merging *m, cons
         place[c] = next[number[m->into[m->front[c]]]]++;
 }
 
-moray_status plan_fronts(struct plan *plan, const int *mate, int *work)
+moray_status moray_ldl_plan_fronts(struct plan *plan, const int *mate, int *work)
 {
     const int n = plan->n;
     struct merging m = {.front = work,
@@ -133,6 +133,6 @@ moray_status plan_fronts(struct plan *plan, const int *mate, int *work)
         return moray_error(MORAY_MEMORY, "no memory for %d fronts", plan->nodes);
     make_nodes(plan, &m, number);
     place_columns(plan, &m, number, m.zeros, m.height);
-    plan_renumber(plan, m.height, m.parent);
+    moray_ldl_plan_renumber(plan, m.height, m.parent);
     return moray_ok();
 }

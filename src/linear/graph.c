@@ -77,7 +77,7 @@ static void merge(struct graph *graph, int *seen)
     }
 }
 
-moray_status graph_new(struct graph *graph, int n, const moray_pattern *pattern, const double *values)
+moray_status moray_ldl_graph_new(struct graph *graph, int n, const moray_pattern *pattern, const double *values)
 {
     int *seen = calloc((size_t)n + 1, sizeof *seen);
     moray_status status = allocate(graph, n, 2 * (size_t)pattern->nnz);
@@ -92,7 +92,7 @@ moray_status graph_new(struct graph *graph, int n, const moray_pattern *pattern,
     return status;
 }
 
-void graph_free(struct graph *graph)
+void moray_ldl_graph_free(struct graph *graph)
 {
     free(graph->block);
     free(graph->start);
@@ -107,7 +107,7 @@ static double largest_of(const struct graph *graph, int i)
     return largest * here;
 }
 
-void graph_equilibrate(struct graph *graph)
+void moray_ldl_graph_equilibrate(struct graph *graph)
 {
     double *scale = graph->scale;
     for (int i = 0; i < graph->n; i++)

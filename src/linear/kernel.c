@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "linear/parts.h"
 
-void kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw, double *C,
-                   int ldc)
+void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw,
+                             double *C, int ldc)
 {
     for (int j = 0; j < columns; j++)
         for (int k = 0; k < depth; k++) {
@@ -14,14 +14,14 @@ void kernel_update(int rows, int columns, int depth, const double *L, int ldl, c
         }
 }
 
-void kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)
+void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)
 {
     for (int k = 0; k < columns; k++)
         for (int i = 0; i < rows; i++)
             y[i] -= L[i + (size_t)k * (size_t)ldl] * x[k];
 }
 
-void kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x)
+void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x)
 {
     for (int k = 0; k < columns; k++) {
         double sum = 0;

@@ -63,7 +63,7 @@ static moray_status analyse(sparse_lu *lu)
     return moray_ok();
 }
 
-moray_status sparse_lu_new(sparse_lu **result, int n, const moray_pattern *pattern)
+moray_status moray_sparse_lu_new(sparse_lu **result, int n, const moray_pattern *pattern)
 {
     const size_t rows = (size_t)n, nnz = (size_t)pattern->nnz;
     *result = NULL;
@@ -83,13 +83,13 @@ moray_status sparse_lu_new(sparse_lu **result, int n, const moray_pattern *patte
         status = analyse(lu);
     }
     if (moray_failed(status))
-        sparse_lu_free(lu);
+        moray_sparse_lu_free(lu);
     else
         *result = lu;
     return status;
 }
 
-void sparse_lu_free(sparse_lu *lu)
+void moray_sparse_lu_free(sparse_lu *lu)
 {
     if (!lu)
         return;
@@ -108,7 +108,7 @@ static bool refactor(sparse_lu *lu)
            lu->common.rgrowth > WORN;
 }
 
-moray_status sparse_lu_factor(sparse_lu *lu, const double *values)
+moray_status moray_sparse_lu_factor(sparse_lu *lu, const double *values)
 {
     bool finite = true;
     for (int k = 0; k < lu->nnz; k++) {
@@ -124,21 +124,21 @@ moray_status sparse_lu_factor(sparse_lu *lu, const double *values)
     return lu->numeric ? moray_ok() : status_of(lu);
 }
 
-moray_status sparse_lu_solve(sparse_lu *lu, int columns, double *B)
+moray_status moray_sparse_lu_solve(sparse_lu *lu, int columns, double *B)
 {
     if (!lu->numeric)
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", lu->n);
     return klu_solve(lu->symbolic, lu->numeric, lu->n, columns, B, &lu->common) ? moray_ok() : status_of(lu);
 }
 
-moray_status sparse_lu_solve_transposed(sparse_lu *lu, int columns, double *B)
+moray_status moray_sparse_lu_solve_transposed(sparse_lu *lu, int columns, double *B)
 {
     if (!lu->numeric)
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", lu->n);
     return klu_tsolve(lu->symbolic, lu->numeric, lu->n, columns, B, &lu->common) ? moray_ok() : status_of(lu);
 }
 
-double sparse_lu_condition(sparse_lu *lu)
+double moray_sparse_lu_condition(sparse_lu *lu)
 {
     return lu->numeric && klu_rcond(lu->symbolic, lu->numeric, &lu->common) ? lu->common.rcond : 0;
 }

@@ -7,7 +7,7 @@
 
 #include "linear/parts.h"
 
-double processor_seconds(void)
+double moray_ldl_clock(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -49,7 +49,7 @@ moray_status moray_ldl_new(moray_ldl **result, int n, const moray_pattern *patte
 
 static void forget_plan(moray_ldl *ldl)
 {
-    plan_free(&ldl->plan);
+    moray_ldl_plan_free(&ldl->plan);
     free(ldl->front);
     free(ldl->value);
     free(ldl->update);
@@ -80,15 +80,15 @@ static moray_status make_plan(moray_ldl *ldl, const double *values)
 {
     struct graph graph;
     int *work = malloc((3 * (size_t)ldl->n + 2) * sizeof *work);
-    moray_status status = graph_new(&graph, ldl->n, &ldl->pattern, values);
+    moray_status status = moray_ldl_graph_new(&graph, ldl->n, &ldl->pattern, values);
     if (!work && !moray_failed(status))
         status = no_memory(ldl->n);
     if (!moray_failed(status)) {
-        graph_equilibrate(&graph);
-        ldl->statistics.pairs = graph_pair(&graph, work, work + ldl->n);
-        status = plan_new(&ldl->plan, &graph, work, &ldl->pattern);
+        moray_ldl_graph_equilibrate(&graph);
+        ldl->statistics.pairs = moray_ldl_graph_pair(&graph, work, work + ldl->n);
+        status = moray_ldl_plan_new(&ldl->plan, &graph, work, &ldl->pattern);
     }
-    graph_free(&graph);
+    moray_ldl_graph_free(&graph);
     free(work);
     return status;
 }
@@ -122,7 +122,7 @@ static moray_status make_room(moray_ldl *ldl)
 
 static moray_status order(moray_ldl *ldl, const double *values)
 {
-    const double start = processor_seconds();
+    const double start = moray_ldl_clock();
     moray_status status = make_plan(ldl, values);
     if (!moray_failed(status))
         status = make_room(ldl);
@@ -134,7 +134,7 @@ static moray_status order(moray_ldl *ldl, const double *values)
     ldl->statistics.largest = ldl->plan.tallest;
     ldl->statistics.planned = ldl->plan.flops;
     ldl->statistics.entries = (double)ldl->plan.panel_room;
-    ldl->statistics.order_seconds += processor_seconds() - start;
+    ldl->statistics.order_seconds += moray_ldl_clock() - start;
     return status;
 }
 
@@ -145,8 +145,8 @@ static moray_status factor(moray_ldl *ldl)
 {
     ldl->panel_used = ldl->index_used = 0;
     for (int s = 0; s < ldl->plan.nodes; s++) {
-        MORAY_TRY(front_assemble(ldl, s));
-        front_eliminate(ldl, s);
+        MORAY_TRY(moray_ldl_front_assemble(ldl, s));
+        moray_ldl_front_eliminate(ldl, s);
     }
     return moray_ok();
 }
@@ -157,16 +157,16 @@ moray_status moray_ldl_factor(moray_ldl *ldl, const double *values, double thres
     ldl->inertia = (moray_ldl_inertia){0};
     if (!ldl->planned)
         MORAY_TRY(order(ldl, values));
-    const double start = processor_seconds();
+    const double start = moray_ldl_clock();
     ldl->threshold = threshold;
     ldl->statistics.delayed = ldl->statistics.pivots_2x2 = 0;
     ldl->statistics.done = 0;
-    if (!ldl_load(ldl, values))
+    if (!moray_ldl_load(ldl, values))
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows is not finite", ldl->n);
     const moray_status status = factor(ldl);
     ldl->factored = !moray_failed(status);
     ldl->statistics.factors++;
-    ldl->statistics.factor_seconds += processor_seconds() - start;
+    ldl->statistics.factor_seconds += moray_ldl_clock() - start;
     return status;
 }
 

@@ -3,8 +3,8 @@
 // Sparse symmetric indefinite matrices of one pattern: P S A S P' = L D L', D of 1x1 and 2x2 blocks, S diagonal.
 // Ordered once, with the first values; factored for every set of values; solved with any number of right-hand sides.
 // An object belongs to one thread at a time, different objects are independent.
-#ifndef LINEAR_LDL_H
-#define LINEAR_LDL_H
+#ifndef SRC_LINEAR_LDL_H
+#define SRC_LINEAR_LDL_H
 
 #include "moray/map.h"
 

@@ -42,7 +42,7 @@ static void sweep(moray_ldl *ldl)
             scale[c] /= sqrt(peak[c]);
 }
 
-bool ldl_load(moray_ldl *ldl, const double *values)
+bool moray_ldl_load(moray_ldl *ldl, const double *values)
 {
     if (!sum_up(ldl, values))
         return false;

@@ -79,7 +79,7 @@ static void expand(const struct quotient *q, int *order)
     }
 }
 
-moray_status graph_order(const struct graph *graph, const int *mate, int *order)
+moray_status moray_ldl_graph_order(const struct graph *graph, const int *mate, int *order)
 {
     struct quotient q = {0};
     MORAY_TRY(allocate(&q, graph));

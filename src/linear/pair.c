@@ -85,7 +85,7 @@ static void sort_by_degree(const struct graph *graph, int *begin, int *list)
         list[begin[degree(graph, i)]++] = i;
 }
 
-int graph_pair(const struct graph *graph, int *mate, int *work)
+int moray_ldl_graph_pair(const struct graph *graph, int *mate, int *work)
 {
     const int n = graph->n;
     struct search search = {graph, mate, 16 + (int)(10 * sqrt(n))};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Pieces of the factorisation. Unknowns are numbered as given; positions are their places in the pivot order.
-#ifndef LINEAR_PARTS_H
-#define LINEAR_PARTS_H
+#ifndef SRC_LINEAR_PARTS_H
+#define SRC_LINEAR_PARTS_H
 
 #include <stddef.h>
 
@@ -45,33 +45,34 @@ struct plan {
 // ---- Ordering
 // --------------------------------------------------------------------------------------------------------
 
-moray_status graph_new(struct graph *graph, int n, const moray_pattern *pattern, const double *values);
-void graph_free(struct graph *graph);
+moray_status moray_ldl_graph_new(struct graph *graph, int n, const moray_pattern *pattern, const double *values);
+void moray_ldl_graph_free(struct graph *graph);
 // Brings the largest entry of each row near 1.
-void graph_equilibrate(struct graph *graph);
+void moray_ldl_graph_equilibrate(struct graph *graph);
 // mate[i] <- the unknown that makes a 2x2 pivot with i, or -1. Returns how many pairs.
-int graph_pair(const struct graph *graph, int *mate, int *work); // work[2 n + 2]
+int moray_ldl_graph_pair(const struct graph *graph, int *mate, int *work); // work[2 n + 2]
 // order[n] <- a pivot order of little fill that keeps pairs together. Error: MORAY_MEMORY.
-moray_status graph_order(const struct graph *graph, const int *mate, int *order);
+moray_status moray_ldl_graph_order(const struct graph *graph, const int *mate, int *order);
 
 // ---- Symbolic
 // --------------------------------------------------------------------------------------------------------
 
 // Error: MORAY_MEMORY.
-moray_status plan_new(struct plan *plan, const struct graph *graph, const int *mate, const moray_pattern *pattern);
-void plan_free(struct plan *plan);
+moray_status moray_ldl_plan_new(struct plan *plan, const struct graph *graph, const int *mate,
+                                const moray_pattern *pattern);
+void moray_ldl_plan_free(struct plan *plan);
 // Numbers positions by the elimination tree, children first, and counts the columns of L.
-void plan_tree(struct plan *plan, const struct graph *graph, int *work); // work[4 n]
+void moray_ldl_plan_tree(struct plan *plan, const struct graph *graph, int *work); // work[4 n]
 // Moves what stands at position c to place[c].
-void plan_renumber(struct plan *plan, const int *place, int *work); // work[n]
+void moray_ldl_plan_renumber(struct plan *plan, const int *place, int *work); // work[n]
 // Makes the fronts, and numbers positions by them.
-moray_status plan_fronts(struct plan *plan, const int *mate, int *work); // work[7 n]
+moray_status moray_ldl_plan_fronts(struct plan *plan, const int *mate, int *work); // work[7 n]
 // Finds the rows of each front and their places in the parent.
-moray_status plan_structure(struct plan *plan, const struct graph *graph, int *work); // work[n + 1]
+moray_status moray_ldl_plan_structure(struct plan *plan, const struct graph *graph, int *work); // work[n + 1]
 // place[position] <- row of the front, for the columns and rows of front s; other entries are left.
-void plan_places(const struct plan *plan, int s, int *place);
+void moray_ldl_plan_places(const struct plan *plan, int s, int *place);
 // Leads each entry given to its place.
-moray_status plan_entries(struct plan *plan, const moray_pattern *pattern, int *work); // work[n + 1]
+moray_status moray_ldl_plan_entries(struct plan *plan, const moray_pattern *pattern, int *work); // work[n + 1]
 
 // ---- Numeric
 // ---------------------------------------------------------------------------------------------------------
@@ -101,20 +102,20 @@ struct moray_ldl {
     moray_ldl_statistics statistics;
 };
 
-double processor_seconds(void); // of this thread
+double moray_ldl_clock(void); // of this thread
 // Sums up repeated values and equilibrates. False where a value is not finite.
-bool ldl_load(moray_ldl *ldl, const double *values);
+bool moray_ldl_load(moray_ldl *ldl, const double *values);
 // Lays out the front of a node behind those before and fills it from the matrix and the node's children.
-moray_status front_assemble(moray_ldl *ldl, int node);
+moray_status moray_ldl_front_assemble(moray_ldl *ldl, int node);
 // Eliminates what can be eliminated, and leaves the rest to the parent.
-void front_eliminate(moray_ldl *ldl, int node);
+void moray_ldl_front_eliminate(moray_ldl *ldl, int node);
 
 // C[i + j ldc] -= sum over k < depth of L[i + k ldl] W[j + k ldw], for j < columns and j <= i < rows.
-void kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw, double *C,
-                   int ldc);
+void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw,
+                             double *C, int ldc);
 // y[i] -= sum over k < columns of L[i + k ldl] x[k], i < rows
-void kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y);
+void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y);
 // x[k] -= sum over i < rows of L[i + k ldl] y[i], k < columns
-void kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x);
+void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x);
 
 #endif

@@ -8,14 +8,15 @@ enum { work_size = 8 };
 static moray_status make(struct plan *plan, const struct graph *graph, const int *mate, const moray_pattern *pattern,
                          int *work)
 {
-    MORAY_TRY(graph_order(graph, mate, plan->order));
-    plan_tree(plan, graph, work);
-    MORAY_TRY(plan_fronts(plan, mate, work));
-    MORAY_TRY(plan_structure(plan, graph, work));
-    return plan_entries(plan, pattern, work);
+    MORAY_TRY(moray_ldl_graph_order(graph, mate, plan->order));
+    moray_ldl_plan_tree(plan, graph, work);
+    MORAY_TRY(moray_ldl_plan_fronts(plan, mate, work));
+    MORAY_TRY(moray_ldl_plan_structure(plan, graph, work));
+    return moray_ldl_plan_entries(plan, pattern, work);
 }
 
-moray_status plan_new(struct plan *plan, const struct graph *graph, const int *mate, const moray_pattern *pattern)
+moray_status moray_ldl_plan_new(struct plan *plan, const struct graph *graph, const int *mate,
+                                const moray_pattern *pattern)
 {
     const size_t n = (size_t)graph->n;
     *plan = (struct plan){.n = graph->n};
@@ -31,11 +32,11 @@ moray_status plan_new(struct plan *plan, const struct graph *graph, const int *m
     }
     free(work);
     if (moray_failed(status))
-        plan_free(plan);
+        moray_ldl_plan_free(plan);
     return status;
 }
 
-void plan_free(struct plan *plan)
+void moray_ldl_plan_free(struct plan *plan)
 {
     free(plan->block);
     free(plan->node);

@@ -34,9 +34,9 @@ static void forward(moray_ldl *ldl, int s)
 {
     const struct part p = gather(ldl, s);
     for (int k = 0; k + 1 < p.pivots; k++)
-        kernel_subtract(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height, p.x + k,
-                        p.x + k + 1);
-    kernel_subtract(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x, p.x + p.pivots);
+        moray_ldl_kernel_subtract(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height, p.x + k,
+                                  p.x + k + 1);
+    moray_ldl_kernel_subtract(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x, p.x + p.pivots);
     for (int k = 0; k < p.pivots; k++)
         ldl->permuted[p.index[k]] = p.x[k];
     for (int k = p.pivots; k < p.width; k++)
@@ -62,10 +62,10 @@ static void backward(moray_ldl *ldl, int s)
 {
     const struct part p = gather(ldl, s);
     divide(&p);
-    kernel_subtract_transposed(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x + p.pivots, p.x);
+    moray_ldl_kernel_subtract_transposed(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x + p.pivots, p.x);
     for (int k = p.pivots - 2; k >= 0; k--)
-        kernel_subtract_transposed(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height,
-                                   p.x + k + 1, p.x + k);
+        moray_ldl_kernel_subtract_transposed(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height,
+                                             p.x + k + 1, p.x + k);
     for (int k = 0; k < p.pivots; k++)
         ldl->permuted[p.index[k]] = p.x[k];
 }
@@ -87,10 +87,10 @@ moray_status moray_ldl_solve(moray_ldl *ldl, int columns, double *B)
 {
     if (!ldl->factored)
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", ldl->n);
-    const double start = processor_seconds();
+    const double start = moray_ldl_clock();
     for (int j = 0; j < columns; j++)
         solve_one(ldl, B + (size_t)j * (size_t)ldl->n);
     ldl->statistics.solves += columns;
-    ldl->statistics.solve_seconds += processor_seconds() - start;
+    ldl->statistics.solve_seconds += moray_ldl_clock() - start;
     return moray_ok();
 }

@@ -53,7 +53,7 @@ static void sort_rows(struct plan *plan, int total, int *begin)
         }
 }
 
-void plan_places(const struct plan *plan, int s, int *place)
+void moray_ldl_plan_places(const struct plan *plan, int s, int *place)
 {
     const struct node *node = &plan->node[s];
     for (int k = 0; k < node->columns; k++)
@@ -65,7 +65,7 @@ void plan_places(const struct plan *plan, int s, int *place)
 static void find_places(struct plan *plan, int s, int *place)
 {
     const struct node *node = &plan->node[s];
-    plan_places(plan, s, place);
+    moray_ldl_plan_places(plan, s, place);
     for (int c = node->child; c >= 0; c = plan->node[c].sibling) {
         struct node *child = &plan->node[c];
         child->own = 0;
@@ -111,7 +111,7 @@ static void measure(struct plan *plan)
     }
 }
 
-moray_status plan_structure(struct plan *plan, const struct graph *graph, int *work)
+moray_status moray_ldl_plan_structure(struct plan *plan, const struct graph *graph, int *work)
 {
     const struct node *last = &plan->node[plan->nodes > 0 ? plan->nodes - 1 : 0];
     const int total = plan->nodes > 0 ? last->structure + last->rows : 0;

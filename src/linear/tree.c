@@ -51,7 +51,7 @@ static void post_order(const struct plan *plan, int *place, int *child, int *sib
     }
 }
 
-void plan_renumber(struct plan *plan, const int *place, int *work)
+void moray_ldl_plan_renumber(struct plan *plan, const int *place, int *work)
 {
     memcpy(work, plan->order, (size_t)plan->n * sizeof *work);
     for (int c = 0; c < plan->n; c++) {
@@ -62,7 +62,7 @@ void plan_renumber(struct plan *plan, const int *place, int *work)
 
 static void renumber_tree(struct plan *plan, const int *place, int *work)
 {
-    plan_renumber(plan, place, work);
+    moray_ldl_plan_renumber(plan, place, work);
     memcpy(work, plan->parent, (size_t)plan->n * sizeof *work);
     for (int c = 0; c < plan->n; c++)
         plan->parent[place[c]] = work[c] < 0 ? -1 : place[work[c]];
@@ -128,7 +128,7 @@ static void count_columns(struct plan *plan, const struct graph *graph, struct l
             plan->count[plan->parent[c]] += plan->count[c];
 }
 
-void plan_tree(struct plan *plan, const struct graph *graph, int *work)
+void moray_ldl_plan_tree(struct plan *plan, const struct graph *graph, int *work)
 {
     const int n = plan->n;
     for (int c = 0; c < n; c++)

@@ -36,15 +36,15 @@ static struct side side_of(const moray_nlp *nlp, const moray_iterate *at, int i,
                          .scale = scales ? scales[row ? i : j] : 1};
 }
 
-double objective_scale(const moray_nlp *nlp)
+double moray_objective_scale(const moray_nlp *nlp)
 {
     return nlp->f_scale != 0 ? nlp->f_scale : 1;
 }
 
-void find_activity(moray_nlp_sensitivity *s)
+void moray_find_activity(moray_nlp_sensitivity *s)
 {
     const moray_nlp *nlp = s->nlp;
-    const double f_scale = objective_scale(nlp);
+    const double f_scale = moray_objective_scale(nlp);
     for (int i = 0; i < nlp->m + nlp->n; i++)
         for (int upper = 0; upper < 2; upper++) {
             const struct side side = side_of(nlp, s->at, i, upper);
@@ -75,7 +75,7 @@ static double step_to_zero(double value, double rate, int direction)
     return rate * direction < 0 ? fmax(value, 0) / fabs(rate) : INFINITY;
 }
 
-double bound_slope(const moray_nlp *nlp, const moray_nlp_shift *shift, int i, bool upper)
+double moray_bound_slope(const moray_nlp *nlp, const moray_nlp_shift *shift, int i, bool upper)
 {
     const double *of_rows = upper ? shift->g_upper : shift->g_lower;
     const double *of_columns = upper ? shift->x_upper : shift->x_lower;
@@ -97,7 +97,7 @@ static moray_nlp_change change_of(const moray_nlp_sensitivity *s, const moray_nl
         change.step = step_to_zero(side.multiplier, rate.multiplier, direction);
     } else if (activity == INACTIVE) {
         const double value = i < nlp->m ? slope->g[i] : slope->x[i - nlp->m];
-        const double gap = bound_slope(nlp, shift, i, upper) - value;
+        const double gap = moray_bound_slope(nlp, shift, i, upper) - value;
         change.step = step_to_zero(side.slack, upper ? gap : -gap, direction);
     }
     return change;

@@ -181,11 +181,11 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
                         struct ipopt_timing *timing)
 {
     const moray_nlp_settings *settings = session->settings;
-    if (!ipopt_set_options(problem, session->nlp, settings, session->info->linear_solver, session->last) ||
+    if (!moray_ipopt_set_options(problem, session->nlp, settings, session->info->linear_solver, session->last) ||
         !SetIntermediateCallback(problem, on_iteration))
         return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
                            settings->tolerance, settings->max_iterations, settings->print_level);
-    if (settings->timing && session->info->linear_solver != MORAY_LINEAR_OWN && ipopt_timing_open(timing) &&
+    if (settings->timing && session->info->linear_solver != MORAY_LINEAR_OWN && moray_ipopt_timing_open(timing) &&
         OpenIpoptOutputFile(problem, timing->path, ipopt_timing_level))
         AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
     session->info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective,
@@ -209,16 +209,16 @@ static moray_status solve_with(struct session *session, moray_iterate *iterate)
         status = run(problem, session, iterate, &timing);
         FreeIpoptProblem(problem); // writes the rest of the log
     }
-    session->info->linear_seconds = ipopt_timing_close(&timing);
+    session->info->linear_seconds = moray_ipopt_timing_close(&timing);
     return status;
 }
 
 static moray_status solve_own(struct session *session, moray_iterate *iterate, bool *doubtful)
 {
     struct ipopt_linear linear;
-    ipopt_linear_open(&linear);
+    moray_ipopt_linear_open(&linear);
     moray_status status = solve_with(session, iterate);
-    ipopt_linear_close(&linear);
+    moray_ipopt_linear_close(&linear);
     session->info->linear_seconds = linear.seconds;
     *doubtful = stopped_early(session->info->outcome) && linear.doubtful;
     return moray_failed(status) ? status : linear.failure;
@@ -240,10 +240,10 @@ static moray_status solve(struct session *session, moray_iterate *iterate, const
     moray_nlp_info *info = session->info;
     bool doubtful = false;
     info->linear_solver = settings->linear_solver;
-    if (info->linear_solver == MORAY_LINEAR_OWN && !ipopt_linear_available())
+    if (info->linear_solver == MORAY_LINEAR_OWN && !moray_ipopt_linear_available())
         info->linear_solver = MORAY_LINEAR_MUMPS;
     if (info->linear_solver == MORAY_LINEAR_MA57)
-        ipopt_linear_stand_back();
+        moray_ipopt_linear_stand_back();
     if (info->linear_solver != MORAY_LINEAR_OWN)
         return solve_with(session, iterate);
     MORAY_TRY(solve_own(session, iterate, &doubtful));

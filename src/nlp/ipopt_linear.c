@@ -116,19 +116,19 @@ static void enlarge(ipfint *n, ipfint *what, ipfint *keep, double *fact, ipfint 
     info[0] = fine;
 }
 
-bool ipopt_linear_available(void)
+bool moray_ipopt_linear_available(void)
 {
     return true;
 }
 
-void ipopt_linear_open(struct ipopt_linear *linear)
+void moray_ipopt_linear_open(struct ipopt_linear *linear)
 {
     *linear = (struct ipopt_linear){.outer = current};
     current = linear;
     LSL_setMA57(analyse, factor, solve, enlarge, set_defaults);
 }
 
-void ipopt_linear_close(struct ipopt_linear *linear)
+void moray_ipopt_linear_close(struct ipopt_linear *linear)
 {
     for (int k = 0; k < linear->patterns; k++)
         moray_ldl_free(linear->ldl[k]);
@@ -136,29 +136,29 @@ void ipopt_linear_close(struct ipopt_linear *linear)
     current = linear->outer;
 }
 
-void ipopt_linear_stand_back(void)
+void moray_ipopt_linear_stand_back(void)
 {
     LSL_setMA57(NULL, NULL, NULL, NULL, NULL);
 }
 
 #else
 
-bool ipopt_linear_available(void)
+bool moray_ipopt_linear_available(void)
 {
     return false;
 }
 
-void ipopt_linear_open(struct ipopt_linear *linear)
+void moray_ipopt_linear_open(struct ipopt_linear *linear)
 {
     *linear = (struct ipopt_linear){0};
 }
 
-void ipopt_linear_close(struct ipopt_linear *linear)
+void moray_ipopt_linear_close(struct ipopt_linear *linear)
 {
     (void)linear;
 }
 
-void ipopt_linear_stand_back(void)
+void moray_ipopt_linear_stand_back(void)
 {
 }
 

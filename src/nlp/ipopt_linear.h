@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Our factorisation behind Ipopt: Ipopt calls its MA57 through function pointers that a program may set.
-#ifndef NLP_IPOPT_LINEAR_H
-#define NLP_IPOPT_LINEAR_H
+#ifndef SRC_NLP_IPOPT_LINEAR_H
+#define SRC_NLP_IPOPT_LINEAR_H
 
 #include "linear/ldl.h"
 
@@ -18,13 +18,13 @@ struct ipopt_linear {
 };
 
 // Whether Ipopt has such pointers (3.14 has none).
-bool ipopt_linear_available(void);
+bool moray_ipopt_linear_available(void);
 
 // Between the two, calls of Ipopt in this thread come to `linear`. Close frees its factors, not what it has found out.
-void ipopt_linear_open(struct ipopt_linear *linear);
-void ipopt_linear_close(struct ipopt_linear *linear);
+void moray_ipopt_linear_open(struct ipopt_linear *linear);
+void moray_ipopt_linear_close(struct ipopt_linear *linear);
 
 // Lets Ipopt look for an MA57 of its own in libhsl.so.
-void ipopt_linear_stand_back(void);
+void moray_ipopt_linear_stand_back(void);
 
 #endif

@@ -30,8 +30,8 @@ static bool set_linear_solver(IpoptProblem problem, const moray_nlp *nlp, moray_
     return ok;
 }
 
-bool ipopt_set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_nlp_settings *settings,
-                       moray_linear_solver solver, double *work)
+bool moray_ipopt_set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_nlp_settings *settings,
+                             moray_linear_solver solver, double *work)
 {
     // 3.11 declares its option texts as char * but only reads them.
     bool ok = AddIpoptNumOption(problem, (char *)"tol", settings->tolerance);

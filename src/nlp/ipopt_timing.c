@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-bool ipopt_timing_open(struct ipopt_timing *timing)
+bool moray_ipopt_timing_open(struct ipopt_timing *timing)
 {
     strcpy(timing->path, "/tmp/moray-ipopt-XXXXXX");
     const int file = mkstemp(timing->path);
@@ -18,7 +18,7 @@ bool ipopt_timing_open(struct ipopt_timing *timing)
     return file >= 0;
 }
 
-double ipopt_timing_close(struct ipopt_timing *timing)
+double moray_ipopt_timing_close(struct ipopt_timing *timing)
 {
     char line[200];
     double user, system, seconds = NAN;

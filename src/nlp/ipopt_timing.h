@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Ipopt tells how long its linear solver took only in a log file.
-#ifndef NLP_IPOPT_TIMING_H
-#define NLP_IPOPT_TIMING_H
+#ifndef SRC_NLP_IPOPT_TIMING_H
+#define SRC_NLP_IPOPT_TIMING_H
 
 #include <stdbool.h>
 
@@ -13,9 +13,9 @@ struct ipopt_timing {
 };
 
 // Makes an empty temporary file for the log. False where that fails.
-bool ipopt_timing_open(struct ipopt_timing *timing);
+bool moray_ipopt_timing_open(struct ipopt_timing *timing);
 
 // Removes it, and returns the processor seconds of the linear solver; NaN where there is no such file or line.
-double ipopt_timing_close(struct ipopt_timing *timing);
+double moray_ipopt_timing_close(struct ipopt_timing *timing);
 
 #endif

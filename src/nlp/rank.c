@@ -64,13 +64,13 @@ static moray_status augmented_new(struct augmented *a, bool normalise)
     if (normalise)
         normalise_rows(a);
     fill(a);
-    MORAY_TRY(sparse_lu_new(&a->lu, n + m, &a->pattern));
-    return sparse_lu_factor(a->lu, a->values);
+    MORAY_TRY(moray_sparse_lu_new(&a->lu, n + m, &a->pattern));
+    return moray_sparse_lu_factor(a->lu, a->values);
 }
 
 static void augmented_free(struct augmented *a)
 {
-    sparse_lu_free(a->lu);
+    moray_sparse_lu_free(a->lu);
     moray_pattern_free(&a->pattern);
     free(a->row_scale);
 }
@@ -90,7 +90,7 @@ static moray_status filter(struct augmented *a, double *y)
     memset(a->rhs, 0, (size_t)n * sizeof *a->rhs);
     for (int i = 0; i < m; i++)
         a->rhs[n + i] = a->selection->rows[i] ? -least_square * y[i] : 0;
-    MORAY_TRY(sparse_lu_solve(a->lu, 1, a->rhs));
+    MORAY_TRY(moray_sparse_lu_solve(a->lu, 1, a->rhs));
     memcpy(y, a->rhs + n, (size_t)m * sizeof *y);
     return moray_ok();
 }
@@ -126,7 +126,7 @@ static moray_status find_dependence(struct augmented *a, double *weight, double 
     return iterate(a, weight, norm);
 }
 
-moray_status nlp_dependent_rows(const struct selection *selection, double *weight, double *norm)
+moray_status moray_nlp_dependent_rows(const struct selection *selection, double *weight, double *norm)
 {
     struct augmented a = {.selection = selection};
     moray_status status = augmented_new(&a, true);
@@ -136,7 +136,7 @@ moray_status nlp_dependent_rows(const struct selection *selection, double *weigh
     return status;
 }
 
-moray_status nlp_unremovable(const struct selection *selection, double *violation)
+moray_status moray_nlp_unremovable(const struct selection *selection, double *violation)
 {
     struct augmented a = {.selection = selection};
     moray_status status = augmented_new(&a, false);

@@ -3,8 +3,8 @@
 // What a set of constraints can and cannot do to first order, from one sparse factorisation of
 //     [I J'; J -r I]
 // with the Jacobian J of some rows in some columns, and a regularisation r.
-#ifndef NLP_RANK_H
-#define NLP_RANK_H
+#ifndef SRC_NLP_RANK_H
+#define SRC_NLP_RANK_H
 
 #include "moray/nlp.h"
 
@@ -17,9 +17,9 @@ struct selection {
 
 // The combination of rows, each normalised, that is nearest to nothing: weight[m] of norm 1, and the norm of what it
 // comes to. Error: MORAY_MEMORY, MORAY_NUMERIC.
-moray_status nlp_dependent_rows(const struct selection *selection, double *weight, double *norm);
+moray_status moray_nlp_dependent_rows(const struct selection *selection, double *weight, double *norm);
 
 // violation[m] <- the part of it that no change of the columns would remove. Error: MORAY_MEMORY, MORAY_NUMERIC.
-moray_status nlp_unremovable(const struct selection *selection, double *violation);
+moray_status moray_nlp_unremovable(const struct selection *selection, double *violation);
 
 #endif

@@ -37,7 +37,7 @@ static void fill(moray_nlp_sensitivity *s)
     int k = 0;
     for (; k < n + m; k++) {
         const double g_scale = k >= n && nlp->g_scale ? nlp->g_scale[k - n] : 1;
-        put(s, k, k, k, k < n ? 0 : -regularity * objective_scale(nlp) / (g_scale * g_scale));
+        put(s, k, k, k, k < n ? 0 : -regularity * moray_objective_scale(nlp) / (g_scale * g_scale));
         if (is_held(s, k))
             s->values[k] = 1;
     }
@@ -68,9 +68,9 @@ static moray_status evaluate(moray_nlp_sensitivity *s)
 
 static moray_status factor(moray_nlp_sensitivity *s)
 {
-    MORAY_TRY(sparse_lu_new(&s->lu, s->nlp->n + s->nlp->m, &s->pattern));
-    const moray_status status = sparse_lu_factor(s->lu, s->values);
-    const double condition = sparse_lu_condition(s->lu);
+    MORAY_TRY(moray_sparse_lu_new(&s->lu, s->nlp->n + s->nlp->m, &s->pattern));
+    const moray_status status = moray_sparse_lu_factor(s->lu, s->values);
+    const double condition = moray_sparse_lu_condition(s->lu);
     if (status.code == MORAY_MEMORY || (!moray_failed(status) && condition > singular))
         return status;
     return moray_error(MORAY_NUMERIC,
@@ -108,7 +108,7 @@ moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const mor
     s->at = solution;
     moray_status status = allocate(s);
     if (!moray_failed(status)) {
-        find_activity(s);
+        moray_find_activity(s);
         status = evaluate(s);
     }
     if (!moray_failed(status)) {
@@ -126,7 +126,7 @@ void moray_nlp_sensitivity_free(moray_nlp_sensitivity *s)
 {
     if (!s)
         return;
-    sparse_lu_free(s->lu);
+    moray_sparse_lu_free(s->lu);
     moray_pattern_free(&s->pattern);
     free(s->jac);
     free(s->activity);
@@ -145,11 +145,12 @@ static void fill_rhs(moray_nlp_sensitivity *s, const moray_nlp_shift *shift)
 {
     const int n = s->nlp->n, m = s->nlp->m;
     for (int j = 0; j < n; j++)
-        s->rhs[j] = is_held(s, j) ? bound_slope(s->nlp, shift, m + j, s->activity[m + j] == AT_UPPER)
+        s->rhs[j] = is_held(s, j) ? moray_bound_slope(s->nlp, shift, m + j, s->activity[m + j] == AT_UPPER)
                                   : -entry(shift->gradient, j);
     for (int i = 0; i < m; i++)
-        s->rhs[n + i] =
-            is_held(s, n + i) ? 0 : bound_slope(s->nlp, shift, i, s->activity[i] == AT_UPPER) - entry(shift->g, i);
+        s->rhs[n + i] = is_held(s, n + i)
+                            ? 0
+                            : moray_bound_slope(s->nlp, shift, i, s->activity[i] == AT_UPPER) - entry(shift->g, i);
 }
 
 // What takes a row of the matrix to the solver's scale.
@@ -159,7 +160,7 @@ static double row_scale(const moray_nlp_sensitivity *s, int row)
     if (row >= nlp->n)
         return nlp->g_scale && !is_held(s, row) ? nlp->g_scale[row - nlp->n] : 1;
     const double scale = nlp->x_scale ? nlp->x_scale[row] : 1;
-    return is_held(s, row) ? scale : objective_scale(nlp) / scale;
+    return is_held(s, row) ? scale : moray_objective_scale(nlp) / scale;
 }
 
 static double scaled_norm(const moray_nlp_sensitivity *s, const double *vector)
@@ -187,7 +188,7 @@ static moray_status solve_kkt(moray_nlp_sensitivity *s)
     memset(s->solution, 0, (size_t)size * sizeof *s->solution);
     for (int k = 0; k < refinements; k++) {
         find_residual(s);
-        MORAY_TRY(sparse_lu_solve(s->lu, 1, s->residual));
+        MORAY_TRY(moray_sparse_lu_solve(s->lu, 1, s->residual));
         for (int i = 0; i < size; i++)
             s->solution[i] += s->residual[i];
     }

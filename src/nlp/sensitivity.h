@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Pieces of the sensitivities: which constraints are active, and the factors of the KKT matrix that they make.
-#ifndef NLP_SENSITIVITY_H
-#define NLP_SENSITIVITY_H
+#ifndef SRC_NLP_SENSITIVITY_H
+#define SRC_NLP_SENSITIVITY_H
 
 #include "moray/nlp.h"
 #include "linear/klu.h"
@@ -22,12 +22,12 @@ struct moray_nlp_sensitivity {
 };
 
 // Of the objective, as the solver sees it.
-double objective_scale(const moray_nlp *nlp);
+double moray_objective_scale(const moray_nlp *nlp);
 
 // Fills activity and weak from multipliers and slacks.
-void find_activity(moray_nlp_sensitivity *sensitivity);
+void moray_find_activity(moray_nlp_sensitivity *sensitivity);
 
 // d/dp of one bound of a constraint.
-double bound_slope(const moray_nlp *nlp, const moray_nlp_shift *shift, int constraint, bool upper);
+double moray_bound_slope(const moray_nlp *nlp, const moray_nlp_shift *shift, int constraint, bool upper);
 
 #endif

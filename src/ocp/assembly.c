@@ -49,7 +49,7 @@ static void path_and_integrals(const struct transcription *t, int p, double *g)
     }
 }
 
-void assemble_constraints(const struct transcription *t, double *g)
+void moray_assemble_constraints(const struct transcription *t, double *g)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
         for (int k = 0; k < t->layout.phase[p].mesh.intervals; k++)
@@ -92,7 +92,7 @@ static void put_dynamics(const struct transcription *t, int p, int n, int first_
     const moray_map *map = t->ocp->phase[p].map;
     const struct node *node = &t->layout.phase[p].node[n];
     const double *jac = t->phase[p].jac + n * map->jac.nnz, *value = t->phase[p].out + n * map->n_out;
-    const int nx = t->ocp->phase[p].nx, *column = node_columns(t, p, node);
+    const int nx = t->ocp->phase[p].nx, *column = moray_node_columns(t, p, node);
     const double hQ = duration(t, p) * wQ;
     for (int k = 0; k < map->jac.nnz; k++)
         if (map->jac.row[k] < nx)
@@ -124,7 +124,7 @@ static void put_path_and_integrals(const struct transcription *t, int p, int n, 
     const struct node *node = &layout->node[n];
     const moray_map *map = phase->map;
     const double *jac = t->phase[p].jac + n * map->jac.nnz, *value = t->phase[p].out + n * map->n_out;
-    const int *column = node_columns(t, p, node), before_g = phase->nx + phase->nc;
+    const int *column = moray_node_columns(t, p, node), before_g = phase->nx + phase->nc;
     for (int k = 0; k < map->jac.nnz; k++) {
         const int row = map->jac.row[k];
         if (row >= before_g)
@@ -137,7 +137,7 @@ static void put_path_and_integrals(const struct transcription *t, int p, int n, 
         put_duration(t, p, layout->integral_row + m, -node->weight * value[before_g + m], out);
 }
 
-void walk_jacobian(const struct transcription *t, triplets *out)
+void moray_walk_jacobian(const struct transcription *t, triplets *out)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
         const struct phase_layout *layout = &t->layout.phase[p];
@@ -157,7 +157,7 @@ void walk_jacobian(const struct transcription *t, triplets *out)
 
 // ---- Hessian ----
 
-void dynamics_multipliers(const struct transcription *t, int p, const double *lambda, double *lambda_f)
+void moray_dynamics_multipliers(const struct transcription *t, int p, const double *lambda, double *lambda_f)
 {
     const int nx = t->ocp->phase[p].nx;
     const struct phase_layout *layout = &t->layout.phase[p];
@@ -227,7 +227,7 @@ static void put_node_hessian(const struct transcription *t, int p, int n, const 
     const struct phase_layout *layout = &t->layout.phase[p];
     const struct node *node = &layout->node[n];
     const moray_map *map = phase->map;
-    const int nx = phase->nx, nc = phase->nc, *column = node_columns(t, p, node);
+    const int nx = phase->nx, nc = phase->nc, *column = moray_node_columns(t, p, node);
     memcpy(t->weight, t->phase[p].lambda + n * nx, (size_t)nx * sizeof *t->weight);
     memcpy(t->weight + nx, lambda + node->path, (size_t)nc * sizeof *t->weight);
     for (int m = 0; m < phase->nq; m++)
@@ -253,10 +253,10 @@ static void put_endpoint_hessian(const struct transcription *t, double sigma, co
     }
 }
 
-void walk_hessian(const struct transcription *t, double sigma, const double *lambda, triplets *out)
+void moray_walk_hessian(const struct transcription *t, double sigma, const double *lambda, triplets *out)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
-        dynamics_multipliers(t, p, lambda, t->phase[p].lambda);
+        moray_dynamics_multipliers(t, p, lambda, t->phase[p].lambda);
         for (int n = 0; n < t->layout.phase[p].nodes; n++)
             if (t->layout.phase[p].node[n].collocated)
                 put_node_hessian(t, p, n, lambda, out);

@@ -8,7 +8,7 @@
 
 static const double close_to_bound = 1e-5; // scaled
 
-void visit_bands(const struct transcription *t, void (*visit)(const struct band *band, void *self), void *self)
+void moray_visit_bands(const struct transcription *t, void (*visit)(const struct band *band, void *self), void *self)
 {
     const struct layout *layout = &t->layout;
     for (int p = 0; p < layout->phases; p++) {
@@ -33,12 +33,12 @@ void visit_bands(const struct transcription *t, void (*visit)(const struct band 
         visit(&(struct band){band_single, true, -1, i}, self);
 }
 
-int band_members(const struct transcription *t, const struct band *band)
+int moray_band_members(const struct transcription *t, const struct band *band)
 {
     return band->kind == band_single ? 1 : t->layout.phase[band->p].nodes;
 }
 
-int band_member(const struct transcription *t, const struct band *band, int n)
+int moray_band_member(const struct transcription *t, const struct band *band, int n)
 {
     if (band->kind == band_single)
         return band->index;
@@ -56,31 +56,31 @@ int band_member(const struct transcription *t, const struct band *band, int n)
     }
 }
 
-void band_name(const moray_solution *solution, const struct band *band, char *text, int size)
+void moray_band_name(const moray_solution *solution, const struct band *band, char *text, int size)
 {
     const struct transcription *t = solution->transcription;
     const moray_ocp *ocp = t->ocp;
     char what[100];
     if (band->kind == band_single && band->rows) {
-        layout_row_name(&t->layout, ocp, solution->iterate.x, band->index, text, size);
+        moray_layout_row_name(&t->layout, ocp, solution->iterate.x, band->index, text, size);
         return;
     }
     if (band->kind == band_single) {
-        layout_column_name(&t->layout, ocp, solution->iterate.x, band->index, text, size);
+        moray_layout_column_name(&t->layout, ocp, solution->iterate.x, band->index, text, size);
         return;
     }
     const struct phase *phase = &ocp->phase[band->p];
     const int nx = phase->nx;
     if (band->kind == band_path)
-        phase_output_name(ocp, band->p, nx + band->index, what, sizeof what);
+        moray_phase_output_name(ocp, band->p, nx + band->index, what, sizeof what);
     else if (band->kind == band_dynamics)
-        phase_output_name(ocp, band->p, band->index, what, sizeof what);
+        moray_phase_output_name(ocp, band->p, band->index, what, sizeof what);
     else
-        phase_input_name(ocp, band->p, (band->kind == band_state ? 0 : nx) + band->index, what, sizeof what);
+        moray_phase_input_name(ocp, band->p, (band->kind == band_state ? 0 : nx) + band->index, what, sizeof what);
     snprintf(text, (size_t)size, "%s of phase %s", what, phase->name);
 }
 
-struct standing standing_of(const moray_solution *solution, bool row, int i)
+struct standing moray_standing_of(const moray_solution *solution, bool row, int i)
 {
     const moray_nlp *nlp = &solution->transcription->nlp;
     const double *scale = row ? nlp->g_scale : nlp->x_scale;

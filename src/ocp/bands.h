@@ -2,8 +2,8 @@
 //
 // Columns and rows of the programme that are one thing to the user: a state, control, path constraint or the dynamics
 // of a state at all nodes of a phase, or a single integral, its definition, a time, parameter or event.
-#ifndef OCP_BANDS_H
-#define OCP_BANDS_H
+#ifndef SRC_OCP_BANDS_H
+#define SRC_OCP_BANDS_H
 
 #include "ocp/solution.h"
 
@@ -15,21 +15,21 @@ struct band {
 };
 
 // Calls visit for every band, in the order of phases, then singles.
-void visit_bands(const struct transcription *t, void (*visit)(const struct band *band, void *self), void *self);
+void moray_visit_bands(const struct transcription *t, void (*visit)(const struct band *band, void *self), void *self);
 
 // Members are numbered by node, those of dynamics from the second; a member's column or row, or -1 where it has none at
 // this node.
-int band_members(const struct transcription *t, const struct band *band);
-int band_member(const struct transcription *t, const struct band *band, int n);
+int moray_band_members(const struct transcription *t, const struct band *band);
+int moray_band_member(const struct transcription *t, const struct band *band, int n);
 
 // "control u of phase cart"
-void band_name(const moray_solution *solution, const struct band *band, char *text, int size);
+void moray_band_name(const moray_solution *solution, const struct band *band, char *text, int size);
 
 // Which bounds a member is at, by its scaled distance: value, bounds and scale of a column or row.
 struct standing {
     double value, lower, upper, scale;
     bool fixed, at_lower, at_upper;
 };
-struct standing standing_of(const moray_solution *solution, bool row, int i);
+struct standing moray_standing_of(const moray_solution *solution, bool row, int i);
 
 #endif

@@ -18,9 +18,9 @@ static bool resimulated_rhs(double t, const double *x, double *dx, void *self)
 {
     const struct resimulation *r = self;
     struct examiner *e = r->e;
-    examiner_evaluate(e, r->interval, t, x);
+    moray_examiner_evaluate(e, r->interval, t, x);
     for (int i = 0; i < e->n; i++) {
-        dx[i] = e->out[examiner_output(e, i)];
+        dx[i] = e->out[moray_examiner_output(e, i)];
         if (!isfinite(dx[i]))
             return false;
     }
@@ -92,13 +92,13 @@ static moray_status examine_phase(const moray_solution *solution, int p, const m
                                   moray_certificate *certificate)
 {
     struct examiner e;
-    MORAY_TRY(examiner_new(&e, solution, p));
+    MORAY_TRY(moray_examiner_new(&e, solution, p));
     const struct phase_layout *layout = &solution->transcription->layout.phase[p];
     for (int k = 0; k < layout->mesh.intervals; k++)
-        certificate->mesh_error =
-            fmax(certificate->mesh_error, examiner_interval(&e, &layout->interval[k], &certificate->between_nodes));
+        certificate->mesh_error = fmax(certificate->mesh_error,
+                                       moray_examiner_interval(&e, &layout->interval[k], &certificate->between_nodes));
     moray_status status = resimulate(&e, integrator, certificate);
-    examiner_free(&e);
+    moray_examiner_free(&e);
     if (!moray_failed(status) && is_autonomous(solution->transcription->ocp->phase[p].map))
         status = spread_of_hamiltonian(solution, p, &certificate->hamiltonian);
     return status;

@@ -21,17 +21,17 @@ struct subject {
 static void input_name(const struct subject *s, int i, char *text)
 {
     if (s->p < 0)
-        endpoint_input_name(s->ocp, i, text, name_size);
+        moray_endpoint_input_name(s->ocp, i, text, name_size);
     else
-        phase_input_name(s->ocp, s->p, i, text, name_size);
+        moray_phase_input_name(s->ocp, s->p, i, text, name_size);
 }
 
 static void output_name(const struct subject *s, int i, char *text)
 {
     if (s->p < 0)
-        endpoint_output_name(s->ocp, i, text, name_size);
+        moray_endpoint_output_name(s->ocp, i, text, name_size);
     else
-        phase_output_name(s->ocp, s->p, i, text, name_size);
+        moray_phase_output_name(s->ocp, s->p, i, text, name_size);
 }
 
 static const char *subject_name(const struct subject *s)
@@ -104,9 +104,9 @@ static moray_status check_at(struct subject *s, int point, int *checked, moray_o
 {
     moray_derivative_report found;
     if (s->p < 0)
-        endpoint_probe(s->ocp, point, s->in);
+        moray_endpoint_probe(s->ocp, point, s->in);
     else
-        phase_probe(s->ocp, &s->ocp->phase[s->p], point, s->in);
+        moray_phase_probe(s->ocp, &s->ocp->phase[s->p], point, s->in);
     for (int i = 0; i < s->map->n_out; i++)
         s->weight[i] = 1 + 0.3 * cos(2.0 * i + point);
     if (!is_finite(s))

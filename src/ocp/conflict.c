@@ -11,11 +11,11 @@ static struct selection select_active(struct evidence *e, bool with_bounds)
 {
     const moray_nlp *nlp = &e->t->nlp;
     for (int i = 0; i < nlp->m; i++) {
-        const struct standing s = standing_of(e->solution, true, i);
+        const struct standing s = moray_standing_of(e->solution, true, i);
         e->rows[i] = s.fixed || s.at_lower || s.at_upper;
     }
     for (int j = 0; j < nlp->n; j++) {
-        const struct standing s = standing_of(e->solution, false, j);
+        const struct standing s = moray_standing_of(e->solution, false, j);
         e->cols[j] = !s.fixed && !(with_bounds && (s.at_lower || s.at_upper));
     }
     return (struct selection){nlp, e->jac, e->rows, e->cols};
@@ -37,8 +37,8 @@ static void rank_band(const struct band *band, void *self)
 {
     struct ranking *ranking = self;
     double part = 0;
-    for (int n = 0; band->rows && n < band_members(ranking->e->t, band); n++) {
-        const int i = band_member(ranking->e->t, band, n);
+    for (int n = 0; band->rows && n < moray_band_members(ranking->e->t, band); n++) {
+        const int i = moray_band_member(ranking->e->t, band, n);
         part = i < 0 ? part : hypot(part, ranking->e->weight[i]);
     }
     if (part < 1e-3)
@@ -61,9 +61,9 @@ static void rank_band(const struct band *band, void *self)
 static bool has_free_entry(const struct evidence *e, const struct band *band)
 {
     const moray_nlp *nlp = &e->t->nlp;
-    for (int n = 0; n < band_members(e->t, band); n++)
+    for (int n = 0; n < moray_band_members(e->t, band); n++)
         for (int k = 0; k < nlp->nnz_jac; k++)
-            if (nlp->jac_row[k] == band_member(e->t, band, n) && e->cols[nlp->jac_col[k]])
+            if (nlp->jac_row[k] == moray_band_member(e->t, band, n) && e->cols[nlp->jac_col[k]])
                 return true;
     return false;
 }
@@ -71,27 +71,28 @@ static bool has_free_entry(const struct evidence *e, const struct band *band)
 static void say_dependent(const struct evidence *e, const struct ranking *ranking)
 {
     char name[name_size];
-    say(e->solution, "%s: ",
-        ranking->only_dynamics ? "Try: free an end value or a time; the fixed ones leave no choice to"
-        : ranking->found == 1  ? "Try: drop a constraint on which nothing free has an influence"
-                               : "Try: drop or loosen one of these constraints, which depend on each other");
+    moray_diagnosis_say(e->solution, "%s: ",
+                        ranking->only_dynamics ? "Try: free an end value or a time; the fixed ones leave no choice to"
+                        : ranking->found == 1
+                            ? "Try: drop a constraint on which nothing free has an influence"
+                            : "Try: drop or loosen one of these constraints, which depend on each other");
     for (int k = 0; k < ranking->found && k < most_names; k++) {
-        band_name(e->solution, &ranking->band[k], name, name_size);
-        say(e->solution, "%s%s", k ? "; " : "", name);
+        moray_band_name(e->solution, &ranking->band[k], name, name_size);
+        moray_diagnosis_say(e->solution, "%s%s", k ? "; " : "", name);
     }
     if (ranking->found > most_names)
-        say(e->solution, "; and %d more", ranking->found - most_names);
-    say(e->solution, ".\n");
+        moray_diagnosis_say(e->solution, "; and %d more", ranking->found - most_names);
+    moray_diagnosis_say(e->solution, ".\n");
 }
 
-bool dependent_constraints(struct evidence *e)
+bool moray_dependent_constraints(struct evidence *e)
 {
     const struct selection selection = select_active(e, false);
     struct ranking ranking = {.e = e, .only_dynamics = true};
     double norm;
-    if (moray_failed(nlp_dependent_rows(&selection, e->weight, &norm)) || norm > 1e-6)
+    if (moray_failed(moray_nlp_dependent_rows(&selection, e->weight, &norm)) || norm > 1e-6)
         return false;
-    visit_bands(e->t, rank_band, &ranking);
+    moray_visit_bands(e->t, rank_band, &ranking);
     if (ranking.found == 1 && !ranking.only_dynamics && has_free_entry(e, &ranking.band[0]))
         return false; // a stationary point of this constraint
     say_dependent(e, &ranking);
@@ -121,9 +122,10 @@ static void search_band(const struct band *band, void *self)
     struct search *search = self;
     const struct evidence *e = search->e;
     double gain[2] = {0, 0};
-    for (int n = 0; n < band_members(e->t, band); n++) {
-        const int i = band_member(e->t, band, n);
-        const struct standing s = i < 0 ? (struct standing){.fixed = true} : standing_of(e->solution, band->rows, i);
+    for (int n = 0; n < moray_band_members(e->t, band); n++) {
+        const int i = moray_band_member(e->t, band, n);
+        const struct standing s =
+            i < 0 ? (struct standing){.fixed = true} : moray_standing_of(e->solution, band->rows, i);
         if (s.fixed || !(s.at_lower || s.at_upper))
             continue;
         const double outward = band->rows ? e->weight[i] : -e->pull[i]; // if it could, it would go this way
@@ -137,21 +139,22 @@ static void search_band(const struct band *band, void *self)
             *search = (struct search){e, gain[upper], *band, upper};
 }
 
-bool hardest_bound(struct evidence *e)
+bool moray_hardest_bound(struct evidence *e)
 {
     const struct selection selection = select_active(e, true);
     const double least = 1e-3 * e->worst;
     struct search search = {.e = e, .most = least};
     memcpy(e->weight, e->violation, (size_t)e->t->nlp.m * sizeof *e->weight);
-    if (moray_failed(nlp_unremovable(&selection, e->weight)))
+    if (moray_failed(moray_nlp_unremovable(&selection, e->weight)))
         return false;
     gather_pull(e);
-    visit_bands(e->t, search_band, &search);
+    moray_visit_bands(e->t, search_band, &search);
     if (search.most <= least)
         return false;
     char name[name_size];
-    band_name(e->solution, &search.band, name, name_size);
-    say(e->solution, "Try: a looser %s bound for %s; of all bounds, the violation would give way to it most.\n",
-        search.upper ? "upper" : "lower", name);
+    moray_band_name(e->solution, &search.band, name, name_size);
+    moray_diagnosis_say(e->solution,
+                        "Try: a looser %s bound for %s; of all bounds, the violation would give way to it most.\n",
+                        search.upper ? "upper" : "lower", name);
     return true;
 }

@@ -34,7 +34,7 @@ int moray_solution_nodes(const moray_solution *solution, int p, double *time, do
     const int nx = t->ocp->phase[p].nx;
     const double T = t->phase[p].tf - t->phase[p].t0;
     if (costate)
-        dynamics_multipliers(t, p, solution->iterate.lambda, costate);
+        moray_dynamics_multipliers(t, p, solution->iterate.lambda, costate);
     for (int n = 0; n < layout->nodes; n++) {
         if (time)
             time[n] = t->phase[p].t0 + T * layout->node[n].tau;
@@ -52,7 +52,7 @@ int moray_solution_hamiltonian(const moray_solution *solution, int p, double *ha
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     const double T = t->phase[p].tf - t->phase[p].t0, *lambda_f = t->phase[p].lambda;
-    dynamics_multipliers(t, p, solution->iterate.lambda, t->phase[p].lambda);
+    moray_dynamics_multipliers(t, p, solution->iterate.lambda, t->phase[p].lambda);
     for (int n = 0; n < layout->nodes; n++) {
         const double *out = t->phase[p].out + n * phase->map->n_out;
         hamiltonian[n] = layout->node[n].collocated ? 0 : NAN;

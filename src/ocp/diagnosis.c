@@ -12,7 +12,7 @@
 
 enum { most_lines = 12 };
 
-void say(moray_solution *solution, const char *format, ...)
+void moray_diagnosis_say(moray_solution *solution, const char *format, ...)
 {
     const size_t used = strlen(solution->diagnosis);
     va_list arguments;
@@ -21,22 +21,22 @@ void say(moray_solution *solution, const char *format, ...)
     va_end(arguments);
 }
 
-double scaled_violation(const moray_solution *solution, int i)
+double moray_scaled_violation(const moray_solution *solution, int i)
 {
-    const struct standing s = standing_of(solution, true, i);
+    const struct standing s = moray_standing_of(solution, true, i);
     return s.scale * (s.value < s.lower ? s.value - s.lower : s.value > s.upper ? s.value - s.upper : 0);
 }
 
 static void say_allowed(moray_solution *solution, double lower, double upper)
 {
     if (lower == upper)
-        say(solution, "%.6g", lower);
+        moray_diagnosis_say(solution, "%.6g", lower);
     else if (upper >= MORAY_INFINITY)
-        say(solution, "at least %.6g", lower);
+        moray_diagnosis_say(solution, "at least %.6g", lower);
     else if (lower <= -MORAY_INFINITY)
-        say(solution, "at most %.6g", upper);
+        moray_diagnosis_say(solution, "at most %.6g", upper);
     else
-        say(solution, "%.6g to %.6g", lower, upper);
+        moray_diagnosis_say(solution, "%.6g to %.6g", lower, upper);
 }
 
 static void say_worst_violation(moray_solution *solution)
@@ -45,21 +45,22 @@ static void say_worst_violation(moray_solution *solution)
     double worst = 0;
     int where = -1;
     for (int i = 0; i < t->nlp.m; i++) {
-        const double violation = fabs(scaled_violation(solution, i));
+        const double violation = fabs(moray_scaled_violation(solution, i));
         if (violation > worst) {
             worst = violation;
             where = i;
         }
     }
     if (where < 0 || worst < solution->settings.tolerance) {
-        say(solution, "No constraint is violated by more than %.1e (scaled).\n", solution->settings.tolerance);
+        moray_diagnosis_say(solution, "No constraint is violated by more than %.1e (scaled).\n",
+                            solution->settings.tolerance);
         return;
     }
     char name[name_size];
-    layout_row_name(&t->layout, t->ocp, solution->iterate.x, where, name, name_size);
-    say(solution, "Largest violation: %s, %.3g where ", name, solution->iterate.g[where]);
+    moray_layout_row_name(&t->layout, t->ocp, solution->iterate.x, where, name, name_size);
+    moray_diagnosis_say(solution, "Largest violation: %s, %.3g where ", name, solution->iterate.g[where]);
     say_allowed(solution, t->nlp.g_lower[where], t->nlp.g_upper[where]);
-    say(solution, " is allowed (scaled %.1e).\n", worst);
+    moray_diagnosis_say(solution, " is allowed (scaled %.1e).\n", worst);
 }
 
 static void say_furthest(moray_solution *solution)
@@ -69,16 +70,16 @@ static void say_furthest(moray_solution *solution)
     int where = 0;
     for (int j = 0; j < t->nlp.n; j++) {
         const double distance =
-            standing_of(solution, false, j).scale * fabs(solution->iterate.x[j] - solution->guess[j]);
+            moray_standing_of(solution, false, j).scale * fabs(solution->iterate.x[j] - solution->guess[j]);
         if (distance > furthest) {
             furthest = distance;
             where = j;
         }
     }
     char name[name_size];
-    layout_column_name(&t->layout, t->ocp, solution->iterate.x, where, name, name_size);
-    say(solution, "Furthest from the guess: %s, %.4g instead of %.4g (scaled distance %.1e).\n", name,
-        solution->iterate.x[where], solution->guess[where], furthest);
+    moray_layout_column_name(&t->layout, t->ocp, solution->iterate.x, where, name, name_size);
+    moray_diagnosis_say(solution, "Furthest from the guess: %s, %.4g instead of %.4g (scaled distance %.1e).\n", name,
+                        solution->iterate.x[where], solution->guess[where], furthest);
 }
 
 // ---- Active bounds ----
@@ -94,9 +95,9 @@ static void say_band(const struct band *band, bool upper, struct listing *list)
     const struct transcription *t = solution->transcription;
     int active = 0, all = 0, first = 0, last = 0;
     double bound = 0;
-    for (int n = 0; n < band_members(t, band); n++) {
-        const int i = band_member(t, band, n);
-        const struct standing s = i < 0 ? (struct standing){.fixed = true} : standing_of(solution, band->rows, i);
+    for (int n = 0; n < moray_band_members(t, band); n++) {
+        const int i = moray_band_member(t, band, n);
+        const struct standing s = i < 0 ? (struct standing){.fixed = true} : moray_standing_of(solution, band->rows, i);
         all += i >= 0;
         if (s.fixed || !(upper ? s.at_upper : s.at_lower))
             continue;
@@ -109,15 +110,16 @@ static void say_band(const struct band *band, bool upper, struct listing *list)
     if (active == 0 || list->lines++ >= most_lines)
         return;
     char name[name_size];
-    band_name(solution, band, name, name_size);
-    say(solution, "Active: %s at its %s bound %.6g", name, upper ? "upper" : "lower", bound);
+    moray_band_name(solution, band, name, name_size);
+    moray_diagnosis_say(solution, "Active: %s at its %s bound %.6g", name, upper ? "upper" : "lower", bound);
     if (band->kind != band_single) {
         const struct phase_layout *layout = &t->layout.phase[band->p];
-        say(solution, " on %d of %d nodes, t = %.6g .. %.6g", active, all,
-            layout_time(&t->layout, t->ocp, solution->iterate.x, band->p, layout->node[first].tau),
-            layout_time(&t->layout, t->ocp, solution->iterate.x, band->p, layout->node[last].tau));
+        moray_diagnosis_say(
+            solution, " on %d of %d nodes, t = %.6g .. %.6g", active, all,
+            moray_layout_time(&t->layout, t->ocp, solution->iterate.x, band->p, layout->node[first].tau),
+            moray_layout_time(&t->layout, t->ocp, solution->iterate.x, band->p, layout->node[last].tau));
     }
-    say(solution, ".\n");
+    moray_diagnosis_say(solution, ".\n");
 }
 
 static void list_band(const struct band *band, void *self)
@@ -129,27 +131,27 @@ static void list_band(const struct band *band, void *self)
 static void say_active(moray_solution *solution)
 {
     struct listing list = {solution, 0};
-    visit_bands(solution->transcription, list_band, &list);
+    moray_visit_bands(solution->transcription, list_band, &list);
     if (list.lines == 0)
-        say(solution, "No bound is active.\n");
+        moray_diagnosis_say(solution, "No bound is active.\n");
     else if (list.lines > most_lines)
-        say(solution, "And %d more at their bounds.\n", list.lines - most_lines);
+        moray_diagnosis_say(solution, "And %d more at their bounds.\n", list.lines - most_lines);
 }
 
-void diagnose(moray_solution *solution)
+void moray_diagnose(moray_solution *solution)
 {
     const moray_mesh_record *tried = &solution->history[solution->meshes - 1];
     solution->diagnosis[0] = 0;
-    say(solution, "%s after %d iterations.\n", moray_nlp_outcome_text(solution->info.outcome),
-        solution->info.iterations);
+    moray_diagnosis_say(solution, "%s after %d iterations.\n", moray_nlp_outcome_text(solution->info.outcome),
+                        solution->info.iterations);
     if (tried->variables != solution->transcription->layout.columns)
-        say(solution, "A finer mesh of %d intervals was not solved (%s); this is the last that was.\n",
-            tried->intervals, moray_nlp_outcome_text(tried->outcome));
-    assemble_constraints(solution->transcription, solution->iterate.g);
+        moray_diagnosis_say(solution, "A finer mesh of %d intervals was not solved (%s); this is the last that was.\n",
+                            tried->intervals, moray_nlp_outcome_text(tried->outcome));
+    moray_assemble_constraints(solution->transcription, solution->iterate.g);
     say_worst_violation(solution);
     say_active(solution);
     if (solution->info.outcome == MORAY_NLP_SOLVED)
         return;
     say_furthest(solution);
-    say_suggestion(solution);
+    moray_diagnosis_suggest(solution);
 }

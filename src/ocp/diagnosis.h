@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#ifndef OCP_DIAGNOSIS_H
-#define OCP_DIAGNOSIS_H
+#ifndef SRC_OCP_DIAGNOSIS_H
+#define SRC_OCP_DIAGNOSIS_H
 
 #include "ocp/bands.h"
 
 enum { name_size = 160 };
 
 // Appends to the diagnosis.
-__attribute__((format(printf, 2, 3))) void say(moray_solution *solution, const char *format, ...);
+__attribute__((format(printf, 2, 3))) void moray_diagnosis_say(moray_solution *solution, const char *format, ...);
 
 // One thing to try, chosen by what the iterate shows.
-void say_suggestion(moray_solution *solution);
+void moray_diagnosis_suggest(moray_solution *solution);
 
 // What the iterate of a programme that was not solved shows, in scaled units.
 struct evidence {
@@ -25,10 +25,10 @@ struct evidence {
 };
 
 // Each looks for one cause and, where it has the evidence, says what to try and returns true.
-bool dependent_constraints(struct evidence *e);
-bool hardest_bound(struct evidence *e);
+bool moray_dependent_constraints(struct evidence *e);
+bool moray_hardest_bound(struct evidence *e);
 
 // Signed scaled amount by which row i is outside its bounds.
-double scaled_violation(const moray_solution *solution, int i);
+double moray_scaled_violation(const moray_solution *solution, int i);
 
 #endif

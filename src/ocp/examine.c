@@ -7,7 +7,7 @@
 
 enum { samples_between = 5 }; // per point of the scheme, placed between the nodes
 
-moray_status examiner_new(struct examiner *e, const moray_solution *solution, int p)
+moray_status moray_examiner_new(struct examiner *e, const moray_solution *solution, int p)
 {
     const struct phase *phase = &solution->transcription->ocp->phase[p];
     const struct phase_layout *layout = &solution->transcription->layout.phase[p];
@@ -29,23 +29,23 @@ moray_status examiner_new(struct examiner *e, const moray_solution *solution, in
     return moray_ok();
 }
 
-void examiner_free(struct examiner *e)
+void moray_examiner_free(struct examiner *e)
 {
     free(e->in);
 }
 
-int examiner_output(const struct examiner *e, int i)
+int moray_examiner_output(const struct examiner *e, int i)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
     return i < phase->nx ? i : i + phase->nc;
 }
 
-void examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x)
+void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
     const struct phase_cache *cache = &e->solution->transcription->phase[e->p];
     const double T = cache->tf - cache->t0;
-    solution_at_tau(e->solution, e->p, interval, T > 0 ? (t - cache->t0) / T : 0, e->in, e->in + phase->nx);
+    moray_solution_at_tau(e->solution, e->p, interval, T > 0 ? (t - cache->t0) / T : 0, e->in, e->in + phase->nx);
     if (x)
         memcpy(e->in, x, (size_t)phase->nx * sizeof *x);
     memcpy(e->in + phase->nx + phase->nu, moray_solution_parameters(e->solution), (size_t)phase->ns * sizeof *e->in);
@@ -64,7 +64,7 @@ static void interpolant_slope(struct examiner *e, const struct interval *interva
     for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
         const double *out = t->phase[e->p].out + (interval->first + j) * phase->map->n_out;
         for (int i = 0; i < e->n; i++)
-            e->slope[i] += ell[j] * out[examiner_output(e, i)];
+            e->slope[i] += ell[j] * out[moray_examiner_output(e, i)];
     }
 }
 
@@ -91,7 +91,7 @@ static double worst_outside(const struct examiner *e)
 }
 
 // The midpoint rule, whose points lie between the nodes.
-double examiner_interval(struct examiner *e, const struct interval *interval, double *outside)
+double moray_examiner_interval(struct examiner *e, const struct interval *interval, double *outside)
 {
     const struct transcription *t = e->solution->transcription;
     const struct phase_cache *cache = &t->phase[e->p];
@@ -100,10 +100,11 @@ double examiner_interval(struct examiner *e, const struct interval *interval, do
     memset(e->error, 0, (size_t)e->n * sizeof *e->error);
     for (int k = 0; k < count; k++) {
         const double tau = (k + 0.5) / count;
-        examiner_evaluate(e, interval, cache->t0 + T * (start + tau * interval->width), NULL);
+        moray_examiner_evaluate(e, interval, cache->t0 + T * (start + tau * interval->width), NULL);
         interpolant_slope(e, interval, tau);
         for (int i = 0; i < e->n; i++)
-            e->error[i] += T * interval->width / count * fabs(e->slope[i] - e->out[examiner_output(e, i)]) / e->size[i];
+            e->error[i] +=
+                T * interval->width / count * fabs(e->slope[i] - e->out[moray_examiner_output(e, i)]) / e->size[i];
         if (outside)
             *outside = fmax(*outside, worst_outside(e));
     }

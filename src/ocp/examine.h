@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // How well the interpolated solution obeys the problem between the nodes: the certificate and the refinement ask alike.
-#ifndef OCP_EXAMINE_H
-#define OCP_EXAMINE_H
+#ifndef SRC_OCP_EXAMINE_H
+#define SRC_OCP_EXAMINE_H
 
 #include "ocp/solution.h"
 
@@ -20,19 +20,19 @@ struct examiner {
 };
 
 // Error: MORAY_MEMORY.
-moray_status examiner_new(struct examiner *e, const moray_solution *solution, int p);
-void examiner_free(struct examiner *e);
+moray_status moray_examiner_new(struct examiner *e, const moray_solution *solution, int p);
+void moray_examiner_free(struct examiner *e);
 
 // Where the rate of the i-th integrated quantity stands in the map's output.
-int examiner_output(const struct examiner *e, int i);
+int moray_examiner_output(const struct examiner *e, int i);
 
 // Functions of the phase at time t of an interval with its interpolated control; state from the interpolant unless
 // given.
-void examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x);
+void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x);
 
 // Integral over an interval of |x~' - f(x~, u~)| / (1 + max |x|), or of the same of an integrand and its q, of the
 // worst of them. Raises *outside (NULL: not asked) to the largest violation of bounds and path constraints seen,
 // relative to 1 + |bound|.
-double examiner_interval(struct examiner *e, const struct interval *interval, double *outside);
+double moray_examiner_interval(struct examiner *e, const struct interval *interval, double *outside);
 
 #endif

@@ -3,7 +3,8 @@
 
 #include "ocp/names.h"
 
-void entry_name(const char *kind, const char *letter, const char *const *names, int i, char *text, int size)
+void moray_function_entry_name(const char *kind, const char *letter, const char *const *names, int i, char *text,
+                               int size)
 {
     if (names)
         snprintf(text, (size_t)size, "%s %s", kind, names[i]);
@@ -11,65 +12,65 @@ void entry_name(const char *kind, const char *letter, const char *const *names, 
         snprintf(text, (size_t)size, "%s %s[%d]", kind, letter, i);
 }
 
-void phase_input_name(const moray_ocp *ocp, int p, int i, char *text, int size)
+void moray_phase_input_name(const moray_ocp *ocp, int p, int i, char *text, int size)
 {
     const struct phase *phase = &ocp->phase[p];
     const int nx = phase->nx, nu = phase->nu, ns = phase->ns;
     if (i < nx)
-        entry_name("state", "x", phase->x_names, i, text, size);
+        moray_function_entry_name("state", "x", phase->x_names, i, text, size);
     else if (i < nx + nu)
-        entry_name("control", "u", phase->u_names, i - nx, text, size);
+        moray_function_entry_name("control", "u", phase->u_names, i - nx, text, size);
     else if (i < nx + nu + ns)
-        entry_name("parameter", "s", ocp->s_names, i - nx - nu, text, size);
+        moray_function_entry_name("parameter", "s", ocp->s_names, i - nx - nu, text, size);
     else
         snprintf(text, (size_t)size, "time");
 }
 
-void phase_output_name(const moray_ocp *ocp, int p, int i, char *text, int size)
+void moray_phase_output_name(const moray_ocp *ocp, int p, int i, char *text, int size)
 {
     const struct phase *phase = &ocp->phase[p];
     const int nx = phase->nx, nc = phase->nc;
     if (i < nx)
-        entry_name("dynamics of state", "x", phase->x_names, i, text, size);
+        moray_function_entry_name("dynamics of state", "x", phase->x_names, i, text, size);
     else if (i < nx + nc)
-        entry_name("path constraint", "c", phase->c_names, i - nx, text, size);
+        moray_function_entry_name("path constraint", "c", phase->c_names, i - nx, text, size);
     else
-        entry_name("integrand", "g", NULL, i - nx - nc, text, size);
+        moray_function_entry_name("integrand", "g", NULL, i - nx - nc, text, size);
 }
 
 enum { name_size = 100 };
 
-void phase_end_name(const struct phase *phase, int i, char *text, int size)
+void moray_phase_end_name(const struct phase *phase, int i, char *text, int size)
 {
     const int nx = phase->nx, first = i <= nx;
     char what[name_size];
     if (i >= 2 * nx + 2)
-        entry_name("integral", "q", NULL, i - 2 * nx - 2, what, name_size);
+        moray_function_entry_name("integral", "q", NULL, i - 2 * nx - 2, what, name_size);
     else if (i == nx || i == 2 * nx + 1)
         snprintf(what, name_size, first ? "initial time" : "final time");
     else
-        entry_name(first ? "initial state" : "final state", "x", phase->x_names, first ? i : i - nx - 1, what,
-                   name_size);
+        moray_function_entry_name(first ? "initial state" : "final state", "x", phase->x_names, first ? i : i - nx - 1,
+                                  what, name_size);
     snprintf(text, (size_t)size, "%s of phase %s", what, phase->name);
 }
 
-void endpoint_input_name(const moray_ocp *ocp, int i, char *text, int size)
+void moray_endpoint_input_name(const moray_ocp *ocp, int i, char *text, int size)
 {
     for (int p = 0; p < ocp->phases; p++) {
         const int n = 2 * ocp->phase[p].nx + 2 + ocp->phase[p].nq;
         if (i < n) {
-            phase_end_name(&ocp->phase[p], i, text, size);
+            moray_phase_end_name(&ocp->phase[p], i, text, size);
             return;
         }
         i -= n;
     }
-    entry_name("parameter", "s", ocp->s_names, i, text, size);
+    moray_function_entry_name("parameter", "s", ocp->s_names, i, text, size);
 }
 
-void endpoint_output_name(const moray_ocp *ocp, int i, char *text, int size)
+void moray_endpoint_output_name(const moray_ocp *ocp, int i, char *text, int size)
 {
     if (i == 0)
         snprintf(text, (size_t)size, "objective");
     else
-        entry_name("event", "e", ocp->e_names, i - 1, text, size);
+        moray_function_entry_name("event", "e", ocp->e_names, i - 1, text, size);
 }

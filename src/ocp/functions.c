@@ -42,7 +42,7 @@ static void call_endpoint(void *self, const double complex *in, double complex *
         in += 2 * nx + 2 + ocp->phase[p].nq;
     }
     const moray_ends ends = {.phase = ocp->ends, .s = in};
-    moray_verdict verdict = {.e = out + 1};
+    moray_end_values verdict = {.e = out + 1};
     ocp->endpoint_fn(&ends, &verdict, ocp->data);
     out[0] = verdict.objective;
 }
@@ -57,7 +57,7 @@ static void call_endpoint_real(void *self, const double *in, double *out)
         in += 2 * nx + 2 + ocp->phase[p].nq;
     }
     const moray_real_ends ends = {.phase = ocp->real_ends, .s = in};
-    moray_real_verdict verdict = {.e = out + 1};
+    moray_real_end_values verdict = {.e = out + 1};
     ocp->endpoint_real_fn(&ends, &verdict, ocp->data);
     out[0] = verdict.objective;
 }
@@ -66,27 +66,27 @@ enum { trials = 8 }; // probe points tried before a function is said not to be f
 
 static moray_status phase_map(const moray_ocp *ocp, struct phase *p, int trial, double *probe, double *size)
 {
-    const int n_in = phase_inputs(p), n_out = p->nx + p->nc + p->nq;
-    phase_probe(ocp, p, trial, probe);
-    phase_sizes(ocp, p, size);
+    const int n_in = moray_phase_inputs(p), n_out = p->nx + p->nc + p->nq;
+    moray_phase_probe(ocp, p, trial, probe);
+    moray_phase_sizes(ocp, p, size);
     if (p->wrapped->real)
-        return real_map_new(&p->own_map, n_in, n_out, call_continuous_real, p->wrapped, NULL, probe, size);
-    return complex_map_new(&p->own_map, n_in, n_out, call_continuous, p->wrapped, NULL, probe, size);
+        return moray_real_map_new(&p->own_map, n_in, n_out, call_continuous_real, p->wrapped, NULL, probe, size);
+    return moray_complex_map_new(&p->own_map, n_in, n_out, call_continuous, p->wrapped, NULL, probe, size);
 }
 
 static moray_status endpoint_map(moray_ocp *ocp, int trial, double *probe, double *size)
 {
-    const int n_in = endpoint_inputs(ocp), n_out = 1 + ocp->ne;
-    endpoint_probe(ocp, trial, probe);
-    endpoint_sizes(ocp, size);
+    const int n_in = moray_endpoint_inputs(ocp), n_out = 1 + ocp->ne;
+    moray_endpoint_probe(ocp, trial, probe);
+    moray_endpoint_sizes(ocp, size);
     if (ocp->endpoint_real_fn)
-        return real_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint_real, ocp, NULL, probe, size);
-    return complex_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint, ocp, NULL, probe, size);
+        return moray_real_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint_real, ocp, NULL, probe, size);
+    return moray_complex_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint, ocp, NULL, probe, size);
 }
 
 static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phase_spec *spec)
 {
-    const size_t n = (size_t)phase_inputs(p);
+    const size_t n = (size_t)moray_phase_inputs(p);
     double *work = calloc(2 * n, sizeof *work);
     p->wrapped = calloc(1, sizeof *p->wrapped);
     moray_status status = moray_error(MORAY_MEMORY, "no memory for its functions");
@@ -105,7 +105,7 @@ static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phas
 
 static moray_status wrap_endpoint(moray_ocp *ocp)
 {
-    const size_t n = (size_t)endpoint_inputs(ocp) + 1;
+    const size_t n = (size_t)moray_endpoint_inputs(ocp) + 1;
     double *work = calloc(2 * n, sizeof *work);
     moray_status status =
         work ? endpoint_map(ocp, 0, work, work + n) : moray_error(MORAY_MEMORY, "no memory for its function");
@@ -118,7 +118,7 @@ static moray_status wrap_endpoint(moray_ocp *ocp)
     return status;
 }
 
-moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec)
+moray_status moray_wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec)
 {
     for (int i = 0; i < ocp->phases; i++)
         if (!spec->phase[i].map)
@@ -126,12 +126,12 @@ moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec)
     return ocp->endpoint ? moray_ok() : wrap_endpoint(ocp);
 }
 
-bool phase_is_differenced(const struct phase *p)
+bool moray_phase_is_differenced(const struct phase *p)
 {
     return p->wrapped && p->wrapped->real;
 }
 
-void unwrap_functions(moray_ocp *ocp)
+void moray_unwrap_functions(moray_ocp *ocp)
 {
     for (int i = 0; ocp->phase && i < ocp->phases; i++) {
         moray_map_release(&ocp->phase[i].own_map);

@@ -59,25 +59,26 @@ static void guess_from_samples(const struct transcription *t, int p, const moray
 static double end_value(moray_bounds end, moray_bounds other)
 {
     const bool known = end.lower > -MORAY_INFINITY || end.upper < MORAY_INFINITY;
-    return bounds_middle(known ? end : other);
+    return moray_bounds_middle(known ? end : other);
 }
 
 static void guess_from_bounds(const struct transcription *t, int p, double *x)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
-    const double t0 = bounds_middle(phase->t0);
+    const double t0 = moray_bounds_middle(phase->t0);
     if (layout->t0 >= 0)
         x[layout->t0] = t0;
     if (layout->tf >= 0)
-        x[layout->tf] = phase->tf.upper < MORAY_INFINITY ? bounds_middle(phase->tf) : fmax(phase->tf.lower, t0 + 1);
+        x[layout->tf] =
+            phase->tf.upper < MORAY_INFINITY ? moray_bounds_middle(phase->tf) : fmax(phase->tf.lower, t0 + 1);
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
         for (int r = 0; r < phase->nx; r++)
             x[node->x + r] = (1 - node->tau) * end_value(phase->x0[r], phase->xf[r]) +
                              node->tau * end_value(phase->xf[r], phase->x0[r]);
         for (int r = 0; r < phase->nu && node->collocated; r++)
-            x[node->x + phase->nx + r] = bounds_middle(phase->u[r]);
+            x[node->x + phase->nx + r] = moray_bounds_middle(phase->u[r]);
     }
 }
 
@@ -105,8 +106,8 @@ static void guess_from_solution(const struct transcription *t, int p, const mora
         x[layout->tf] = tf;
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
-        solution_at_tau(from, p, NULL, node->tau, x + node->x,
-                        node->collocated ? x + node->x + t->ocp->phase[p].nx : NULL);
+        moray_solution_at_tau(from, p, NULL, node->tau, x + node->x,
+                              node->collocated ? x + node->x + t->ocp->phase[p].nx : NULL);
     }
 }
 
@@ -148,14 +149,14 @@ static moray_status fill_parameters(const struct transcription *t, const moray_g
 {
     const double *s = guess && guess->from ? moray_solution_parameters(guess->from) : guess ? guess->s : NULL;
     for (int i = 0; i < t->ocp->ns; i++) {
-        x[t->layout.s + i] = s ? s[i] : bounds_middle(t->ocp->s[i]);
+        x[t->layout.s + i] = s ? s[i] : moray_bounds_middle(t->ocp->s[i]);
         if (!isfinite(x[t->layout.s + i]))
             return moray_error(MORAY_INPUT, "guess: parameter %d is not finite", i);
     }
     return moray_ok();
 }
 
-moray_status fill_guess(struct transcription *t, const moray_guess *guess, double *x)
+moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess, double *x)
 {
     if (guess && guess->from)
         MORAY_TRY(check_sizes(t->ocp, guess->from->transcription->ocp));

@@ -177,7 +177,7 @@ static moray_status fill_phases(const struct table *t, const moray_ocp *ocp, int
     int *place = calloc((size_t)widest + 1, sizeof *place);
     moray_status status = moray_error(MORAY_MEMORY, "no memory for %s", t->path);
     if (samples && place)
-        status = guess_allocate(guess, ocp, rows, false, samples, NULL);
+        status = moray_guess_allocate(guess, ocp, rows, false, samples, NULL);
     for (int p = 0; p < ocp->phases && !moray_failed(status); p++) {
         status = match_phase(t, ocp, p, place);
         if (!moray_failed(status))

@@ -22,7 +22,7 @@ static void control_at(const struct simulation *s, double t, const double *x, do
     if (s->control && phase->nu > 0)
         s->control(s->p, t, x, u, s->self);
     for (int i = 0; i < phase->nu && !s->control; i++)
-        u[i] = bounds_middle(phase->u[i]);
+        u[i] = moray_bounds_middle(phase->u[i]);
 }
 
 static bool rates(double t, const double *x, double *dx, void *self)
@@ -108,7 +108,7 @@ moray_status moray_guess_simulate(moray_guess *guess, const moray_ocp *ocp, cons
     for (int p = 0; rows && p < ocp->phases; p++)
         rows[p] = drive[p].samples ? drive[p].samples : usual_samples;
     if (rows && phase)
-        status = guess_allocate(guess, ocp, rows, true, phase, &parameters);
+        status = moray_guess_allocate(guess, ocp, rows, true, phase, &parameters);
     if (!moray_failed(status)) {
         memcpy(parameters, s, (size_t)ocp->ns * sizeof *s);
         const struct simulation simulation = {ocp, 0, control, self, integrator, NULL, NULL};

@@ -146,7 +146,7 @@ static moray_status read_mesh(struct reader *r, const struct phase *phase, struc
                            "%s: a phase of %d states, %d controls, %d path constraints and %d integrals; phase %s has "
                            "%d, %d, %d and %d",
                            r->path, nx, nu, nc, nq, phase->name, phase->nx, phase->nu, phase->nc, phase->nq);
-    MORAY_TRY(mesh_new(mesh, intervals));
+    MORAY_TRY(moray_mesh_new(mesh, intervals));
     for (int k = 0; k < intervals; k++) {
         double numbers[2];
         MORAY_TRY(read_numbers(r, 2, numbers));
@@ -167,11 +167,11 @@ static moray_status read_transcription(struct reader *r, const moray_ocp *ocp, m
     for (int p = 0; p < ocp->phases && !moray_failed(status); p++)
         status = read_mesh(r, &ocp->phase[p], &meshes[p]);
     if (!moray_failed(status))
-        status = transcription_new(&solution->transcription, ocp, family, meshes);
+        status = moray_transcription_new(&solution->transcription, ocp, family, meshes);
     for (int p = 0; meshes && p < ocp->phases; p++)
-        mesh_free(&meshes[p]);
+        moray_mesh_free(&meshes[p]);
     free(meshes);
-    return moray_failed(status) ? status : allocate_iterate(solution);
+    return moray_failed(status) ? status : moray_allocate_iterate(solution);
 }
 
 static moray_status read_iterate(struct reader *r, moray_solution *solution)
@@ -202,20 +202,20 @@ static moray_status read_iterate(struct reader *r, moray_solution *solution)
     return strcmp(r->text, "end\n") == 0 ? moray_ok() : damaged(r, "the end");
 }
 
-moray_status complete_solution(moray_solution *solution)
+moray_status moray_complete_solution(moray_solution *solution)
 {
     struct transcription *t = solution->transcription;
     double error = NAN;
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
-    if (!transcription_jacobians(t, solution->iterate.x))
+    if (!moray_transcription_jacobians(t, solution->iterate.x))
         return moray_error(MORAY_NUMERIC, "at this solution, %.200s", t->failure.text);
     solution->history = calloc(1, sizeof *solution->history);
     if (!solution->history)
         return moray_error(MORAY_MEMORY, "no memory for a history");
-    if (is_solved(solution))
-        MORAY_TRY(refine(solution, solution->settings.mesh_tolerance, 2, NULL, &error));
-    solution->history[solution->meshes++] = record_of(solution, error);
-    diagnose(solution);
+    if (moray_is_solved(solution))
+        MORAY_TRY(moray_refine(solution, solution->settings.mesh_tolerance, 2, NULL, &error));
+    solution->history[solution->meshes++] = moray_record_of(solution, error);
+    moray_diagnose(solution);
     return moray_ok();
 }
 
@@ -235,7 +235,7 @@ moray_status moray_solution_load(moray_solution **result, const moray_ocp *ocp, 
     if (!moray_failed(status))
         status = read_iterate(&reader, solution);
     if (!moray_failed(status))
-        status = complete_solution(solution);
+        status = moray_complete_solution(solution);
     if (reader.file)
         fclose(reader.file);
     if (moray_failed(status))

@@ -59,11 +59,12 @@ static void number_phase(struct layout *layout, struct phase_layout *phase, cons
     layout->columns += p->nq;
     phase->integral_row = layout->rows;
     layout->rows += p->nq;
-    phase->t0 = bounds_are_fixed(p->t0) ? -1 : layout->columns++;
-    phase->tf = bounds_are_fixed(p->tf) ? -1 : layout->columns++;
+    phase->t0 = moray_bounds_are_fixed(p->t0) ? -1 : layout->columns++;
+    phase->tf = moray_bounds_are_fixed(p->tf) ? -1 : layout->columns++;
 }
 
-moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family, const struct mesh *meshes)
+moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family,
+                              const struct mesh *meshes)
 {
     *layout = (struct layout){.family = family, .phases = ocp->phases};
     layout->phase = calloc((size_t)ocp->phases, sizeof *layout->phase);
@@ -71,7 +72,7 @@ moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_famil
         layout->phase ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d phases", ocp->phases);
     for (int p = 0; p < ocp->phases && !moray_failed(status); p++) {
         struct phase_layout *phase = &layout->phase[p];
-        status = mesh_copy(&phase->mesh, &meshes[p]);
+        status = moray_mesh_copy(&phase->mesh, &meshes[p]);
         if (!moray_failed(status))
             status = allocate_phase(layout, phase);
         if (moray_failed(status))
@@ -84,14 +85,14 @@ moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_famil
     layout->events = layout->rows;
     layout->rows += ocp->ne;
     if (moray_failed(status))
-        layout_free(layout);
+        moray_layout_free(layout);
     return status;
 }
 
-void layout_free(struct layout *layout)
+void moray_layout_free(struct layout *layout)
 {
     for (int p = 0; layout->phase && p < layout->phases; p++) {
-        mesh_free(&layout->phase[p].mesh);
+        moray_mesh_free(&layout->phase[p].mesh);
         free(layout->phase[p].node);
         free(layout->phase[p].interval);
     }
@@ -101,16 +102,17 @@ void layout_free(struct layout *layout)
     *layout = (struct layout){0};
 }
 
-void layout_span(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double *t0, double *tf)
+void moray_layout_span(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double *t0,
+                       double *tf)
 {
     const struct phase_layout *phase = &layout->phase[p];
     *t0 = phase->t0 < 0 ? ocp->phase[p].t0.lower : x[phase->t0];
     *tf = phase->tf < 0 ? ocp->phase[p].tf.lower : x[phase->tf];
 }
 
-double layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau)
+double moray_layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau)
 {
     double t0, tf;
-    layout_span(layout, ocp, x, p, &t0, &tf);
+    moray_layout_span(layout, ocp, x, p, &t0, &tf);
     return t0 + (tf - t0) * tau;
 }

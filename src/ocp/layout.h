@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Where everything stands in the decision vector and among the constraints.
-#ifndef OCP_LAYOUT_H
-#define OCP_LAYOUT_H
+#ifndef SRC_OCP_LAYOUT_H
+#define SRC_OCP_LAYOUT_H
 
 #include "ocp/mesh.h"
 #include "ocp/problem.h"
@@ -43,11 +43,13 @@ struct layout {
 };
 
 // Takes over nothing: copies the meshes. Error: MORAY_MEMORY, MORAY_INPUT (stages).
-moray_status layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family, const struct mesh *meshes);
-void layout_free(struct layout *layout);
+moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family,
+                              const struct mesh *meshes);
+void moray_layout_free(struct layout *layout);
 
 // Time of tau in phase p at the decision vector x.
-double layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau);
-void layout_span(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double *t0, double *tf);
+double moray_layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau);
+void moray_layout_span(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double *t0,
+                       double *tf);
 
 #endif

@@ -16,7 +16,7 @@ static void legendre(int n, double x, double *p, double *dp)
     *dp = n ? n * (before - x * here) / (1 - x * x) : 0;
 }
 
-double legendre_value(int n, double tau)
+double moray_legendre_value(int n, double tau)
 {
     double p, slope;
     legendre(n, 2 * tau - 1, &p, &slope);
@@ -68,7 +68,7 @@ static void zeros(double (*f)(int, double, double *), int s, int count, double *
     }
 }
 
-void legendre_gauss(int s, double *node, double *weight)
+void moray_legendre_gauss(int s, double *node, double *weight)
 {
     zeros(gauss_function, s, s, node);
     for (int i = 0; i < s && weight; i++) {
@@ -79,13 +79,13 @@ void legendre_gauss(int s, double *node, double *weight)
     }
 }
 
-void legendre_radau(int s, double *node)
+void moray_legendre_radau(int s, double *node)
 {
     zeros(radau_function, s, s - 1, node);
     node[s - 1] = 1;
 }
 
-void legendre_lobatto(int s, double *node)
+void moray_legendre_lobatto(int s, double *node)
 {
     node[0] = 0;
     zeros(lobatto_function, s, s - 2, node + 1); // the ends are known

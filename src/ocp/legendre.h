@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#ifndef OCP_LEGENDRE_H
-#define OCP_LEGENDRE_H
+#ifndef SRC_OCP_LEGENDRE_H
+#define SRC_OCP_LEGENDRE_H
 
 // Gauss, Radau (right end) and Lobatto points on [0, 1], ascending, to rounding. node[s].
-void legendre_gauss(int s, double *node, double *weight); // weight may be NULL
-void legendre_radau(int s, double *node);
-void legendre_lobatto(int s, double *node);
+void moray_legendre_gauss(int s, double *node, double *weight); // weight may be NULL
+void moray_legendre_radau(int s, double *node);
+void moray_legendre_lobatto(int s, double *node);
 
 // The Legendre polynomial of degree n, shifted to [0, 1], at tau in (0, 1).
-double legendre_value(int n, double tau);
+double moray_legendre_value(int n, double tau);
 
 #endif

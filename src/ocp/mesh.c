@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void mesh_free(struct mesh *mesh)
+void moray_mesh_free(struct mesh *mesh)
 {
     free(mesh->edge);
     free(mesh->raised_from);
@@ -13,7 +13,7 @@ void mesh_free(struct mesh *mesh)
     *mesh = (struct mesh){0};
 }
 
-moray_status mesh_new(struct mesh *mesh, int intervals)
+moray_status moray_mesh_new(struct mesh *mesh, int intervals)
 {
     *mesh = (struct mesh){.intervals = intervals,
                           .edge = calloc((size_t)intervals + 1, sizeof *mesh->edge),
@@ -22,13 +22,13 @@ moray_status mesh_new(struct mesh *mesh, int intervals)
                           .past = calloc((size_t)intervals, sizeof *mesh->past)};
     if (mesh->edge && mesh->raised_from && mesh->stages && mesh->past)
         return moray_ok();
-    mesh_free(mesh);
+    moray_mesh_free(mesh);
     return moray_error(MORAY_MEMORY, "no memory for a mesh of %d intervals", intervals);
 }
 
-moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages)
+moray_status moray_mesh_uniform(struct mesh *mesh, int intervals, int stages)
 {
-    MORAY_TRY(mesh_new(mesh, intervals));
+    MORAY_TRY(moray_mesh_new(mesh, intervals));
     for (int k = 0; k <= intervals; k++)
         mesh->edge[k] = (double)k / intervals;
     for (int k = 0; k < intervals; k++)
@@ -36,9 +36,9 @@ moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages)
     return moray_ok();
 }
 
-moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh)
+moray_status moray_mesh_copy(struct mesh *copy, const struct mesh *mesh)
 {
-    MORAY_TRY(mesh_new(copy, mesh->intervals));
+    MORAY_TRY(moray_mesh_new(copy, mesh->intervals));
     memcpy(copy->edge, mesh->edge, ((size_t)mesh->intervals + 1) * sizeof *copy->edge);
     memcpy(copy->raised_from, mesh->raised_from, (size_t)mesh->intervals * sizeof *copy->raised_from);
     memcpy(copy->stages, mesh->stages, (size_t)mesh->intervals * sizeof *copy->stages);
@@ -46,7 +46,7 @@ moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh)
     return moray_ok();
 }
 
-bool mesh_equal(const struct mesh *one, const struct mesh *other)
+bool moray_mesh_equal(const struct mesh *one, const struct mesh *other)
 {
     const size_t n = (size_t)one->intervals;
     return one->intervals == other->intervals && memcmp(one->edge, other->edge, (n + 1) * sizeof *one->edge) == 0 &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef OCP_MESH_H
-#define OCP_MESH_H
+#ifndef SRC_OCP_MESH_H
+#define SRC_OCP_MESH_H
 
 #include "moray/status.h"
 
@@ -20,11 +20,11 @@ struct mesh {
     enum mesh_past *past;
 };
 
-// Error: MORAY_MEMORY. Free with mesh_free, which is safe on a zeroed mesh.
-moray_status mesh_new(struct mesh *mesh, int intervals);
-moray_status mesh_uniform(struct mesh *mesh, int intervals, int stages);
-moray_status mesh_copy(struct mesh *copy, const struct mesh *mesh);
-void mesh_free(struct mesh *mesh);
-bool mesh_equal(const struct mesh *one, const struct mesh *other); // in edges and stages
+// Error: MORAY_MEMORY. Free with moray_mesh_free, which is safe on a zeroed mesh.
+moray_status moray_mesh_new(struct mesh *mesh, int intervals);
+moray_status moray_mesh_uniform(struct mesh *mesh, int intervals, int stages);
+moray_status moray_mesh_copy(struct mesh *copy, const struct mesh *mesh);
+void moray_mesh_free(struct mesh *mesh);
+bool moray_mesh_equal(const struct mesh *one, const struct mesh *other); // in edges and stages
 
 #endif

@@ -121,11 +121,11 @@ static bool same_meshes(const struct layout *one, const struct layout *other)
 {
     bool same = one->family == other->family;
     for (int p = 0; p < one->phases && same; p++)
-        same = mesh_equal(&one->phase[p].mesh, &other->phase[p].mesh);
+        same = moray_mesh_equal(&one->phase[p].mesh, &other->phase[p].mesh);
     return same;
 }
 
-moray_status carry_multipliers(const moray_solution *from, moray_solution *to)
+moray_status moray_carry_multipliers(const moray_solution *from, moray_solution *to)
 {
     const struct layout *old = &from->transcription->layout, *new = &to->transcription->layout;
     const moray_ocp *ocp = to->transcription->ocp;

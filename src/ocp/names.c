@@ -9,15 +9,15 @@ static void in_phase(const struct layout *layout, const moray_ocp *ocp, const do
                      const char *what, char *text, int size)
 {
     snprintf(text, (size_t)size, "%s of phase %s at t = %.6g", what, ocp->phase[p].name,
-             layout_time(layout, ocp, x, p, tau));
+             moray_layout_time(layout, ocp, x, p, tau));
 }
 
-void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int column, char *text,
-                        int size)
+void moray_layout_column_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int column,
+                              char *text, int size)
 {
     char what[name_size];
     if (column >= layout->s) {
-        entry_name("parameter", "s", ocp->s_names, column - layout->s, text, size);
+        moray_function_entry_name("parameter", "s", ocp->s_names, column - layout->s, text, size);
         return;
     }
     int p = 0;
@@ -27,7 +27,7 @@ void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const
     if (column >= phase->q) {
         const int nx = ocp->phase[p].nx, m = column - phase->q;
         const int input = column == phase->t0 ? nx : column == phase->tf ? 2 * nx + 1 : 2 * nx + 2 + m;
-        phase_end_name(&ocp->phase[p], input, text, size);
+        moray_phase_end_name(&ocp->phase[p], input, text, size);
         return;
     }
     int n = 0;
@@ -35,9 +35,9 @@ void layout_column_name(const struct layout *layout, const moray_ocp *ocp, const
         n++;
     const int i = column - phase->node[n].x, nx = ocp->phase[p].nx;
     if (i < nx)
-        entry_name("state", "x", ocp->phase[p].x_names, i, what, name_size);
+        moray_function_entry_name("state", "x", ocp->phase[p].x_names, i, what, name_size);
     else
-        entry_name("control", "u", ocp->phase[p].u_names, i - nx, what, name_size);
+        moray_function_entry_name("control", "u", ocp->phase[p].u_names, i - nx, what, name_size);
     in_phase(layout, ocp, x, p, phase->node[n].tau, what, text, size);
 }
 
@@ -51,15 +51,16 @@ static void defect_name(const struct layout *layout, const moray_ocp *ocp, const
     while (k + 1 < phase->mesh.intervals && row >= phase->interval[k + 1].defect)
         k++;
     const int i = row - phase->interval[k].defect;
-    entry_name("defect of state", "x", ocp->phase[p].x_names, i % nx, what, name_size);
+    moray_function_entry_name("defect of state", "x", ocp->phase[p].x_names, i % nx, what, name_size);
     in_phase(layout, ocp, x, p, phase->node[phase->interval[k].first + i / nx + 1].tau, what, text, size);
 }
 
-void layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text, int size)
+void moray_layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text,
+                           int size)
 {
     char what[name_size];
     if (row >= layout->events) {
-        entry_name("event", "e", ocp->e_names, row - layout->events, text, size);
+        moray_function_entry_name("event", "e", ocp->e_names, row - layout->events, text, size);
         return;
     }
     int p = 0;
@@ -75,7 +76,8 @@ void layout_row_name(const struct layout *layout, const moray_ocp *ocp, const do
         int n = 0;
         while (n + 1 < phase->nodes && row >= phase->node[n + 1].path)
             n++;
-        entry_name("path constraint", "c", ocp->phase[p].c_names, row - phase->node[n].path, what, name_size);
+        moray_function_entry_name("path constraint", "c", ocp->phase[p].c_names, row - phase->node[n].path, what,
+                                  name_size);
         in_phase(layout, ocp, x, p, phase->node[n].tau, what, text, size);
     }
 }

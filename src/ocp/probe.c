@@ -3,12 +3,12 @@
 
 #include <math.h>
 
-int phase_inputs(const struct phase *p)
+int moray_phase_inputs(const struct phase *p)
 {
     return p->nx + p->nu + p->ns + 1;
 }
 
-int endpoint_inputs(const moray_ocp *ocp)
+int moray_endpoint_inputs(const moray_ocp *ocp)
 {
     int n = ocp->ns;
     for (int i = 0; i < ocp->phases; i++)
@@ -38,7 +38,7 @@ static double state_size(const struct phase *p, int i)
     return fmin(size_of(p->x0[i]), size_of(p->xf[i])); // which hold the bounds of x too
 }
 
-void phase_sizes(const moray_ocp *ocp, const struct phase *p, double *size)
+void moray_phase_sizes(const moray_ocp *ocp, const struct phase *p, double *size)
 {
     for (int i = 0; i < p->nx; i++)
         *size++ = state_size(p, i);
@@ -47,7 +47,7 @@ void phase_sizes(const moray_ocp *ocp, const struct phase *p, double *size)
     *size = fmin(size_of(p->t0), size_of(p->tf));
 }
 
-void endpoint_sizes(const moray_ocp *ocp, double *size)
+void moray_endpoint_sizes(const moray_ocp *ocp, double *size)
 {
     for (int k = 0; k < ocp->phases; k++) {
         const struct phase *p = &ocp->phase[k];
@@ -65,8 +65,8 @@ static double probe_value(moray_bounds bounds, double size, int i, int trial)
 {
     const double shift = 0.2 * (fmod(0.618033988749895 * (i + 1) + 0.37 * trial, 1) - 0.5);
     const bool boxed = bounds.lower > -MORAY_INFINITY && bounds.upper < MORAY_INFINITY;
-    const double width = boxed ? bounds.upper - bounds.lower : size + fabs(bounds_middle(bounds));
-    const double value = bounds_middle(bounds) + width * (shift + (boxed ? 0 : 0.3));
+    const double width = boxed ? bounds.upper - bounds.lower : size + fabs(moray_bounds_middle(bounds));
+    const double value = moray_bounds_middle(bounds) + width * (shift + (boxed ? 0 : 0.3));
     return fmin(fmax(value, bounds.lower), bounds.upper);
 }
 
@@ -87,7 +87,7 @@ static void probe_states(const struct phase *p, int trial, double **in)
     }
 }
 
-void phase_probe(const moray_ocp *ocp, const struct phase *p, int trial, double *in)
+void moray_phase_probe(const moray_ocp *ocp, const struct phase *p, int trial, double *in)
 {
     probe_states(p, trial, &in);
     probe_list(p->u, p->nu, trial, &in);
@@ -95,7 +95,7 @@ void phase_probe(const moray_ocp *ocp, const struct phase *p, int trial, double 
     *in = 0.6 * probe_value(p->t0, size_of(p->t0), 0, trial) + 0.4 * probe_value(p->tf, size_of(p->tf), 1, trial);
 }
 
-void endpoint_probe(const moray_ocp *ocp, int trial, double *in)
+void moray_endpoint_probe(const moray_ocp *ocp, int trial, double *in)
 {
     for (int k = 0; k < ocp->phases; k++) {
         const struct phase *p = &ocp->phase[k];

@@ -5,13 +5,13 @@
 
 #include "ocp/probe.h"
 
-double bounds_middle(moray_bounds bounds)
+double moray_bounds_middle(moray_bounds bounds)
 {
     const bool below = bounds.lower > -MORAY_INFINITY, above = bounds.upper < MORAY_INFINITY;
     return below && above ? (bounds.lower + bounds.upper) / 2 : below ? bounds.lower : above ? bounds.upper : 0;
 }
 
-bool bounds_are_fixed(moray_bounds bounds)
+bool moray_bounds_are_fixed(moray_bounds bounds)
 {
     return bounds.lower == bounds.upper;
 }
@@ -107,7 +107,7 @@ static moray_status check_phase(const struct phase *phase, const moray_phase_spe
                            phase->name, spec->nx, spec->nu, spec->nc, spec->nq);
     if (!!spec->continuous + !!spec->continuous_real + !!spec->map != 1)
         return moray_error(MORAY_INPUT, "phase %s: needs a continuous function or a map, and only one", phase->name);
-    const int in = phase_inputs(phase), out = spec->nx + spec->nc + spec->nq;
+    const int in = moray_phase_inputs(phase), out = spec->nx + spec->nc + spec->nq;
     if (spec->map && (spec->map->n_in != in || spec->map->n_out != out))
         return moray_error(MORAY_INPUT, "phase %s: the map has %d inputs and %d outputs, the phase %d and %d",
                            phase->name, spec->map->n_in, spec->map->n_out, in, out);
@@ -175,7 +175,7 @@ static moray_status copy_spec(moray_ocp *ocp, const moray_ocp_spec *spec)
         return no_memory();
     for (int p = 0; p < spec->phases; p++)
         MORAY_TRY(copy_phase(ocp, &spec->phase[p], &ocp->phase[p]));
-    const int inputs = endpoint_inputs(ocp);
+    const int inputs = moray_endpoint_inputs(ocp);
     if (spec->endpoint_map && (spec->endpoint_map->n_in != inputs || spec->endpoint_map->n_out != 1 + spec->ne))
         return moray_error(MORAY_INPUT, "problem %s: the endpoint map has %d inputs and %d outputs, needs %d and %d",
                            ocp->name, spec->endpoint_map->n_in, spec->endpoint_map->n_out, inputs, 1 + spec->ne);
@@ -190,7 +190,7 @@ moray_status moray_ocp_new(moray_ocp **result, const moray_ocp_spec *spec)
         return no_memory();
     moray_status status = copy_spec(ocp, spec);
     if (!moray_failed(status))
-        status = wrap_functions(ocp, spec);
+        status = moray_wrap_functions(ocp, spec);
     if (moray_failed(status))
         moray_ocp_free(ocp);
     else
@@ -202,7 +202,7 @@ void moray_ocp_free(moray_ocp *ocp)
 {
     if (!ocp)
         return;
-    unwrap_functions(ocp);
+    moray_unwrap_functions(ocp);
     for (int i = 0; i < ocp->n_owned; i++)
         free(ocp->owned[i]);
     free(ocp->owned);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The problem as the transcription sees it: every function a map, every bound in place.
-#ifndef OCP_PROBLEM_H
-#define OCP_PROBLEM_H
+#ifndef SRC_OCP_PROBLEM_H
+#define SRC_OCP_PROBLEM_H
 
 #include "moray/ocp.h"
 
@@ -37,12 +37,12 @@ struct moray_ocp {
 };
 
 // A value within bounds: their middle, the finite one, or 0.
-double bounds_middle(moray_bounds bounds);
-bool bounds_are_fixed(moray_bounds bounds);
+double moray_bounds_middle(moray_bounds bounds);
+bool moray_bounds_are_fixed(moray_bounds bounds);
 
 // Turns the user functions of the spec into maps. Error: MORAY_MEMORY, MORAY_INPUT.
-moray_status wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec);
-void unwrap_functions(moray_ocp *ocp);
-bool phase_is_differenced(const struct phase *p); // of a function that knows only double
+moray_status moray_wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec);
+void moray_unwrap_functions(moray_ocp *ocp);
+bool moray_phase_is_differenced(const struct phase *p); // of a function that knows only double
 
 #endif

@@ -31,7 +31,7 @@ static double slope_at(const struct refinement *r, const struct interval *interv
     const struct phase_cache *cache = &t->phase[r->e.p];
     const double h = (cache->tf - cache->t0) * interval->width;
     const double *out = cache->out + (interval->first + j) * t->ocp->phase[r->e.p].map->n_out;
-    return h * out[examiner_output(&r->e, i)] / r->e.size[i];
+    return h * out[moray_examiner_output(&r->e, i)] / r->e.size[i];
 }
 
 // size[stages]: norm over all that is integrated of the Legendre coefficients of the slope.
@@ -40,7 +40,7 @@ static void legendre_sizes(const struct refinement *r, const struct interval *in
     const moray_scheme *scheme = interval->scheme;
     const int s = scheme->stages;
     double gauss[MORAY_MAX_STAGES], weight[MORAY_MAX_STAGES], ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
-    legendre_gauss(s, gauss, weight);
+    moray_legendre_gauss(s, gauss, weight);
     for (int k = 0; k < s; k++)
         size[k] = 0;
     for (int i = 0; i < r->e.n; i++) {
@@ -51,7 +51,7 @@ static void legendre_sizes(const struct refinement *r, const struct interval *in
             for (int j = scheme->first; j <= scheme->last; j++)
                 slope += ell[j] * slope_at(r, interval, j, i);
             for (int k = 0; k < s; k++)
-                coefficient[k] += (2 * k + 1) * weight[point] * legendre_value(k, gauss[point]) * slope;
+                coefficient[k] += (2 * k + 1) * weight[point] * moray_legendre_value(k, gauss[point]) * slope;
         }
         for (int k = 0; k < s; k++)
             size[k] = hypot(size[k], coefficient[k]);
@@ -177,12 +177,12 @@ static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double
 {
     const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
     if (mesh) {
-        MORAY_TRY(mesh_new(&r->mesh, most_pieces * layout->mesh.intervals));
+        MORAY_TRY(moray_mesh_new(&r->mesh, most_pieces * layout->mesh.intervals));
         r->mesh.intervals = 0;
     }
     for (int k = 0; k < layout->mesh.intervals; k++) {
         double outside = 0;
-        double error = examiner_interval(&r->e, &layout->interval[k], &outside);
+        double error = moray_examiner_interval(&r->e, &layout->interval[k], &outside);
         error = fmax(error, outside / violation_slack); // what the certificate will ask
         *worst = fmax(*worst, error);
         if (mesh)
@@ -193,15 +193,15 @@ static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double
     return moray_ok();
 }
 
-moray_status refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
-                    double *worst)
+moray_status moray_refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
+                          double *worst)
 {
     *worst = 0;
     for (int p = 0; p < solution->transcription->ocp->phases; p++) {
         struct refinement r = {.tolerance = tolerance, .base_stages = base_stages, .spare = INFINITY};
-        MORAY_TRY(examiner_new(&r.e, solution, p));
+        MORAY_TRY(moray_examiner_new(&r.e, solution, p));
         const moray_status status = refine_phase(&r, meshes ? &meshes[p] : NULL, worst);
-        examiner_free(&r.e);
+        moray_examiner_free(&r.e);
         MORAY_TRY(status);
     }
     return moray_ok();

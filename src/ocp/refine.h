@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef OCP_REFINE_H
-#define OCP_REFINE_H
+#ifndef SRC_OCP_REFINE_H
+#define SRC_OCP_REFINE_H
 
 #include "ocp/solution.h"
 
@@ -9,7 +9,7 @@ enum { REFINE_MOST_STAGES = 10 };
 // Errors of the solution's intervals, see moray_mesh_record.error: the largest of all phases; with `meshes`
 // (zeroed, one a phase) not NULL, also finer meshes that should bring every interval to `tolerance`, new intervals with
 // base_stages. The caller frees the meshes, whatever is returned. Error: MORAY_MEMORY.
-moray_status refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
-                    double *worst);
+moray_status moray_refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
+                          double *worst);
 
 #endif

@@ -10,8 +10,8 @@ void moray_guess_free(moray_guess *guess)
 }
 
 // One block: the samples' headers, then their numbers.
-moray_status guess_allocate(moray_guess *guess, const moray_ocp *ocp, const int *rows, bool parameters,
-                            struct samples *phase, double **s)
+moray_status moray_guess_allocate(moray_guess *guess, const moray_ocp *ocp, const int *rows, bool parameters,
+                                  struct samples *phase, double **s)
 {
     const size_t headers = (size_t)ocp->phases * sizeof(moray_samples);
     size_t numbers = (size_t)ocp->ns;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Guesses that own their samples.
-#ifndef OCP_SAMPLES_H
-#define OCP_SAMPLES_H
+#ifndef SRC_OCP_SAMPLES_H
+#define SRC_OCP_SAMPLES_H
 
 #include "ocp/problem.h"
 
@@ -11,7 +11,7 @@
 struct samples {
     double *time, *x, *u;
 };
-moray_status guess_allocate(moray_guess *guess, const moray_ocp *ocp, const int *rows, bool parameters,
-                            struct samples *phase, double **s);
+moray_status moray_guess_allocate(moray_guess *guess, const moray_ocp *ocp, const int *rows, bool parameters,
+                                  struct samples *phase, double **s);
 
 #endif

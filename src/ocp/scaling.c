@@ -64,7 +64,7 @@ static void scale_row_groups(const struct transcription *t, const double *jac, c
             g_scale[i] = g_scale[i] < -1 ? -1 / g_scale[i] : 1;
 }
 
-static double objective_scale(const struct transcription *t, const double *gradient, const double *x_scale)
+static double moray_objective_scale(const struct transcription *t, const double *gradient, const double *x_scale)
 {
     double largest = 0;
     for (int j = 0; j < t->nlp.n; j++)
@@ -72,7 +72,7 @@ static double objective_scale(const struct transcription *t, const double *gradi
     return largest > 0 ? fmin(fmax(1 / largest, 1e-4), 1e4) : 1;
 }
 
-moray_status choose_scales(struct transcription *t, const double *x)
+moray_status moray_choose_scales(struct transcription *t, const double *x)
 {
     const int n = t->nlp.n, m = t->nlp.m;
     double *work = calloc((size_t)(n + t->nlp.nnz_jac) + 1, sizeof *work);
@@ -90,7 +90,7 @@ moray_status choose_scales(struct transcription *t, const double *x)
         scale_row_groups(t, work + n, x_scale, g_scale);
         t->nlp.x_scale = x_scale;
         t->nlp.g_scale = g_scale;
-        t->nlp.f_scale = objective_scale(t, work, x_scale);
+        t->nlp.f_scale = moray_objective_scale(t, work, x_scale);
     }
     free(work);
     return status;

@@ -13,13 +13,13 @@ static void place_nodes(moray_scheme *scheme)
 {
     switch (scheme->family) {
     case MORAY_LOBATTO:
-        legendre_lobatto(scheme->stages, scheme->node);
+        moray_legendre_lobatto(scheme->stages, scheme->node);
         break;
     case MORAY_RADAU:
-        legendre_radau(scheme->stages, scheme->node + 1);
+        moray_legendre_radau(scheme->stages, scheme->node + 1);
         break;
     case MORAY_GAUSS:
-        legendre_gauss(scheme->stages, scheme->node + 1, NULL);
+        moray_legendre_gauss(scheme->stages, scheme->node + 1, NULL);
         scheme->node[scheme->points - 1] = 1;
         break;
     }
@@ -38,7 +38,7 @@ void moray_scheme_basis(const moray_scheme *scheme, double tau, double *ell, dou
 {
     double node[MORAY_MAX_STAGES], weight[MORAY_MAX_STAGES];
     const int exact = scheme->stages / 2 + 1; // Gauss points that integrate degree s - 1 exactly
-    legendre_gauss(exact, node, weight);
+    moray_legendre_gauss(exact, node, weight);
     for (int j = 0; j < scheme->points; j++) {
         ell[j] = integral[j] = 0;
         if (j < scheme->first || j > scheme->last)

@@ -28,9 +28,9 @@ static void constraint_name(const moray_sensitivity *s, int i, char *name)
     const struct transcription *t = s->solution->transcription;
     const double *x = s->solution->iterate.x;
     if (i < t->nlp.m)
-        layout_row_name(&t->layout, t->ocp, x, i, name, name_size);
+        moray_layout_row_name(&t->layout, t->ocp, x, i, name, name_size);
     else
-        layout_column_name(&t->layout, t->ocp, x, i - t->nlp.m, name, name_size);
+        moray_layout_column_name(&t->layout, t->ocp, x, i - t->nlp.m, name, name_size);
 }
 
 static void name_weak(moray_sensitivity *s)
@@ -71,7 +71,7 @@ static moray_status allocate(moray_sensitivity *s)
 moray_status moray_sensitivity_new(moray_sensitivity **result, const moray_solution *solution)
 {
     *result = NULL;
-    if (!is_solved(solution))
+    if (!moray_is_solved(solution))
         return moray_error(MORAY_NOT_SOLVED, "sensitivities are those of an optimum, and this is none: %s",
                            moray_nlp_outcome_text(solution->info.outcome));
     moray_sensitivity *s = calloc(1, sizeof *s);
@@ -119,13 +119,13 @@ static moray_status on_same_mesh(const moray_solution *solution, const moray_ocp
         return moray_error(MORAY_MEMORY, "no memory for %d meshes", ocp->phases);
     for (int p = 0; p < ocp->phases; p++)
         meshes[p] = own->layout.phase[p].mesh;
-    moray_status status = transcription_new(result, ocp, own->layout.family, meshes);
+    moray_status status = moray_transcription_new(result, ocp, own->layout.family, meshes);
     free(meshes);
     if (moray_failed(status) || ((*result)->nlp.n == own->nlp.n && (*result)->nlp.m == own->nlp.m))
         return status;
     status = moray_error(MORAY_INPUT, "a displaced problem has %d variables and %d constraints, the solution %d and %d",
                          (*result)->nlp.n, (*result)->nlp.m, own->nlp.n, own->nlp.m);
-    transcription_free(*result);
+    moray_transcription_free(*result);
     *result = NULL;
     return status;
 }
@@ -190,7 +190,7 @@ moray_status moray_sensitivity_by(moray_sensitivity *s, const moray_ocp *const d
         struct transcription *t;
         MORAY_TRY(on_same_mesh(s->solution, displaced[k], &t));
         const moray_status status = add(s, t, stencil[k] / h);
-        transcription_free(t);
+        moray_transcription_free(t);
         MORAY_TRY(status);
     }
     return moray_nlp_sensitivity_solve(s->factors, &s->shift, &s->slope);
@@ -263,9 +263,9 @@ static moray_status predict(const moray_sensitivity *s, const moray_ocp *problem
     to->settings = s->solution->settings;
     to->info.outcome = MORAY_NLP_ITERATION_LIMIT;
     MORAY_TRY(on_same_mesh(s->solution, problem, &to->transcription));
-    MORAY_TRY(allocate_iterate(to));
+    MORAY_TRY(moray_allocate_iterate(to));
     extrapolate(s, step, to);
-    MORAY_TRY(complete_solution(to));
+    MORAY_TRY(moray_complete_solution(to));
     to->iterate.objective = to->transcription->end_out[0];
     return moray_ok();
 }

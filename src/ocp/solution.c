@@ -34,7 +34,7 @@ const double *moray_solution_integrals(const moray_solution *solution, int phase
 void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf)
 {
     const struct transcription *t = solution->transcription;
-    layout_span(&t->layout, t->ocp, solution->iterate.x, phase, t0, tf);
+    moray_layout_span(&t->layout, t->ocp, solution->iterate.x, phase, t0, tf);
 }
 
 moray_nlp_size moray_solution_size(const moray_solution *solution)
@@ -68,8 +68,8 @@ static const struct interval *interval_at(const struct phase_layout *layout, dou
     return &layout->interval[low];
 }
 
-void solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau, double *x,
-                     double *u)
+void moray_solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau,
+                           double *x, double *u)
 {
     const struct transcription *t = solution->transcription;
     const struct phase_layout *layout = &t->layout.phase[p];
@@ -99,5 +99,5 @@ void moray_solution_at(const moray_solution *solution, int p, double time, doubl
 {
     const struct phase_cache *cache = &solution->transcription->phase[p];
     const double T = cache->tf - cache->t0, tau = T > 0 ? fmin(fmax((time - cache->t0) / T, 0), 1) : 0;
-    solution_at_tau(solution, p, NULL, tau, x, u);
+    moray_solution_at_tau(solution, p, NULL, tau, x, u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef OCP_SOLUTION_H
-#define OCP_SOLUTION_H
+#ifndef SRC_OCP_SOLUTION_H
+#define SRC_OCP_SOLUTION_H
 
 #include "ocp/transcription.h"
 
@@ -19,34 +19,34 @@ struct moray_solution {
 
 // Fills x[columns] from the guess; integrals are those of the guess itself. Error: MORAY_INPUT, MORAY_NUMERIC,
 // MORAY_MEMORY.
-moray_status fill_guess(struct transcription *t, const moray_guess *guess, double *x);
+moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess, double *x);
 
 // Chooses x_scale and g_scale of the programme from bounds and the guess. Error: MORAY_MEMORY, MORAY_NUMERIC.
-moray_status choose_scales(struct transcription *t, const double *x);
+moray_status moray_choose_scales(struct transcription *t, const double *x);
 
 // moray_solution_at by the time in the phase, 0..1, on the polynomials of one interval; NULL: of the one at tau, before
 // an edge.
-void solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau, double *x,
-                     double *u);
+void moray_solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau,
+                           double *x, double *u);
 
 // Fills the multipliers of `to` with those of a solution of the same problem on any mesh. Error: MORAY_MEMORY.
-moray_status carry_multipliers(const moray_solution *from, moray_solution *to);
+moray_status moray_carry_multipliers(const moray_solution *from, moray_solution *to);
 
 // As moray_solution_at, from the polynomials of one interval, at its ends too, where the control may jump.
 void solution_on_interval(const moray_solution *solution, int p, const struct interval *interval, double time,
                           double *x, double *u);
 
 // Writes the diagnosis text; the history ends with the last mesh that was tried.
-void diagnose(moray_solution *solution);
+void moray_diagnose(moray_solution *solution);
 
-bool is_solved(const moray_solution *solution); // to the tolerance or a looser one
+bool moray_is_solved(const moray_solution *solution); // to the tolerance or a looser one
 
 // Zeroed vectors for the programme of solution->transcription. Error: MORAY_MEMORY.
-moray_status allocate_iterate(moray_solution *solution);
+moray_status moray_allocate_iterate(moray_solution *solution);
 
 // Caches, history and diagnosis of an iterate that no solver has left here. Error: MORAY_NUMERIC, MORAY_MEMORY.
-moray_status complete_solution(moray_solution *solution);
+moray_status moray_complete_solution(moray_solution *solution);
 
-moray_mesh_record record_of(const moray_solution *solution, double mesh_error);
+moray_mesh_record moray_record_of(const moray_solution *solution, double mesh_error);
 
 #endif

@@ -46,7 +46,7 @@ struct campaign {
 static void free_meshes(struct campaign *c)
 {
     for (int p = 0; c->meshes && p < c->ocp->phases; p++)
-        mesh_free(&c->meshes[p]);
+        moray_mesh_free(&c->meshes[p]);
 }
 
 static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
@@ -60,16 +60,16 @@ static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
         c->family = other->family;
     for (int p = 0; p < c->ocp->phases; p++)
         if (c->settings->intervals > 0)
-            MORAY_TRY(mesh_uniform(&c->meshes[p], c->settings->intervals, c->stages));
+            MORAY_TRY(moray_mesh_uniform(&c->meshes[p], c->settings->intervals, c->stages));
         else if (p < other->phases)
-            MORAY_TRY(mesh_copy(&c->meshes[p], &other->phase[p].mesh));
+            MORAY_TRY(moray_mesh_copy(&c->meshes[p], &other->phase[p].mesh));
         else
             return moray_error(MORAY_INPUT, "guess: the solution has %d phases, the problem %d", other->phases,
                                c->ocp->phases);
     return moray_ok();
 }
 
-moray_status allocate_iterate(moray_solution *solution)
+moray_status moray_allocate_iterate(moray_solution *solution)
 {
     const int n = solution->transcription->nlp.n, m = solution->transcription->nlp.m;
     double *block = calloc((size_t)(4 * n + 2 * m), sizeof *block);
@@ -94,7 +94,7 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
                                 .observer = settings->observer};
 }
 
-bool is_solved(const moray_solution *solution)
+bool moray_is_solved(const moray_solution *solution)
 {
     return solution->info.outcome == MORAY_NLP_SOLVED || solution->info.outcome == MORAY_NLP_ACCEPTABLE;
 }
@@ -103,7 +103,7 @@ bool is_solved(const moray_solution *solution)
 static bool can_start_warm(const moray_solution *solution, const moray_guess *guess)
 {
     const moray_solution *from = guess ? guess->from : NULL;
-    return from && from->transcription->ocp == solution->transcription->ocp && is_solved(from) &&
+    return from && from->transcription->ocp == solution->transcription->ocp && moray_is_solved(from) &&
            from->history[from->meshes - 1].error < worst_warm_error;
 }
 
@@ -111,12 +111,12 @@ static moray_status run_solver(moray_solution *solution, const moray_guess *gues
 {
     struct transcription *t = solution->transcription;
     const moray_nlp_settings settings = solver_settings(&solution->settings, warm);
-    MORAY_TRY(fill_guess(t, guess, solution->iterate.x));
+    MORAY_TRY(moray_fill_guess(t, guess, solution->iterate.x));
     if (solution->settings.own_scaling)
-        MORAY_TRY(choose_scales(t, solution->iterate.x));
+        MORAY_TRY(moray_choose_scales(t, solution->iterate.x));
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (warm)
-        MORAY_TRY(carry_multipliers(guess->from, solution));
+        MORAY_TRY(moray_carry_multipliers(guess->from, solution));
     return moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
 }
 
@@ -125,9 +125,9 @@ static moray_status run(moray_solution *solution, const moray_guess *guess)
     struct transcription *t = solution->transcription;
     const bool warm = can_start_warm(solution, guess);
     MORAY_TRY(run_solver(solution, guess, warm));
-    if (warm && !is_solved(solution) && solution->info.outcome != MORAY_NLP_INTERRUPTED)
+    if (warm && !moray_is_solved(solution) && solution->info.outcome != MORAY_NLP_INTERRUPTED)
         MORAY_TRY(run_solver(solution, guess, false));
-    if (!transcription_jacobians(t, solution->iterate.x)) // accessors read the caches
+    if (!moray_transcription_jacobians(t, solution->iterate.x)) // accessors read the caches
         return moray_error(MORAY_NUMERIC, "at the solver's last point, %.200s", t->failure.text);
     return moray_ok();
 }
@@ -139,9 +139,9 @@ static moray_status solve_mesh(const struct campaign *c, const moray_guess *gues
     if (!solution)
         return moray_error(MORAY_MEMORY, "no memory for a solution");
     solution->settings = *c->settings;
-    moray_status status = transcription_new(&solution->transcription, c->ocp, c->family, c->meshes);
+    moray_status status = moray_transcription_new(&solution->transcription, c->ocp, c->family, c->meshes);
     if (!moray_failed(status))
-        status = allocate_iterate(solution);
+        status = moray_allocate_iterate(solution);
     if (!moray_failed(status))
         status = run(solution, guess);
     if (moray_failed(status))
@@ -151,7 +151,7 @@ static moray_status solve_mesh(const struct campaign *c, const moray_guess *gues
     return status;
 }
 
-moray_mesh_record record_of(const moray_solution *solution, double error)
+moray_mesh_record moray_record_of(const moray_solution *solution, double error)
 {
     const struct layout *layout = &solution->transcription->layout;
     moray_mesh_record record = {.variables = layout->columns,
@@ -173,9 +173,9 @@ static moray_status record_and_refine(struct campaign *c, moray_solution *soluti
     double error = NAN;
     const bool more = solution->meshes < c->settings->max_refinements;
     free_meshes(c);
-    if (is_solved(solution))
-        MORAY_TRY(refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
-    solution->history[solution->meshes++] = record_of(solution, error);
+    if (moray_is_solved(solution))
+        MORAY_TRY(moray_refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
+    solution->history[solution->meshes++] = moray_record_of(solution, error);
     *again = more && error > c->settings->mesh_tolerance;
     return moray_ok();
 }
@@ -188,7 +188,7 @@ static moray_status solve_finer(struct campaign *c, moray_solution **solution, b
     MORAY_TRY(solve_mesh(c, &guess, &finer));
     finer->history = old->history, finer->meshes = old->meshes;
     moray_status status = record_and_refine(c, finer, again);
-    moray_solution *kept = is_solved(finer) ? finer : old, *dropped = is_solved(finer) ? old : finer;
+    moray_solution *kept = moray_is_solved(finer) ? finer : old, *dropped = moray_is_solved(finer) ? old : finer;
     if (finer->info.outcome == MORAY_NLP_INTERRUPTED)
         old->info.outcome = MORAY_NLP_INTERRUPTED;
     kept->meshes = finer->meshes;
@@ -208,7 +208,7 @@ static moray_status run_campaign(struct campaign *c, const moray_guess *guess, m
     MORAY_TRY(record_and_refine(c, *solution, &again));
     while (again)
         MORAY_TRY(solve_finer(c, solution, &again));
-    diagnose(*solution);
+    moray_diagnose(*solution);
     return moray_ok();
 }
 
@@ -234,7 +234,7 @@ void moray_solution_free(moray_solution *solution)
 {
     if (!solution)
         return;
-    transcription_free(solution->transcription);
+    moray_transcription_free(solution->transcription);
     free(solution->iterate.x);
     free(solution->history);
     free(solution);

@@ -16,7 +16,7 @@ static bool can_be_checked(const moray_ocp *ocp)
 {
     bool analytic = ocp->endpoint_real_fn == NULL;
     for (int p = 0; p < ocp->phases; p++)
-        analytic = analytic && ocp->phase[p].map->n_in <= most_inputs && !phase_is_differenced(&ocp->phase[p]);
+        analytic = analytic && ocp->phase[p].map->n_in <= most_inputs && !moray_phase_is_differenced(&ocp->phase[p]);
     return analytic && ocp->endpoint->n_in <= most_inputs;
 }
 
@@ -26,9 +26,9 @@ static bool wrong_derivative(const struct evidence *e)
     if (!can_be_checked(e->t->ocp) || moray_failed(moray_ocp_check_derivatives(e->t->ocp, &report)))
         return false;
     if (report.jacobian_error > 1e-3)
-        say(e->solution, "Try: correct a derivative. %s.\n", report.jacobian);
+        moray_diagnosis_say(e->solution, "Try: correct a derivative. %s.\n", report.jacobian);
     else if (report.hessian_error > 1e-2)
-        say(e->solution, "Try: correct a second derivative. %s.\n", report.hessian);
+        moray_diagnosis_say(e->solution, "Try: correct a second derivative. %s.\n", report.hessian);
     return report.jacobian_error > 1e-3 || report.hessian_error > 1e-2;
 }
 
@@ -44,7 +44,8 @@ static bool too_few_variables(const struct evidence *e)
         variables += nlp->x_lower[j] != nlp->x_upper[j];
     if (equations <= variables)
         return false;
-    say(e->solution, "Try: free an end value or a time, or add a control: there are %d equations for %d variables.\n",
+    moray_diagnosis_say(
+        e->solution, "Try: free an end value or a time, or add a control: there are %d equations for %d variables.\n",
         equations, variables);
     return true;
 }
@@ -56,7 +57,8 @@ static bool not_finite(const struct evidence *e)
     const bool gave_up = e->solution->info.outcome != MORAY_NLP_ITERATION_LIMIT;
     if (e->t->failures == 0 || (!gave_up && 2 * e->t->failures < e->solution->info.iterations))
         return false;
-    say(e->solution, "Try: bounds that keep the functions in their domain. Last, %s.\n", e->t->failure.text);
+    moray_diagnosis_say(e->solution, "Try: bounds that keep the functions in their domain. Last, %s.\n",
+                        e->t->failure.text);
     return true;
 }
 
@@ -71,11 +73,11 @@ static void find_runaway(const struct band *band, void *self)
 {
     struct search *search = self;
     const struct evidence *e = search->e;
-    for (int n = 0; !band->rows && n < band_members(e->t, band); n++) {
-        const int j = band_member(e->t, band, n);
+    for (int n = 0; !band->rows && n < moray_band_members(e->t, band); n++) {
+        const int j = moray_band_member(e->t, band, n);
         if (j < 0)
             continue;
-        const struct standing s = standing_of(e->solution, false, j);
+        const struct standing s = moray_standing_of(e->solution, false, j);
         const bool free = s.value > 0 ? s.upper >= MORAY_INFINITY : s.lower <= -MORAY_INFINITY;
         if (free && s.scale * fabs(s.value) > search->most)
             *search = (struct search){e, s.scale * fabs(s.value), *band, s.value > 0};
@@ -85,21 +87,21 @@ static void find_runaway(const struct band *band, void *self)
 static bool runaway(const struct evidence *e)
 {
     struct search search = {.e = e, .most = 1e4};
-    visit_bands(e->t, find_runaway, &search);
+    moray_visit_bands(e->t, find_runaway, &search);
     if (search.most <= 1e4)
         return false;
     char name[name_size];
     double reached = 0, guessed = 0;
-    band_name(e->solution, &search.band, name, name_size);
-    for (int n = 0; n < band_members(e->t, &search.band); n++) {
-        const int j = band_member(e->t, &search.band, n);
+    moray_band_name(e->solution, &search.band, name, name_size);
+    for (int n = 0; n < moray_band_members(e->t, &search.band); n++) {
+        const int j = moray_band_member(e->t, &search.band, n);
         if (j >= 0) {
             reached = fmax(reached, fabs(e->solution->iterate.x[j]));
             guessed = fmax(guessed, fabs(e->solution->guess[j]));
         }
     }
-    say(e->solution, "Try: %s bound for %s, which went to %s%.3g from a guess of at most %.3g.\n",
-        search.upper ? "an upper" : "a lower", name, search.upper ? "" : "-", reached, guessed);
+    moray_diagnosis_say(e->solution, "Try: %s bound for %s, which went to %s%.3g from a guess of at most %.3g.\n",
+                        search.upper ? "an upper" : "a lower", name, search.upper ? "" : "-", reached, guessed);
     return true;
 }
 
@@ -109,14 +111,15 @@ static void say_otherwise(const struct evidence *e)
 {
     const moray_settings *settings = &e->solution->settings;
     if (e->solution->info.outcome == MORAY_NLP_ITERATION_LIMIT)
-        say(e->solution, "Try: more than max_iterations = %d, from this solution as the guess.\n",
-            settings->max_iterations);
+        moray_diagnosis_say(e->solution, "Try: more than max_iterations = %d, from this solution as the guess.\n",
+                            settings->max_iterations);
     else if (e->worst < feasible) // Ipopt's acceptable level is 1e-6
-        say(e->solution, "Try: tolerance = %.0e; rounding in the functions hides anything finer.\n",
-            fmax(1e-6, 100 * settings->tolerance));
+        moray_diagnosis_say(e->solution, "Try: tolerance = %.0e; rounding in the functions hides anything finer.\n",
+                            fmax(1e-6, 100 * settings->tolerance));
     else
-        say(e->solution, "Try: another guess; no bound stands in the way, yet from here the violation does not "
-                         "shrink.\n");
+        moray_diagnosis_say(e->solution,
+                            "Try: another guess; no bound stands in the way, yet from here the violation does not "
+                            "shrink.\n");
 }
 
 static void choose(struct evidence *e)
@@ -124,9 +127,10 @@ static void choose(struct evidence *e)
     const moray_nlp_outcome outcome = e->solution->info.outcome;
     const bool violated = e->worst > feasible, gave_up = outcome != MORAY_NLP_ITERATION_LIMIT;
     if (outcome == MORAY_NLP_INTERRUPTED)
-        say(e->solution, "Try: go on, with this solution as the guess.\n");
+        moray_diagnosis_say(e->solution, "Try: go on, with this solution as the guess.\n");
     else if (!too_few_variables(e) && !wrong_derivative(e) && !not_finite(e) &&
-             !(violated && dependent_constraints(e)) && !runaway(e) && !(violated && gave_up && hardest_bound(e)))
+             !(violated && moray_dependent_constraints(e)) && !runaway(e) &&
+             !(violated && gave_up && moray_hardest_bound(e)))
         say_otherwise(e);
 }
 
@@ -134,7 +138,7 @@ static void gather(struct evidence *e)
 {
     const moray_nlp *nlp = &e->t->nlp;
     for (int i = 0; i < nlp->m; i++) {
-        e->violation[i] = scaled_violation(e->solution, i);
+        e->violation[i] = moray_scaled_violation(e->solution, i);
         e->worst = fmax(e->worst, fabs(e->violation[i]));
     }
     nlp->jacobian(nlp->self, e->solution->iterate.x, false, e->jac);
@@ -143,7 +147,7 @@ static void gather(struct evidence *e)
             (nlp->g_scale ? nlp->g_scale[nlp->jac_row[k]] : 1) / (nlp->x_scale ? nlp->x_scale[nlp->jac_col[k]] : 1);
 }
 
-void say_suggestion(moray_solution *solution)
+void moray_diagnosis_suggest(moray_solution *solution)
 {
     struct evidence e = {.solution = solution, .t = solution->transcription};
     const size_t n = (size_t)e.t->nlp.n, m = (size_t)e.t->nlp.m;

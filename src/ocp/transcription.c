@@ -14,7 +14,7 @@ static int end_inputs(const struct phase *p)
     return 2 * p->nx + 2 + p->nq;
 }
 
-const int *node_columns(const struct transcription *t, int p, const struct node *node)
+const int *moray_node_columns(const struct transcription *t, int p, const struct node *node)
 {
     const struct phase *phase = &t->ocp->phase[p];
     int *column = t->phase[p].column, i = 0;
@@ -41,7 +41,7 @@ static bool fail_at_node(struct transcription *t, int p, int n, int bad)
 {
     const struct phase_cache *cache = &t->phase[p];
     char name[name_size];
-    phase_output_name(t->ocp, p, bad, name, name_size);
+    moray_phase_output_name(t->ocp, p, bad, name, name_size);
     t->failures++;
     t->failure = moray_error(MORAY_NUMERIC, "%s of phase %s is not finite at t = %.6g", name, t->ocp->phase[p].name,
                              cache->t0 + (cache->tf - cache->t0) * t->layout.phase[p].node[n].tau);
@@ -54,7 +54,7 @@ static bool phase_values(struct transcription *t, int p)
     const struct phase_layout *layout = &t->layout.phase[p];
     struct phase_cache *cache = &t->phase[p];
     const moray_map *map = phase->map;
-    layout_span(&t->layout, t->ocp, t->x, p, &cache->t0, &cache->tf);
+    moray_layout_span(&t->layout, t->ocp, t->x, p, &cache->t0, &cache->tf);
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
         if (!node->collocated)
@@ -88,13 +88,13 @@ static bool end_values(struct transcription *t)
     if (all_finite(t->end_out, map->n_out, &bad))
         return true;
     char name[name_size];
-    endpoint_output_name(t->ocp, bad, name, name_size);
+    moray_endpoint_output_name(t->ocp, bad, name, name_size);
     t->failures++;
     t->failure = moray_error(MORAY_NUMERIC, "%s of %s is not finite", name, t->ocp->name);
     return false;
 }
 
-bool transcription_values(struct transcription *t, const double *x)
+bool moray_transcription_values(struct transcription *t, const double *x)
 {
     if (t->have_values && memcmp(t->x, x, (size_t)t->layout.columns * sizeof *x) == 0)
         return true;
@@ -107,9 +107,9 @@ bool transcription_values(struct transcription *t, const double *x)
     return t->have_values;
 }
 
-bool transcription_jacobians(struct transcription *t, const double *x)
+bool moray_transcription_jacobians(struct transcription *t, const double *x)
 {
-    if (!transcription_values(t, x))
+    if (!moray_transcription_values(t, x))
         return false;
     if (t->have_jacobians)
         return true;
@@ -136,7 +136,7 @@ static bool nlp_objective(void *self, const double *x, bool fresh, double *f)
 {
     (void)fresh;
     struct transcription *t = self;
-    if (!transcription_values(t, x))
+    if (!moray_transcription_values(t, x))
         return false;
     *f = t->end_out[0];
     return true;
@@ -146,7 +146,7 @@ static bool nlp_gradient(void *self, const double *x, bool fresh, double *gradie
 {
     (void)fresh;
     struct transcription *t = self;
-    if (!transcription_jacobians(t, x))
+    if (!moray_transcription_jacobians(t, x))
         return false;
     memset(gradient, 0, (size_t)t->layout.columns * sizeof *gradient);
     const moray_pattern *jac = &t->ocp->endpoint->jac;
@@ -160,9 +160,9 @@ static bool nlp_constraints(void *self, const double *x, bool fresh, double *g)
 {
     (void)fresh;
     struct transcription *t = self;
-    if (!transcription_values(t, x))
+    if (!moray_transcription_values(t, x))
         return false;
-    assemble_constraints(t, g);
+    moray_assemble_constraints(t, g);
     return true;
 }
 
@@ -170,10 +170,10 @@ static bool nlp_jacobian(void *self, const double *x, bool fresh, double *values
 {
     (void)fresh;
     struct transcription *t = self;
-    if (!transcription_jacobians(t, x))
+    if (!moray_transcription_jacobians(t, x))
         return false;
-    triplets_start(&t->jac, values);
-    walk_jacobian(t, &t->jac);
+    moray_triplets_start(&t->jac, values);
+    moray_walk_jacobian(t, &t->jac);
     return true;
 }
 
@@ -181,15 +181,15 @@ static bool nlp_hessian(void *self, const double *x, bool fresh, double sigma, c
 {
     (void)fresh;
     struct transcription *t = self;
-    if (!transcription_jacobians(t, x))
+    if (!moray_transcription_jacobians(t, x))
         return false;
-    triplets_start(&t->hess, values);
-    walk_hessian(t, sigma, lambda, &t->hess);
+    moray_triplets_start(&t->hess, values);
+    moray_walk_hessian(t, sigma, lambda, &t->hess);
     int bad;
     return all_finite(values, t->hess.pattern.nnz, &bad);
 }
 
-void transcription_callbacks(struct transcription *t)
+void moray_transcription_callbacks(struct transcription *t)
 {
     t->nlp.self = t;
     t->nlp.objective = nlp_objective;

@@ -3,8 +3,8 @@
 // The nonlinear programme of a problem on a mesh. Decision vector: for every phase the nodes in the order of time
 // (state, then control where collocated), integrals, free times; then the parameters. Constraints: for every phase path
 // constraints, defects, definitions of the integrals; then the events.
-#ifndef OCP_TRANSCRIPTION_H
-#define OCP_TRANSCRIPTION_H
+#ifndef SRC_OCP_TRANSCRIPTION_H
+#define SRC_OCP_TRANSCRIPTION_H
 
 #include "base/triplets.h"
 #include "ocp/layout.h"
@@ -36,25 +36,25 @@ struct transcription {
 };
 
 // Error: MORAY_MEMORY, MORAY_INPUT.
-moray_status transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
-                               const struct mesh *meshes);
-void transcription_free(struct transcription *t);
+moray_status moray_transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
+                                     const struct mesh *meshes);
+void moray_transcription_free(struct transcription *t);
 
-void transcription_callbacks(struct transcription *t); // sets those of t->nlp
+void moray_transcription_callbacks(struct transcription *t); // sets those of t->nlp
 
 // Brings the caches to x. False where a value is not finite (t->failure says which).
-bool transcription_values(struct transcription *t, const double *x);
-bool transcription_jacobians(struct transcription *t, const double *x);
+bool moray_transcription_values(struct transcription *t, const double *x);
+bool moray_transcription_jacobians(struct transcription *t, const double *x);
 
 // With the caches in place: g[rows], and walks over the constraint Jacobian and the Hessian of the Lagrangian.
-void assemble_constraints(const struct transcription *t, double *g);
-void walk_jacobian(const struct transcription *t, triplets *out);
-void walk_hessian(const struct transcription *t, double sigma, const double *lambda, triplets *out);
+void moray_assemble_constraints(const struct transcription *t, double *g);
+void moray_walk_jacobian(const struct transcription *t, triplets *out);
+void moray_walk_hessian(const struct transcription *t, double sigma, const double *lambda, triplets *out);
 
 // lambda_f[nodes][nx]: derivative of the constraint part of the Lagrangian with respect to f at every node.
-void dynamics_multipliers(const struct transcription *t, int p, const double *lambda, double *lambda_f);
+void moray_dynamics_multipliers(const struct transcription *t, int p, const double *lambda, double *lambda_f);
 
 // Columns of the inputs x, u, s of a node (not t), in t->phase[p].column; -1 for a control where none is collocated.
-const int *node_columns(const struct transcription *t, int p, const struct node *node);
+const int *moray_node_columns(const struct transcription *t, int p, const struct node *node);
 
 #endif

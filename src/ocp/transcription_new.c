@@ -111,12 +111,12 @@ static moray_status allocate(struct transcription *t)
 
 static moray_status record_patterns(struct transcription *t)
 {
-    triplets_record(&t->jac);
-    walk_jacobian(t, &t->jac);
-    MORAY_TRY(triplets_close(&t->jac));
-    triplets_record(&t->hess);
-    walk_hessian(t, 0, t->bounds, &t->hess); // while recording, any vector does for the multipliers
-    return triplets_close(&t->hess);
+    moray_triplets_record(&t->jac);
+    moray_walk_jacobian(t, &t->jac);
+    MORAY_TRY(moray_triplets_close(&t->jac));
+    moray_triplets_record(&t->hess);
+    moray_walk_hessian(t, 0, t->bounds, &t->hess); // while recording, any vector does for the multipliers
+    return moray_triplets_close(&t->hess);
 }
 
 static void describe_programme(struct transcription *t)
@@ -128,18 +128,18 @@ static void describe_programme(struct transcription *t)
                          .x_upper = t->bounds + columns,
                          .g_lower = t->bounds + 2 * columns,
                          .g_upper = t->bounds + 2 * columns + rows};
-    transcription_callbacks(t);
+    moray_transcription_callbacks(t);
 }
 
-moray_status transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
-                               const struct mesh *meshes)
+moray_status moray_transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
+                                     const struct mesh *meshes)
 {
     *result = NULL;
     struct transcription *t = calloc(1, sizeof *t);
     if (!t)
         return moray_error(MORAY_MEMORY, "no memory for the transcription");
     t->ocp = ocp;
-    moray_status status = layout_new(&t->layout, ocp, family, meshes);
+    moray_status status = moray_layout_new(&t->layout, ocp, family, meshes);
     if (!moray_failed(status))
         status = allocate(t);
     if (!moray_failed(status)) {
@@ -149,7 +149,7 @@ moray_status transcription_new(struct transcription **result, const moray_ocp *o
         status = record_patterns(t);
     }
     if (moray_failed(status)) {
-        transcription_free(t);
+        moray_transcription_free(t);
         return status;
     }
     t->nlp.nnz_jac = t->jac.pattern.nnz, t->nlp.jac_row = t->jac.pattern.row, t->nlp.jac_col = t->jac.pattern.col;
@@ -158,7 +158,7 @@ moray_status transcription_new(struct transcription **result, const moray_ocp *o
     return moray_ok();
 }
 
-void transcription_free(struct transcription *t)
+void moray_transcription_free(struct transcription *t)
 {
     if (!t)
         return;
@@ -179,8 +179,8 @@ void transcription_free(struct transcription *t)
     free(t->end_column);
     free(t->weight);
     free(t->map_hess);
-    triplets_free(&t->jac);
-    triplets_free(&t->hess);
-    layout_free(&t->layout);
+    moray_triplets_free(&t->jac);
+    moray_triplets_free(&t->hess);
+    moray_layout_free(&t->layout);
     free(t);
 }

@@ -6,7 +6,7 @@
 
 #include "sim/times.h"
 
-moray_status sim_check_times(double t0, double t1, const double *times, int n_times)
+moray_status moray_sim_check_times(double t0, double t1, const double *times, int n_times)
 {
     if (!(t1 >= t0 && isfinite(t0) && isfinite(t1)))
         return moray_error(MORAY_INPUT, "simulation from t0 = %g to t1 = %g: must be finite, t1 not before t0", t0, t1);
@@ -32,7 +32,7 @@ static moray_status visit(moray_sim *sim, double t1, const double *times, int n_
 static moray_status run(const moray_integrator *self, const moray_ode *ode, double t0, double t1, double *x,
                         const double *times, int n_times, moray_ode_observer *observe, void *observer)
 {
-    MORAY_TRY(sim_check_times(t0, t1, times, n_times));
+    MORAY_TRY(moray_sim_check_times(t0, t1, times, n_times));
     moray_sim *sim;
     MORAY_TRY(moray_sim_new(&sim, ode, self->self));
     moray_status status = moray_sim_start(sim, t0, x);

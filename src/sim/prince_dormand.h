@@ -3,8 +3,8 @@
 // RK8(7)13M of P. J. Prince and J. R. Dormand, "High order embedded Runge-Kutta formulae", J. Comput. Appl. Math. 7
 // (1981) 67-75, Table 2. ARKODE's own pair of this order, Fehlberg's 7(8), estimates no error at all where x' depends
 // on t alone.
-#ifndef MORAY_PRINCE_DORMAND_H
-#define MORAY_PRINCE_DORMAND_H
+#ifndef SRC_SIM_PRINCE_DORMAND_H
+#define SRC_SIM_PRINCE_DORMAND_H
 
 enum { PD_STAGES = 13, PD_ORDER = 8, PD_EMBEDDED_ORDER = 7 };
 

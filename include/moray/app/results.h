@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+//
+// What a program leaves behind: JSON, CSV, tables, figures, a report, and the directory they appear in all together.
+#ifndef MORAY_APP_RESULTS_H
+#define MORAY_APP_RESULTS_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "moray/status.h"
+
+// Shortest of %.15g, %.16g, %.17g that reads back as the same double, written into text; returns text. Non-finite
+// values give "nan", "inf", "-inf".
+const char *moray_number_text(double value, char text[32]);
+
+// ---- Output directory ----------------------------------------------------------------------------------------------
+
+// Files of one run. They are written under a temporary name inside the directory and appear at the commit, all or none.
+typedef struct moray_output moray_output;
+
+// Checks that the directory can be made and written to, and leaves nothing behind: a long solve should not start in
+// vain. Error: MORAY_IO naming the directory; MORAY_MEMORY.
+moray_status moray_output_open(moray_output **output, const char *directory);
+
+// Starts the file `name` (no slash in it); write to *file with fprintf and the like and leave closing to the output.
+// Error: MORAY_INPUT (name unusable or taken), MORAY_IO, MORAY_MEMORY.
+moray_status moray_output_file(moray_output *output, const char *name, FILE **file);
+
+// Closes the files and moves them to their names. After an error the directory is as it was before. Error: MORAY_IO
+// naming the file.
+moray_status moray_output_commit(moray_output *output);
+
+// Frees the output; what is not committed is deleted, and so is the directory if the output made it. NULL is allowed.
+void moray_output_free(moray_output *output);
+
+// ---- JSON ----------------------------------------------------------------------------------------------------------
+
+// One JSON object under construction, with a cursor on the innermost open object or list. Running out of memory is
+// remembered and reported by moray_json_write, so that nothing else needs a check; a NULL builder takes every call.
+// `key` is NULL inside a list.
+typedef struct moray_json moray_json;
+
+moray_json *moray_json_new(void);
+void moray_json_open(moray_json *json, const char *key);                 // an object inside the current one
+void moray_json_open_list(moray_json *json, const char *key);            // a list inside the current one
+void moray_json_close(moray_json *json);                                 // back to the enclosing one
+int moray_json_depth(const moray_json *json);                            // how many are open inside the first
+void moray_json_number(moray_json *json, const char *key, double value); // round-trips; NaN and infinity become null
+void moray_json_numbers(moray_json *json, const char *key, const double *values, int n);
+void moray_json_text(moray_json *json, const char *key, const char *text); // NULL becomes null
+void moray_json_bool(moray_json *json, const char *key, bool value);
+
+// Writes the whole object and a newline, and flushes. Error: MORAY_MEMORY (now or while building), MORAY_IO.
+moray_status moray_json_write(const moray_json *json, FILE *file);
+void moray_json_free(moray_json *json);
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+enum { MORAY_TABLE_COLUMNS = 8 };
+
+// label, one number a column (NaN: left blank), unit. `text`, where not NULL, stands in the first column instead.
+typedef struct moray_table_row {
+    const char *label;
+    double value[MORAY_TABLE_COLUMNS];
+    const char *unit; // or NULL
+    const char *text;
+} moray_table_row;
+
+// `columns` heads the n_columns columns of numbers; NULL entries head nothing.
+typedef struct moray_table {
+    const char *title; // or NULL
+    const char *columns[MORAY_TABLE_COLUMNS];
+    int n_columns;
+    const moray_table_row *rows;
+    int n_rows;
+} moray_table;
+
+// A value as tables show it: whole numbers in full, others with four significant digits, NaN as "".
+const char *moray_table_number(double value, char text[32]);
+
+// Plain text with aligned columns; widths count UTF-8 characters.
+void moray_table_print(const moray_table *table, FILE *file);
+
+// Comma-separated values: a line of names "name [unit]", then n_rows lines of full-precision numbers. Row i of a column
+// is values[i * stride] (stride 0 stands for 1). Errors of the file stay in the file for the commit to find.
+typedef struct moray_column {
+    const char *name, *unit; // unit may be NULL
+    const double *values;
+    int stride;
+} moray_column;
+void moray_csv_write(FILE *file, const moray_column *columns, int n_columns, int n_rows);
+
+// ---- Figures and report --------------------------------------------------------------------------------------------
+
+typedef enum { MORAY_CURVE_LINE, MORAY_CURVE_MARKED, MORAY_CURVE_POINTS } moray_curve_style;
+
+// Points (x[i * stride], y[i * stride]), i < n; a NaN interrupts the curve. stride 0 stands for 1.
+typedef struct moray_curve {
+    const char *label;
+    const double *x, *y;
+    int n, stride;
+    moray_curve_style style;
+} moray_curve;
+
+// Curves differ in colour (Okabe and Ito's palette) and in dashes or markers, so that they survive a grey print.
+typedef struct moray_figure {
+    const char *name; // of the file, without .svg
+    const char *title, *x_label, *y_label;
+    bool equal_axes;   // same scale on both axes, for paths in the plane
+    bool log_x, log_y; // logarithmic axes, for values above 0
+    const moray_curve *curves;
+    int n_curves;
+} moray_figure;
+
+// Draws NAME.svg with gnuplot. Where gnuplot is missing or fails the output is as before the call and can be used on.
+// Error: MORAY_IO saying what gnuplot said; MORAY_INPUT, MORAY_MEMORY as for moray_output_file.
+moray_status moray_output_figure(moray_output *output, const moray_figure *figure);
+
+// A part of a report under its own heading: paragraphs (one a line) or NULL, tables, figures whose names begin with
+// `figures`.
+typedef struct moray_section {
+    const char *title, *text, *figures;
+    const moray_table *tables;
+    int n_tables;
+} moray_section;
+
+typedef struct moray_report {
+    const char *title, *text; // text: a paragraph, or NULL
+    const moray_table *tables;
+    int n_tables;
+    const moray_section *sections;
+    int n_sections;
+    int argc; // the command line that made it
+    char **argv;
+} moray_report;
+
+// report.html: one self-contained page with the tables and every figure drawn so far; those of no section come first.
+// Error: as moray_output_file.
+moray_status moray_output_report(moray_output *output, const moray_report *report);
+
+// ---- Progress ------------------------------------------------------------------------------------------------------
+
+// One line rewritten in place; silent where the stream is no terminal or `quiet`.
+typedef struct moray_ticker {
+    FILE *stream;
+    bool live;
+} moray_ticker;
+
+moray_ticker moray_ticker_start(FILE *stream, bool quiet);
+void moray_ticker_show(const moray_ticker *ticker, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// A line that stays, above the one rewritten.
+void moray_ticker_note(const moray_ticker *ticker, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void moray_ticker_end(const moray_ticker *ticker); // erases the line
+
+#endif

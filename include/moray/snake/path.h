@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+//
+// Paths in the plane, the problem of following one, and the guidance laws of the field.
+#ifndef MORAY_SNAKE_PATH_H
+#define MORAY_SNAKE_PATH_H
+
+#include "moray/snake/controllers.h"
+#include "moray/num.h"
+#include "moray/snake/receding_horizon.h"
+#include "moray/snake/steering.h"
+
+// ---- Paths ---------------------------------------------------------------------------------------------------------
+
+// A straight leg (curvature 0) or an arc.
+typedef struct moray_path_piece {
+    int leg;                  // from waypoint `leg` to the next, counted from 1; of an arc the leg before it
+    double start;             // distance along the path where it begins [m]
+    double x, y, course;      // there [m], [rad]
+    double length, curvature; // [m], [1/m], positive to the left
+} moray_path_piece;
+
+typedef struct moray_path {
+    int n;
+    moray_path_piece *piece; // owned
+    double length;           // [m]
+} moray_path;
+
+// Through waypoints "X,Y X,Y ..." [m], or those of a CSV file whose first line names the columns x_m,y_m: straight legs
+// joined by arcs of that radius [m] in the corners. Free with moray_path_free. Error: MORAY_INPUT, also where a leg is
+// too short for its arcs; MORAY_IO; MORAY_MEMORY.
+moray_status moray_path_read(moray_path *path, const char *text, double radius);
+void moray_path_free(moray_path *path);
+
+// The point at a distance along the path, which goes on straight before its start and behind its end.
+typedef struct moray_path_point {
+    moray_num x, y, course;
+    double curvature;
+} moray_path_point;
+moray_path_point moray_path_at(const moray_path *path, moray_num along);
+
+// The point of the path nearest to (x, y) of those near the distance `along`: its distance, and how far to the left of
+// the path (x, y) lies.
+void moray_path_project(const moray_path *path, double x, double y, double *along, double *across);
+
+// Who keeps in mind where on the path the swimmer is; begin with where it starts.
+typedef struct moray_path_seeker {
+    const moray_path *path;
+    double along;
+} moray_path_seeker;
+bool moray_path_seek(const moray_swim_sample *sample, void *seeker); // an observer: false at the end of the path
+
+// Whether a swimmer of this speed through the water makes way along the whole path in the current. Error:
+// MORAY_NOT_SOLVED naming the leg and the numbers where it does not.
+moray_status moray_path_passable(const moray_path *path, double speed, const double current[2]);
+
+// How long such a swimmer takes from a distance along the path to its end, crabbing; NaN where it makes no way [s].
+double moray_path_duration(const moray_path *path, double along, double speed, const double current[2]);
+
+// ---- Following -----------------------------------------------------------------------------------------------------
+
+typedef struct moray_path_weights {
+    double across;   // of the integral of the squared distance to the path [1/(m^2 s)]
+    double time;     // of the time to the end of the path [1/s]
+    double steering; // of the integral of (phi_0'' / limit of phi_0)^2 [s^3]
+} moray_path_weights;
+
+typedef struct moray_path_spec {
+    moray_robot robot;
+    moray_model model;
+    bool averaged;
+    double current[2]; // [m/s]
+    moray_steering_limits limits;
+    moray_path_weights weight;
+    const moray_path *path;              // must outlive the problem
+    double tube;                         // largest distance to the path [m]; MORAY_INFINITY: any
+    double reach;                        // distance along the path within which a start outside the tube comes into it
+    double t0, duration;                 // duration 0: to the end of the path, whenever that is
+    double start[MORAY_STEERING_STATES]; // state at t0
+    double along;                        // where on the path that is [m]
+    double speed;                        // typical, along the path [m/s]
+} moray_path_spec;
+
+// One control more than a steering problem has: the distance along the path. With a given duration the time gained is
+// what is made good at the end, along the course of the path where it should then be, at the typical speed.
+typedef struct moray_path_task moray_path_task;
+typedef struct moray_path_problem {
+    moray_steering *steering;
+    moray_path_task *task;
+} moray_path_problem;
+
+// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_path_problem_free.
+moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
+void moray_path_problem_free(moray_path_problem *problem);
+
+// A plan from t = 0 on that begins in the straight straight of its gait; see moray_heading_plan.
+typedef struct moray_path_plan {
+    moray_path_problem problem;
+    moray_solution *solution;
+    moray_straight_motion straight;
+} moray_path_plan;
+
+// Begins at the position, with this mean heading; `start`, `along`, `t0`, `duration` and `speed` of the spec are set by
+// this; the rest as moray_heading_plan_make. Error: MORAY_NOT_SOLVED too, where the path is not passable.
+moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *spec, const moray_settings *settings,
+                                  const moray_gait *gait, const double position[2], double heading,
+                                  const moray_path_plan *from);
+void moray_path_plan_free(moray_path_plan *plan);
+
+// Plans of a given length from any state on, in receding horizon.
+typedef struct moray_path_replanner {
+    moray_path_spec spec; // start and times are set anew every time; along: near the start of the next
+    double horizon;       // [s]
+} moray_path_replanner;
+
+// Uses it, so that it must outlive the plans.
+moray_replanner moray_path_replan(moray_path_replanner *replanner);
+
+// ---- Guidance ------------------------------------------------------------------------------------------------------
+
+// Headings to steer for, from where the swimmer is: line of sight theta = course(along + ahead) - atan((e + gain y) /
+// lookahead) with y' = lookahead e / ((e + gain y)^2 + lookahead^2) (Borhaug, Pavlov and Pettersen 2008; gain 0:
+// without integral action); or what the plan steered at this place of the path, corrected by - atan((e - e of the plan)
+// / lookahead) in the same way.
+typedef struct moray_guidance {
+    const moray_path *path;
+    const moray_path_plan *plan; // NULL: line of sight
+    double plan_scale;           // offsets of the swimmer per offset of the plan
+    double lookahead, ahead;     // [m]
+    double gain;                 // of the integral [m/s]
+    double period;               // between two looks [s]
+    double along, integral;      // now; integral y [m]
+} moray_guidance;
+
+double moray_guidance_target(const moray_swim_sample *sample, void *guidance);         // of a moray_feedback
+double moray_guidance_feed(const moray_swim_sample *sample, double t, void *guidance); // with a plan
+
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// Steering problems: a robot swims on a gait (25) and steers by the joint offset phi_0(t), a piecewise polynomial of
+// limited range, rate and acceleration. One phase; states and control are those of MORAY_JOINTS_STEERED, parameters
+// (a, omega, delta). A task adds what is to be followed or reached.
+#ifndef MORAY_SNAKE_STEERING_H
+#define MORAY_SNAKE_STEERING_H
+
+#include "moray/ocp.h"
+#include "moray/snake/plant.h"
+#include "moray/snake/swim.h"
+
+enum { MORAY_STEERING_STATES = 8, MORAY_STEERING_PARAMETERS = 3 };
+
+// MORAY_INFINITY: no limit.
+typedef struct moray_steering_limits {
+    moray_bounds theta_max;                          // [rad] amplitude of (24), through (33) or (27)
+    moray_bounds omega, delta;                       // [rad/s], [rad]
+    double offset, offset_rate, offset_acceleration; // |phi_0| [m or rad], |phi_0'|, |phi_0''|
+    double power;                                    // mean joint power [W]
+} moray_steering_limits;
+
+// The limits of the offset that mean the same to the other model, with the gait of `from`.
+moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const moray_steering_limits *limits,
+                                                const moray_gait *gait, moray_model from, moray_model to);
+
+// What a task adds to the steered robot.
+typedef struct moray_steering_task {
+    const char *name;
+    int nu, nc, nq;                // further controls, path outputs, integrands
+    moray_complex_fn *extra;       // in = [x, phi_0'', further u, s, t] -> [path outputs, integrands]
+    int ne;                        // events
+    moray_endpoint_fn *events;     // its objective is added to the one below; data: self
+    void *self;                    // of both; must outlive the problem
+    const moray_bounds *u, *c, *e; // [nu], [nc], [ne]
+    const char *const *u_names, *const *c_names, *const *e_names;
+    const double *weight; // [nq], of the integrals in the objective
+    double weight_power;  // of the joint work [1/J]
+    double weight_time;   // of tf - t0 [1/s]
+} moray_steering_task;
+
+typedef struct moray_steering_spec {
+    moray_robot robot;
+    moray_model model;
+    bool averaged;     // the period-averaged plant; control-oriented model only
+    double current[2]; // [m/s]
+    moray_steering_limits limits;
+    moray_bounds t0, tf;
+    moray_bounds x0[MORAY_STEERING_STATES], xf[MORAY_STEERING_STATES]; // narrow the limits at the ends
+    moray_steering_task task;
+} moray_steering_spec;
+
+typedef struct moray_steering moray_steering;
+
+// Builds the problem: minimise sum weight_m q_m + weight_power x work + weight_time (tf - t0) + the task's own.
+// Error: MORAY_INPUT naming what is wrong, MORAY_MEMORY.
+moray_status moray_steering_new(moray_steering **problem, const moray_steering_spec *spec);
+void moray_steering_free(moray_steering *problem);
+const moray_ocp *moray_steering_ocp(const moray_steering *problem);
+const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem);
+
+// The gait of a solution's or guess's parameters, offset 0, and back.
+moray_gait moray_steering_gait(const double s[MORAY_STEERING_PARAMETERS]);
+void moray_steering_parameters(const moray_gait *gait, double s[MORAY_STEERING_PARAMETERS]);
+
+// Joint work over the phase [J]; the task's integrals are the first of moray_solution_integrals.
+double moray_steering_work(const moray_steering *problem, const moray_solution *solution);
+
+// phi_0 at t, clamped to the phase; beyond its end the offset rests at its last value.
+moray_offset moray_steering_offset(const moray_solution *solution, double t);
+
+#endif

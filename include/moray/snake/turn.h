@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+//
+// The fastest change of heading, or from pose to pose, at the limits of the joint offset and its rate.
+#ifndef MORAY_SNAKE_TURN_H
+#define MORAY_SNAKE_TURN_H
+
+#include "moray/snake/controllers.h"
+#include "moray/snake/steering.h"
+
+// The problem of turning in the least time: at its end heading and turning are those of the straight straight, and the
+// offset is back at rest. The heading swings with every stroke, and the stroke that the turn ends in is free: what is
+// to be reached is the heading without its undulation, factors of cos and sin of omega t at whatever time it ends.
+typedef struct moray_turn_task moray_turn_task;
+typedef struct moray_turn_spec {
+    moray_robot robot;
+    moray_model model;
+    bool averaged;     // on the period-averaged plant
+    double current[2]; // [m/s]
+    moray_steering_limits limits;
+    double heading;           // at the end [rad]
+    bool to_position;         // the end lies at this position too
+    double position[2];       // [m]
+    double steering;          // weight of the integral of (phi_0'' / limit of phi_0)^2, beside the time [s^4]
+    double shortest, longest; // the turn may take [s]
+    double start[MORAY_STEERING_STATES]; // state at t = 0
+    double undulation[2];                // of the heading [rad]
+} moray_turn_spec;
+
+typedef struct moray_turn {
+    moray_steering *steering;
+    moray_turn_task *task;
+} moray_turn;
+
+// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_turn_free.
+moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec);
+void moray_turn_free(moray_turn *problem);
+
+// A plan from t = 0, p = 0 and mean heading 0 on, in the straight straight of its gait; see moray_heading_plan.
+typedef struct moray_turn_plan {
+    moray_turn problem;
+    moray_solution *solution;
+    moray_straight_motion straight;
+} moray_turn_plan;
+
+// `start`, `undulation` and the times of the spec are set by this; the rest as moray_heading_plan_make. `turn_rate`:
+// how fast the robot turns with its offset at the limit, for the guess and the longest time [rad/s].
+moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec, const moray_settings *settings,
+                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from,
+                                  double stretch);
+void moray_turn_plan_free(moray_turn_plan *plan); // safe on a zeroed plan, and twice
+
+#endif

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+//
+// Pieces of the benchmark program: what a solve costs, measured several times, and how that grows.
+#ifndef PROBLEMS_BENCHMARK_BENCHMARK_H
+#define PROBLEMS_BENCHMARK_BENCHMARK_H
+
+#include <math.h>
+
+#include "classics/classics.h"
+#include "moray/moray.h"
+#include "moray/snake.h"
+
+#define DEG (M_PI / 180)
+
+// Processor seconds of one solve, start to finish: from the first line of the problem to the solution.
+enum { SETUP, FUNCTION, JACOBIAN, HESSIAN, IPOPT, LINEAR, PIECES };
+typedef struct cost {
+    double piece[PIECES]; // set-up; evaluations; Ipopt without its linear solver; the linear solver
+    double total;         // their sum
+    double wall;          // the same by the clock on the wall
+    bool solved;
+    int iterations;
+    double objective;
+    moray_nlp_size size;
+} cost;
+
+double cost_evaluation(const cost *c);
+
+// total/floor: how much the solve costs above what it would were its evaluations free (same iterates, same linear
+// algebra), which is the total less the time that the solver's adapter measured inside the callbacks.
+double cost_over_floor(const cost *c);
+
+// What is measured. `solve` builds the problem and solves it; `forget` frees what it built, the solution apart.
+typedef struct subject {
+    moray_status (*solve)(void *self, moray_solution **solution);
+    void (*forget)(void *self);
+    void *self;
+} subject;
+
+// Medians of `repeats` measurements, piece by piece. Error: that of solve.
+moray_status measure(const subject *of, int repeats, cost *found);
+
+double median(double *values, int n); // sorts them
+
+// Slope of log y over log x by least squares; x, y > 0 (pairs where one is not are left out; NaN with less than two).
+double fitted_exponent(const double *x, const double *y, int n);
+
+// ---- Subjects ------------------------------------------------------------------------------------------------------
+
+// Settings of every solve here.
+moray_settings benchmark_settings(const char *scheme, int intervals);
+
+// The optimal-gait problem as max_speed and min_energy pose it, from the orbit of the paper's gait.
+typedef struct gait_case {
+    const char *name;
+    int links;
+    moray_model model;
+    moray_joints joints;
+    moray_gait_goal goal;
+    const char *scheme;
+    int intervals;
+    // owned
+    moray_robot robot;
+    moray_gait gait;
+    moray_swim_track orbit;
+    double power, speed; // of the paper's gait
+    moray_gait_problem *problem;
+} gait_case;
+
+// Simulates the orbit, which does not count as part of the solve. Free with gait_case_end. Error: moray_swim_steady's.
+moray_status gait_case_begin(gait_case *c);
+void gait_case_end(gait_case *c);
+subject gait_case_subject(gait_case *c);
+
+// S1, on which other tools can solve the same programme (benchmark_s1.c states it). Error: that of moray_swim_steady.
+enum { S1_LINKS = 10, S1_STATES = 2 * S1_LINKS + 4 };
+typedef struct s1_case {
+    double L;
+    moray_swim_track orbit;
+    moray_gait gait;
+    moray_map plant;
+    moray_ocp *ocp;
+} s1_case;
+moray_status s1_begin(s1_case *c);
+void s1_end(s1_case *c);
+subject s1_subject(s1_case *c);
+
+// Heading tracking with the paper's gait: 30 deg there and back every 40 s, in the current (0.1, 0.1) m/s.
+enum { HORIZON_POINTS = 40 };
+typedef struct horizon_case {
+    moray_model model;
+    double seconds;
+    // owned
+    moray_robot robot;
+    moray_gait gait;
+    double time[HORIZON_POINTS], heading[HORIZON_POINTS];
+    moray_reference reference; // points into these
+    moray_heading_plan plan;
+} horizon_case;
+moray_status horizon_begin(horizon_case *c); // the case must stay where it is. Error: MORAY_INPUT when it is too long
+subject horizon_subject(horizon_case *c);
+// A textbook problem on the mesh it begins with.
+typedef struct classic_case {
+    const struct classic *classic;
+    moray_ocp *ocp; // owned
+} classic_case;
+subject classic_subject(classic_case *c);
+
+// Simulated seconds per processor second, median of `repeats` simulations of 45 s of the paper's gait from rest.
+// Error: that of moray_swim_run.
+moray_status simulation_rate(moray_model model, int links, int repeats, double *rate);
+
+// ---- Results -------------------------------------------------------------------------------------------------------
+
+enum { MOST_CASES = 72, MOST_GROWTHS = 6, MOST_POINTS = 8 };
+
+typedef struct named_cost {
+    const char *name;
+    cost cost;
+} named_cost;
+
+typedef struct growth {
+    const char *name, *over; // over: "intervals", "links" or "seconds"
+    int n, size[MOST_POINTS];
+    cost cost[MOST_POINTS];
+} growth;
+
+// Exponents of a growth: set-up and, for one iteration, evaluation, Ipopt with its linear solver, and both.
+enum { EXPONENTS = 4 };
+extern const char *const exponent_names[EXPONENTS];
+void growth_exponents(const growth *g, double exponent[EXPONENTS]);
+
+typedef struct simulated {
+    int n, links[MOST_POINTS];
+    double rate[2][MOST_POINTS]; // by model
+} simulated;
+
+typedef struct benchmark {
+    moray_common common;
+    int part, repeats, most_intervals, most_links, most_seconds;
+    int n_cases, n_growths;
+    named_cost cases[MOST_CASES]; // S1 first, where it is among them
+    growth growths[MOST_GROWTHS];
+    simulated simulation;
+    moray_ticker ticker;
+} benchmark;
+
+// Tables or JSON on standard output; JSON and figures of the growth in the directory of --out. Error: MORAY_IO,
+// MORAY_MEMORY.
+moray_status benchmark_report(const benchmark *run);
+moray_status benchmark_json(const benchmark *run, FILE *file);
+moray_status benchmark_files(const benchmark *run);
+
+#endif

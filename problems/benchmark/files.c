@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include <string.h>
+
+#include "benchmark.h"
+
+static const char *const piece_keys[PIECES] = {"setup_s",   "function_s", "jacobian_s",
+                                               "hessian_s", "ipopt_s",    "linear_solver_s"};
+
+static void json_cost(moray_json *json, const cost *c)
+{
+    moray_json_bool(json, "solved", c->solved);
+    moray_json_number(json, "objective", c->objective);
+    moray_json_number(json, "iterations", c->iterations);
+    moray_json_number(json, "nvar", c->size.variables);
+    moray_json_number(json, "ncon", c->size.constraints);
+    moray_json_number(json, "nnz_jac", c->size.nnz_jac);
+    moray_json_number(json, "nnz_hess", c->size.nnz_hess);
+    for (int k = 0; k < PIECES; k++)
+        moray_json_number(json, piece_keys[k], c->piece[k]);
+    moray_json_number(json, "evaluation_s", cost_evaluation(c));
+    moray_json_number(json, "total_s", c->total);
+    moray_json_number(json, "wall_s", c->wall);
+    moray_json_number(json, "total_over_floor", cost_over_floor(c));
+}
+
+static void json_growth(moray_json *json, const growth *g)
+{
+    double exponent[EXPONENTS];
+    growth_exponents(g, exponent);
+    moray_json_open(json, NULL);
+    moray_json_text(json, "problem", g->name);
+    moray_json_text(json, "over", g->over);
+    moray_json_open(json, "exponents");
+    for (int i = 0; i < EXPONENTS; i++)
+        moray_json_number(json, exponent_names[i], exponent[i]);
+    moray_json_close(json);
+    moray_json_open_list(json, "points");
+    for (int k = 0; k < g->n; k++) {
+        moray_json_open(json, NULL);
+        moray_json_number(json, g->over, g->size[k]);
+        json_cost(json, &g->cost[k]);
+        moray_json_close(json);
+    }
+    moray_json_close(json);
+    moray_json_close(json);
+}
+
+static void json_simulation(moray_json *json, const simulated *s)
+{
+    static const char *const models[] = {"control", "fp"};
+    moray_json_open_list(json, "simulation");
+    for (int k = 0; k < s->n; k++)
+        for (int model = 0; model < 2; model++) {
+            moray_json_open(json, NULL);
+            moray_json_text(json, "model", models[model]);
+            moray_json_number(json, "links", s->links[k]);
+            moray_json_number(json, "simulated_s_per_s", s->rate[model][k]);
+            moray_json_close(json);
+        }
+    moray_json_close(json);
+}
+
+moray_status benchmark_json(const benchmark *run, FILE *file)
+{
+    moray_json *json = moray_json_new();
+    moray_json_text(json, "problem", "benchmark");
+    moray_json_text(json, "version", moray_version());
+    moray_json_text(json, "clock", "processor time, medians");
+    moray_json_number(json, "repeats", run->repeats);
+    moray_json_open_list(json, "problems");
+    for (int k = 0; k < run->n_cases; k++) {
+        moray_json_open(json, NULL);
+        moray_json_text(json, "name", run->cases[k].name);
+        json_cost(json, &run->cases[k].cost);
+        moray_json_close(json);
+    }
+    moray_json_close(json);
+    moray_json_open_list(json, "growth");
+    for (int k = 0; k < run->n_growths; k++)
+        json_growth(json, &run->growths[k]);
+    moray_json_close(json);
+    json_simulation(json, &run->simulation);
+    moray_status status = moray_json_write(json, file);
+    moray_json_free(json);
+    return status;
+}
+
+// Time of one iteration over what grows.
+static moray_status draw_growth(const benchmark *run, const char *over, const char *name, const char *title)
+{
+    double size[MOST_GROWTHS][MOST_POINTS], ms[MOST_GROWTHS][MOST_POINTS];
+    moray_curve curves[MOST_GROWTHS];
+    int n = 0;
+    for (int i = 0; i < run->n_growths; i++) {
+        const growth *g = &run->growths[i];
+        if (strcmp(g->over, over) != 0)
+            continue;
+        for (int k = 0; k < g->n; k++) {
+            size[n][k] = g->size[k];
+            ms[n][k] = 1000 * (g->cost[k].total - g->cost[k].piece[SETUP]) / g->cost[k].iterations;
+        }
+        curves[n] = (moray_curve){.label = g->name, .x = size[n], .y = ms[n], .n = g->n, .style = MORAY_CURVE_MARKED};
+        n++;
+    }
+    if (n == 0)
+        return moray_ok();
+    return moray_output_figure(run->common.output, &(moray_figure){.name = name,
+                                                                   .title = title,
+                                                                   .x_label = over,
+                                                                   .y_label = "processor time [ms]",
+                                                                   .log_x = true,
+                                                                   .log_y = true,
+                                                                   .curves = curves,
+                                                                   .n_curves = n});
+}
+
+moray_status benchmark_files(const benchmark *run)
+{
+    FILE *file;
+    MORAY_TRY(moray_output_file(run->common.output, "summary.json", &file));
+    MORAY_TRY(benchmark_json(run, file));
+    MORAY_TRY(draw_growth(run, "intervals", "growth_intervals", "One iteration, over intervals"));
+    MORAY_TRY(draw_growth(run, "links", "growth_links", "One iteration, over links"));
+    return moray_output_commit(run->common.output);
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+//
+// What the programs that optimise one gait share: options, both stages of the optimisation, proof and report.
+#ifndef PROBLEMS_GAIT_JOB_JOB_H
+#define PROBLEMS_GAIT_JOB_JOB_H
+
+#include <math.h>
+
+#include "moray/moray.h"
+#include "moray/snake.h"
+
+#define DEG (M_PI / 180)
+
+typedef struct gait_job gait_job;
+
+// One optimisation: the problem on one model, its best solution, and what the gait is worth when it is swum.
+typedef struct stage {
+    moray_model model;
+    double power; // limit of the mean joint power [W], or infinite
+    double speed; // least speed along the course [m/s], or 0
+    double taper[2];
+    double link_angle; // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
+    moray_gait_problem *problem;
+    moray_solution *solution, *from; // from: of --continue, where it is of this stage
+    int starts, agreeing;            // how many, and how many of them ended at the best solution
+    moray_certificate certificate;
+    moray_gait_prediction prediction;
+    moray_gait_trial trial;
+    moray_gait_gain gain; // over the paper's gait
+} stage;
+
+struct gait_job {
+    moray_common common; // model fp: both stages, control-oriented first; control: that alone
+    const char *name;    // of the program
+    moray_gait_goal goal;
+    double theta_max[2], omega[2], delta[2], offset[2], offset_angle[2], taper[2];
+    double power, speed; // NaN: what the paper's gait uses and makes
+    double joint_rate, joint_effort;
+    moray_joints joints;
+    int random_starts, refinements;  // refinements: finer meshes tried where the first does not pass the certificate
+    char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
+    moray_test_rig rig;
+    moray_gait_trial paper;
+    stage stage[2]; // by model
+    moray_ticker ticker;
+};
+
+static inline const stage *last_stage(const gait_job *job)
+{
+    return &job->stage[job->common.model];
+}
+
+#define GAIT_RANGE(name, field, low, high, in, text)                                                                   \
+    {                                                                                                                  \
+        .section = "problem", .key = name, .type = MORAY_OPTION_RANGE, MORAY_AT(gait_job, field), .min = low,          \
+        .max = high, .unit = in, .help = text                                                                          \
+    }
+#define GAIT_LIMIT(name, field, in, text)                                                                              \
+    {                                                                                                                  \
+        .section = "problem", .key = name, .type = MORAY_OPTION_LIMIT, MORAY_AT(gait_job, field), .min = 0,            \
+        .max = INFINITY, .open = true, .unit = in, .help = text                                                        \
+    }
+
+// What makes a program of this: its goal, its own options besides those of every gait job, its defaults in the job. And
+// where it does not optimise, prove and report one gait: what it does, tells, whether all it found is certified, and
+// how what it holds besides is freed.
+typedef struct gait_program {
+    const char *name, *summary;
+    moray_gait_goal goal;
+    const moray_option *options;
+    int n_options;
+    double power, speed; // defaults
+    moray_status (*work)(gait_job *job);
+    moray_status (*report)(gait_job *job);
+    bool (*certified)(const gait_job *job);
+    void (*release)(gait_job *job);
+} gait_program;
+
+// The job with all its settings at their defaults.
+gait_job gait_job_defaults(const gait_program *program);
+
+// The whole program on a job, which may stand first in a larger struct, with its defaults; returns its exit code.
+int gait_job_main(const gait_program *program, gait_job *job, int argc, char **argv);
+
+// ---- Pieces --------------------------------------------------------------------------------------------------------
+
+// What a program without its own does: both stages, or one, optimised and proved. Error: those of the below.
+moray_status gait_job_work(gait_job *job);
+bool gait_job_certified(const gait_job *job);
+
+enum { GAIT_JOB_OPTIONS = 10 }; // of every gait job
+extern const moray_option gait_job_options[GAIT_JOB_OPTIONS];
+
+// Swims the paper's gait. Error: that of moray_scheme_parse, moray_test_rig_new or moray_gait_trial_run.
+moray_status gait_job_prepare(gait_job *job);
+
+// What a program without own work does: swims the paper's gait, then optimises, certifies and proves the
+// control-oriented stage and, with the model fp, from there the other. Error: those of the pieces.
+moray_status gait_job_work(gait_job *job);
+
+// Sets model, power and speed of a stage. Error: MORAY_NOT_SOLVED where the paper's gait, which makes the default
+// speed, fails.
+moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at);
+
+void gait_job_stage_free(stage *at);
+void gait_job_free(gait_job *job);
+
+// Known gaits of a model to start from.
+typedef struct gait_starts {
+    moray_gait gait[2];
+    int n;
+} gait_starts;
+
+// The problem of at->model with the limits of job and at.
+moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
+                                      const double current[2]);
+
+// Builds it. Error: those of moray_gait_problem_new.
+moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
+                              moray_gait_problem **problem);
+
+// How the job solves.
+moray_settings gait_job_settings(gait_job *job);
+
+// Solves from the steady orbit of the gait on the problem's model. Error: those of moray_swim_steady and moray_solve.
+moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
+                            moray_solution **solution);
+
+moray_settings gait_job_settings(gait_job *job); // of every solve
+
+// Keeps the better of a solution, which it takes over, and of what the stage has; counts how many agree.
+void gait_job_keep_best(stage *at, moray_solution *solution);
+
+// Solves from an orbit of the gait. Error: those of moray_solve.
+moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,
+                                 const moray_swim_track *orbit, moray_solution **solution);
+
+// Solves the stage's problem, which it makes if need be, from the gait of another stage of the same model, at the omega
+// that the stage's power lets expect, and keeps the better of that and what the stage has. Error: those of
+// gait_job_problem and gait_job_solve.
+moray_status gait_job_continue(gait_job *job, stage *at, const stage *from);
+
+moray_gait gait_job_random(const gait_job *job, const stage *at); // by drand48, within the limits of the gait
+
+// Certificate of a stage's solution. Error: those of moray_certify.
+moray_status gait_job_certify(gait_job *job, stage *at);
+
+// Swims the predicted gait on both models, and compares it with the paper's. Error: those of moray_gait_trial_run.
+moray_status gait_job_prove(gait_job *job, stage *at);
+
+// Problem, best solution from the starts and random ones, prediction and certificate of a stage whose model, power,
+// speed and taper are set. Error: MORAY_NOT_SOLVED saying why, MORAY_INTERRUPTED, and those of the above.
+moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known);
+
+// Parts of the summary: what the job is, "predicted" of what a solution predicts, and one stage.
+void gait_job_json_head(moray_json *json, const gait_job *job);
+void gait_job_json_prediction(moray_json *json, const moray_gait_prediction *prediction);
+void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at);
+
+// trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
+moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);
+
+// The summary; moray_json_free it.
+moray_json *gait_job_json(const gait_job *job);
+
+// Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
+moray_status gait_job_report(gait_job *job);
+
+#endif

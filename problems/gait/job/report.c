@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "job.h"
+
+static const char *const model_names[] = {"control-oriented", "first-principles"};
+
+// ---- In words ------------------------------------------------------------------------------------------------------
+
+enum { text_size = 1000 };
+
+static double percent(double value, double reference)
+{
+    const double change = 100 * (value / reference - 1);
+    return fabs(change) < 0.005 ? 0 : change; // no -0.00
+}
+
+// "at the paper gait's power there (0.2646 W) it is 4.03 % faster" and "at its speed ... it needs 7.65 % less power",
+// the first with "than the paper's gait" behind it.
+static int say_gain(const gait_job *job, const moray_gait_gain *gain, bool speed, bool first, char *text, size_t size)
+{
+    const moray_steady *there = &job->paper.steady[MORAY_FIRST_PRINCIPLES];
+    const char *whose = first ? "the paper gait's" : "its", *than = first ? " than the paper's gait" : "";
+    const double faster = gain->speed_percent_at_equal_power, more = gain->power_percent_at_equal_speed;
+    if (speed)
+        return snprintf(text, size, "at %s power%s (%.4f W) it is %.2f %% %s%s", whose, first ? " there" : "",
+                        there->power, fabs(faster), faster < 0 ? "slower" : "faster", than);
+    return snprintf(text, size, "at %s speed%s (%.4f m/s) it needs %.2f %% %s power%s", whose, first ? " there" : "",
+                    there->speed, fabs(more), more < 0 ? "less" : "more", than);
+}
+
+// The gain on the first-principles model, first that which the goal is about, and beside it what the model of the stage
+// predicts.
+static void verdict(const gait_job *job, const stage *at, char *text)
+{
+    const bool fastest = job->goal == MORAY_GAIT_FASTEST;
+    const double faster = at->gain.speed_percent_at_equal_power, less = -at->gain.power_percent_at_equal_speed;
+    const double gain = fastest ? faster : less, other = fastest ? less : faster;
+    const moray_steady *here = &job->paper.steady[at->model];
+    if (isnan(gain)) {
+        snprintf(text, text_size, "The %s optimum: no comparison at equal %s on the first-principles model: %.250s",
+                 model_names[at->model], fastest ? "power" : "speed",
+                 fastest ? at->gain.why_no_speed.text : at->gain.why_no_power.text);
+        return;
+    }
+    const char *outcome = gain < -0.05 ? "LOSES" : gain > 0.05 ? "wins" : "neither wins nor loses";
+    int used =
+        snprintf(text, text_size, "The %s optimum %s on the first-principles model: ", model_names[at->model], outcome);
+    used += say_gain(job, &at->gain, fastest, true, text + used, (size_t)(text_size - used));
+    if (!isnan(other)) {
+        used += snprintf(text + used, (size_t)(text_size - used), ", ");
+        used += say_gain(job, &at->gain, !fastest, false, text + used, (size_t)(text_size - used));
+    }
+    snprintf(text + used, (size_t)(text_size - used),
+             ". The %s model itself predicted %+.2f %% speed for %+.2f %% power.", model_names[at->model],
+             percent(at->prediction.speed, here->speed), percent(at->prediction.power, here->power));
+}
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+enum { tables = 3 };
+
+struct tables {
+    moray_table table[tables];
+    moray_table_row rows[tables][MORAY_TRIAL_ROWS];
+};
+
+static void make_tables(const gait_job *job, struct tables *t)
+{
+    const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
+    const int columns = 2 + (int)job->common.model;
+    const double course = job->common.course;
+    const int rows[tables] = {
+        moray_gait_rows(&job->common.robot, trials, columns, t->rows[0]),
+        moray_steady_rows(MORAY_CONTROL_ORIENTED, trials, columns, course, t->rows[1]),
+        moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, course, t->rows[2]),
+    };
+    const char *const titles[tables] = {"Gait", "Swum on the control-oriented model",
+                                        "Swum on the first-principles model"};
+    for (int k = 0; k < tables; k++)
+        t->table[k] = (moray_table){.title = titles[k],
+                                    .columns = {"paper's", "control opt.", "first-pr. opt."},
+                                    .n_columns = columns,
+                                    .rows = t->rows[k],
+                                    .n_rows = rows[k]};
+}
+
+// "; WHAT 1 UNIT (control-oriented model) and 2 UNIT (first-principles model)"
+static void print_demand(const gait_job *job, const char *what, double control, double revolute, const char *unit)
+{
+    printf("; %s %.4g %s (%s model)", what, control, unit, model_names[MORAY_CONTROL_ORIENTED]);
+    if (job->common.model == MORAY_FIRST_PRINCIPLES)
+        printf(" and %.4g %s (%s model)", revolute, unit, model_names[MORAY_FIRST_PRINCIPLES]);
+}
+
+static void print_demands(const gait_job *job)
+{
+    const stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
+    printf("%d links, current (%g, %g) m/s, course %g deg", job->common.robot.links, job->common.current[0],
+           job->common.current[1], job->common.course / DEG);
+    if (isfinite(control->power))
+        print_demand(job, "mean joint power at most", control->power, revolute->power, "W");
+    if (control->speed > 0)
+        print_demand(job, "speed along the course at least", control->speed, revolute->speed, "m/s");
+    printf("\n\n");
+}
+
+static void print_tables(const gait_job *job)
+{
+    char text[text_size];
+    struct tables t;
+    print_demands(job);
+    make_tables(job, &t);
+    for (int k = 0; k < tables; k++) {
+        moray_table_print(&t.table[k], stdout);
+        printf("\n");
+    }
+    for (int model = 0; model <= (int)job->common.model; model++) {
+        verdict(job, &job->stage[model], text);
+        printf("%s\n\n", text);
+    }
+    for (int model = 0; model <= (int)job->common.model; model++) {
+        const stage *at = &job->stage[model];
+        moray_solver_line(at->solution, job->common.scheme, job->common.intervals, text, text_size);
+        printf("%s model, %s; %d of %d starts end here, none better\n", model_names[model], text, at->agreeing,
+               at->starts);
+        moray_certificate_line(&at->certificate, text, text_size);
+        printf("    %s\n", text);
+    }
+}
+
+// ---- Files ---------------------------------------------------------------------------------------------------------
+
+enum { samples = 201 };
+
+// The optimal orbit over one period: time, states, joint coordinates of (25).
+moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output)
+{
+    const bool control = at->model == MORAY_CONTROL_ORIENTED;
+    const char *const names[2][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
+                                     {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
+    const char *const units[] = {"rad", "m", "m", "rad/s", "m/s", "m/s"};
+    const int joints = job->common.robot.links - 1, full = job->joints == MORAY_JOINTS_ON_GAIT ? 0 : joints;
+    const int width = 1 + 6 + joints, states = 6 + 2 * full;
+    FILE *file;
+    MORAY_TRY(moray_output_file(output, "trajectory.csv", &file));
+    double *data = calloc((size_t)(samples * width + states + 3 * joints), sizeof *data);
+    moray_column *columns = calloc((size_t)width, sizeof *columns);
+    char(*joint_names)[16] = calloc((size_t)joints, sizeof *joint_names);
+    moray_status status = data && columns && joint_names ? moray_ok() : moray_error(MORAY_MEMORY, "no memory");
+    double t0, tf, *x = data + samples * width, *phi = x + states;
+    moray_solution_times(at->solution, 0, &t0, &tf);
+    for (int k = 0; k < samples && !moray_failed(status); k++) {
+        double *row = data + k * width;
+        row[0] = t0 + (tf - t0) * k / (samples - 1);
+        moray_solution_at(at->solution, 0, row[0], x, NULL);
+        memcpy(row + 1, x + full, 3 * sizeof *row);
+        memcpy(row + 4, x + states - 3, 3 * sizeof *row);
+        moray_gait_reference(&at->prediction.gait, joints, row[0], phi, phi + joints, phi + 2 * joints);
+        memcpy(row + 7, phi, (size_t)joints * sizeof *row);
+    }
+    for (int j = 0; j < width && !moray_failed(status); j++) {
+        if (j > 6)
+            snprintf(joint_names[j - 7], sizeof *joint_names, "phi_%d", j - 6);
+        columns[j] = (moray_column){.name = j == 0   ? "t"
+                                            : j <= 6 ? names[!control][j - 1]
+                                                     : joint_names[j - 7],
+                                    .unit = j == 0    ? "s"
+                                            : j <= 6  ? units[j - 1]
+                                            : control ? "m"
+                                                      : "rad",
+                                    .values = data + j,
+                                    .stride = width};
+    }
+    if (!moray_failed(status))
+        moray_csv_write(file, columns, width, samples);
+    free(joint_names);
+    free(columns);
+    free(data);
+    return status;
+}
+
+// Speed along the course from rest, every gait on both models: what the reader wants to see of the proof.
+static moray_status draw_start(const gait_job *job, moray_output *output)
+{
+    enum { points = 301, most = 6 };
+    const double horizon = 15;
+    const char *const labels[most] = {
+        "paper's gait, control-oriented model",      "control optimum, control-oriented model",
+        "first-pr. optimum, control-oriented model", "paper's gait, first-principles model",
+        "control optimum, first-principles model",   "first-pr. optimum, first-principles model"};
+    const int gaits = 2 + (int)job->common.model;
+    const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
+    double *data = calloc((most + 1) * points, sizeof *data), *time = data + most * points;
+    moray_curve curves[most];
+    moray_status status = data ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a figure");
+    int n = 0;
+    for (int model = 0; model < 2; model++)
+        for (int k = 0; k < gaits && !moray_failed(status); k++, n++) {
+            double *speed = data + n * points;
+            status = moray_gait_trial_speeds(&job->rig, trials[k], (moray_model)model, horizon, points, time, speed);
+            curves[n] = (moray_curve){.label = labels[3 * model + k], .x = time, .y = speed, .n = points};
+        }
+    const moray_figure figure = {.name = "start",
+                                 .title = "From rest: speed along the course, mean over the last period",
+                                 .x_label = "time [s]",
+                                 .y_label = "speed along the course [m/s]",
+                                 .curves = curves,
+                                 .n_curves = n};
+    if (!moray_failed(status))
+        status = moray_output_figure(output, &figure);
+    free(data);
+    return status;
+}
+
+static moray_status write_files(const gait_job *job, const moray_json *json)
+{
+    moray_output *output = job->common.output;
+    char text[text_size];
+    struct tables t;
+    FILE *file;
+    MORAY_TRY(moray_output_file(output, "summary.json", &file));
+    MORAY_TRY(moray_json_write(json, file));
+    MORAY_TRY(gait_job_trajectory(job, last_stage(job), output));
+    moray_status figure = draw_start(job, output);
+    if (moray_failed(figure) && !job->common.quiet)
+        fprintf(stderr, "%s: no figure: %s\n", job->name, figure.text);
+    verdict(job, last_stage(job), text);
+    make_tables(job, &t);
+    const moray_report report = {.title = job->name,
+                                 .text = text,
+                                 .tables = t.table,
+                                 .n_tables = tables,
+                                 .argc = job->common.argc,
+                                 .argv = job->common.argv};
+    MORAY_TRY(moray_output_report(output, &report));
+    return moray_output_commit(output);
+}
+
+moray_status gait_job_report(gait_job *job)
+{
+    moray_json *json = gait_job_json(job);
+    moray_status status = job->common.output ? write_files(job, json) : moray_ok();
+    if (!moray_failed(status) && job->common.json)
+        status = moray_json_write(json, stdout);
+    else if (!moray_failed(status))
+        print_tables(job);
+    moray_json_free(json);
+    return status;
+}

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+#include <stdlib.h>
+
+#include "job.h"
+
+static double limit(double value)
+{
+    return isfinite(value) ? value : MORAY_INFINITY;
+}
+
+// The joints' own limits and form are those of --model.
+moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
+                                      const double current[2])
+{
+    const bool revolute = at->model == MORAY_FIRST_PRINCIPLES, own = at->model == job->common.model;
+    const double *offset = revolute ? job->offset_angle : job->offset;
+    const double theta_max = at->link_angle > 0 ? at->link_angle : job->theta_max[1];
+    return (moray_gait_problem_spec){
+        .robot = job->common.robot,
+        .model = at->model,
+        .goal = goal,
+        .joints = own ? job->joints : MORAY_JOINTS_ON_GAIT,
+        .current = {current[0], current[1]},
+        .course = job->common.course,
+        .limits = {.theta_max = moray_between(job->theta_max[0], theta_max),
+                   .link_angles = at->link_angle > 0,
+                   .omega = moray_between(job->omega[0], job->omega[1]),
+                   .delta = moray_between(job->delta[0], job->delta[1]),
+                   .offset = moray_between(offset[0], offset[1]),
+                   .taper = moray_between(at->taper[0], at->taper[1]),
+                   .power = limit(at->power),
+                   .joint_rate = own ? limit(job->joint_rate * (revolute ? DEG : 1)) : MORAY_INFINITY,
+                   .joint_effort = own ? limit(job->joint_effort) : MORAY_INFINITY,
+                   .course_speed = goal == MORAY_GAIT_THRIFTIEST ? at->speed : 0}};
+}
+
+moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
+                              moray_gait_problem **problem)
+{
+    const moray_gait_problem_spec spec = gait_job_spec(job, at, goal, current);
+    return moray_gait_problem_new(problem, &spec);
+}
+
+// ---- Solving -------------------------------------------------------------------------------------------------------
+
+static bool show_iteration(void *observer, const moray_progress *at)
+{
+    const gait_job *job = observer;
+    const bool fastest = job->goal == MORAY_GAIT_FASTEST;
+    moray_ticker_show(&job->ticker, "%s: iteration %d, %.5f %s, violation %.1e%s", job->name, at->iteration,
+                      fastest ? -at->objective : at->objective, fastest ? "m/s" : "J/m", at->infeasibility,
+                      at->restoring ? " (restoring feasibility)" : "");
+    return !moray_interrupted();
+}
+
+moray_settings gait_job_settings(gait_job *job)
+{
+    return (moray_settings){.scheme = job->common.scheme,
+                            .intervals = job->common.intervals,
+                            .tolerance = job->common.tol,
+                            .linear_solver = job->common.linear_solver,
+                            .mesh_tolerance = 1e-6,
+                            .max_refinements = job->refinements,
+                            .max_iterations = 1000,
+                            .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
+                            .own_scaling = true,
+                            .progress = show_iteration,
+                            .observer = job};
+}
+
+moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *problem, const moray_gait *gait,
+                                 const moray_swim_track *orbit, moray_solution **solution)
+{
+    const moray_settings settings = gait_job_settings(job);
+    return moray_gait_problem_solve(problem, &settings, gait, orbit, solution);
+}
+
+// The orbit is swum straight along the course where the gait cannot hold it.
+moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
+                            moray_solution **solution)
+{
+    const moray_swim_setup setup = moray_test_rig_setup(&job->rig, at->model);
+    moray_steady steady;
+    moray_swim_track orbit = {0};
+    moray_status status = moray_swim_hold_course(&setup, gait, job->common.course, &steady);
+    const double heading = moray_failed(status) ? job->common.course : steady.start_heading;
+    status = moray_swim_steady(&setup, gait, heading, &steady, &orbit, 101);
+    if (!moray_failed(status))
+        status = gait_job_solve_from(job, problem, gait, &orbit, solution);
+    moray_swim_track_free(&orbit);
+    return status;
+}
+
+static double uniform(double low, double high)
+{
+    return low + (high - low) * drand48();
+}
+
+moray_gait gait_job_random(const gait_job *job, const stage *at)
+{
+    const double theta_max = uniform(job->theta_max[0], job->theta_max[1]);
+    moray_gait gait = {.omega = uniform(job->omega[0], job->omega[1]), .delta = uniform(job->delta[0], job->delta[1])};
+    gait.amplitude = moray_amplitude_from_theta_max(&job->common.robot, at->model, theta_max, gait.delta);
+    if (at->taper[0] < at->taper[1])
+        gait.taper = uniform(at->taper[0], at->taper[1]);
+    return gait;
+}
+
+// The gait with a taper that is allowed, its largest joint amplitude as before.
+static moray_gait tapered(const stage *at, moray_gait gait)
+{
+    const double before = 1 + fabs(gait.taper);
+    gait.taper = fmin(fmax(gait.taper, at->taper[0]), at->taper[1]);
+    gait.amplitude *= before / (1 + fabs(gait.taper));
+    return gait;
+}
+
+static bool solved(const moray_solution *solution)
+{
+    return moray_solution_info(solution)->outcome == MORAY_NLP_SOLVED;
+}
+
+// Whether `one` is a better end than `other`: solved, then by objective.
+static bool better(const moray_solution *one, const moray_solution *other)
+{
+    if (!other || solved(one) != solved(other))
+        return !other || solved(one);
+    return moray_solution_objective(one) < moray_solution_objective(other);
+}
+
+void gait_job_keep_best(stage *at, moray_solution *solution)
+{
+    const double same = 1e-6;
+    const bool level = at->solution && solved(solution) && solved(at->solution) &&
+                       fabs(moray_solution_objective(solution) - moray_solution_objective(at->solution)) < same;
+    const bool takes_over = better(solution, at->solution);
+    at->agreeing = level ? at->agreeing + 1 : takes_over ? 1 : at->agreeing;
+    moray_solution_free(takes_over ? at->solution : solution);
+    if (takes_over)
+        at->solution = solution;
+}
+
+// At constant shape the power grows with about the square of omega, a little faster.
+moray_status gait_job_continue(gait_job *job, stage *at, const stage *from)
+{
+    const double exponent = 0.45, share = at->power / from->prediction.power;
+    moray_gait gait = tapered(at, from->prediction.gait);
+    moray_solution *solution = NULL;
+    if (isfinite(share))
+        gait.omega = fmin(fmax(gait.omega * pow(share, exponent), job->omega[0]), job->omega[1]);
+    if (!at->problem)
+        MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
+    MORAY_TRY(gait_job_solve(job, at, at->problem, &gait, &solution));
+    gait_job_keep_best(at, solution);
+    at->prediction = moray_gait_problem_prediction(at->problem, at->solution);
+    return moray_ok();
+}
+
+// The solution of --continue, if it is of this stage; it must be of one of them.
+static moray_status load(const gait_job *job, stage *at)
+{
+    if (!job->from_file[0] || job->stage[MORAY_CONTROL_ORIENTED].from)
+        return moray_ok();
+    const moray_status status =
+        moray_solution_load(&at->from, moray_gait_problem_ocp(at->problem), NULL, job->from_file);
+    return at->model < job->common.model && status.code == MORAY_INPUT ? moray_ok() : status;
+}
+
+static moray_status solve_continued(gait_job *job, stage *at)
+{
+    const moray_settings settings = gait_job_settings(job);
+    const moray_guess guess = moray_guess_from_solution(at->from);
+    moray_solution *solution = NULL;
+    MORAY_TRY(moray_solve(moray_gait_problem_ocp(at->problem), &settings, &guess, &solution));
+    gait_job_keep_best(at, solution);
+    return moray_ok();
+}
+
+// From --continue or the known gaits, then, on the model asked for, from random ones.
+static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known)
+{
+    const int random = at->model == job->common.model ? job->random_starts : 0;
+    const int first = at->from ? known->n : 0;
+    srand48(1);
+    at->starts = (at->from ? 1 : known->n) + random;
+    if (at->from)
+        MORAY_TRY(solve_continued(job, at));
+    for (int k = first; k < known->n + random && !moray_interrupted(); k++) {
+        const moray_gait gait = tapered(at, k < known->n ? known->gait[k] : gait_job_random(job, at));
+        moray_solution *solution = NULL;
+        moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
+        if (!moray_failed(status))
+            gait_job_keep_best(at, solution);
+        else if (k == 0)
+            return status;
+    }
+    return moray_ok();
+}
+
+// ---- Explaining ----------------------------------------------------------------------------------------------------
+
+// What the fastest gait within the same limits makes; speeds are NaN when that cannot be found either.
+static moray_gait_prediction fastest(gait_job *job, const stage *at, const double current[2])
+{
+    moray_gait_problem *problem = NULL;
+    moray_solution *solution = NULL;
+    moray_gait_prediction prediction = {.speed = NAN, .course_speed = NAN};
+    if (!moray_failed(gait_job_problem(job, at, MORAY_GAIT_FASTEST, current, &problem)) &&
+        !moray_failed(gait_job_solve(job, at, problem, &job->paper.gait[at->model], &solution)) && solved(solution))
+        prediction = moray_gait_problem_prediction(problem, solution);
+    moray_solution_free(solution);
+    moray_gait_problem_free(problem);
+    return prediction;
+}
+
+// Why there is no gait that makes way.
+static moray_status explain_no_way(gait_job *job, const stage *at)
+{
+    const double *V = job->common.current, c = cos(job->common.course), s = sin(job->common.course);
+    const double along = V[0] * c + V[1] * s, across = fabs(V[1] * c - V[0] * s), still[2] = {0, 0};
+    const double U = V[0] != 0 || V[1] != 0 ? fastest(job, at, still).speed : NAN;
+    if (across >= U)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "current = %g,%g: the robot cannot stem it: %.4f m/s of it run across the course, and "
+                           "within the limits the robot swims %.4f m/s at most",
+                           V[0], V[1], across, U);
+    if (sqrt(U * U - across * across) + along <= 0)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "current = %g,%g: the robot cannot stem it: %.4f m/s of it run against the course, and "
+                           "within the limits the robot makes %.4f m/s along it at most",
+                           V[0], V[1], -along, sqrt(U * U - across * across));
+    return moray_error(MORAY_NOT_SOLVED, "%.280s", moray_solution_diagnosis(at->solution));
+}
+
+static moray_status explain_failure(gait_job *job, const stage *at)
+{
+    if (at->speed > 0) {
+        const double most = fastest(job, at, job->common.current).course_speed;
+        if (most > 0 && most < at->speed)
+            return moray_error(MORAY_NOT_SOLVED,
+                               "speed_m_s = %g: within the limits the robot makes %.4f m/s along the course at most",
+                               at->speed, most);
+    }
+    return explain_no_way(job, at);
+}
+
+moray_status gait_job_certify(gait_job *job, stage *at)
+{
+    const moray_integrator integrator = moray_sim_integrator(&job->rig.settings.sim);
+    return moray_certify(at->solution, &integrator, &at->certificate);
+}
+
+moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known)
+{
+    MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
+    MORAY_TRY(load(job, at));
+    MORAY_TRY(solve_all(job, at, known));
+    if (moray_interrupted())
+        return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");
+    at->prediction = moray_gait_problem_prediction(at->problem, at->solution);
+    if (!solved(at->solution) || at->prediction.course_speed <= 0)
+        return explain_failure(job, at);
+    return gait_job_certify(job, at);
+}

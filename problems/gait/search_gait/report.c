@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include <stdlib.h>
+
+#include "search_gait.h"
+
+static const char *const model_names[] = {"control-oriented", "first-principles"};
+enum { TEXT = 1000 };
+
+static double value_of(const search_gait *run, const optimum *o)
+{
+    return search_gait_value(run, moray_course_speed(&o->orbit.steady, run->spec.course), o->orbit.steady.power);
+}
+
+static double polished_value(const search_gait *run, const optimum *o)
+{
+    return search_gait_value(run, o->at.prediction.course_speed, o->at.prediction.power);
+}
+
+static const char *unit_of(const search_gait *run)
+{
+    return search_gait_fastest(run) ? "m/s" : "J/m";
+}
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+enum { TABLES = 3, ROWS = 10 };
+
+struct tables {
+    moray_table table[TABLES];
+    moray_table_row rows[TABLES][ROWS];
+};
+
+// The columns of the optima; the paper's gait, the first column, has been through no search.
+static int search_rows(const search_gait *run, moray_table_row *rows)
+{
+    const bool fastest = search_gait_fastest(run), control = run->spec.model == MORAY_CONTROL_ORIENTED;
+    const char *const labels[][2] = {{fastest ? "speed along the course" : "joint work per distance", unit_of(run)},
+                                     {"the same, polished by collocation", unit_of(run)},
+                                     {"difference", unit_of(run)},
+                                     {"mean joint power", "W"},
+                                     {control ? "peak joint force" : "peak joint torque", control ? "N" : "N m"},
+                                     {"largest Floquet multiplier", NULL},
+                                     {"starts that end here", NULL},
+                                     {"global search ends here", NULL},
+                                     {"faster than the paper's gait at its power", "%"}};
+    enum { count = sizeof labels / sizeof *labels };
+    for (int i = 0; i < count; i++)
+        rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1], .value = {NAN}};
+    for (int k = 0; k < run->shown; k++) {
+        const optimum *o = &run->optimum[k];
+        const double values[count] = {value_of(run, o),
+                                      polished_value(run, o),
+                                      polished_value(run, o) - value_of(run, o),
+                                      o->orbit.steady.power,
+                                      o->orbit.steady.peak_effort,
+                                      o->floquet.largest,
+                                      o->hits,
+                                      run->global_method > 0 ? o->global : NAN,
+                                      o->at.gain.speed_percent_at_equal_power};
+        for (int i = 0; i < count; i++)
+            rows[i].value[k + 1] = values[i];
+    }
+    return count;
+}
+
+static void make_tables(const search_gait *run, struct tables *t)
+{
+    const moray_gait_trial *trials[1 + SEARCH_GAIT_SHOWN] = {&run->job.paper};
+    for (int k = 0; k < run->shown; k++)
+        trials[k + 1] = &run->optimum[k].at.trial;
+    const int columns = 1 + run->shown;
+    const int rows[TABLES] = {
+        moray_gait_rows(&run->spec.robot, trials, columns, t->rows[0]),
+        search_rows(run, t->rows[1]),
+        moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, run->spec.course, t->rows[2]),
+    };
+    const char *const titles[TABLES] = {"Gait", "Found", "Swum on the first-principles model"};
+    for (int k = 0; k < TABLES; k++)
+        t->table[k] =
+            (moray_table){.title = titles[k],
+                          .columns = {"paper's", "optimum 1", "optimum 2", "optimum 3", "optimum 4", "optimum 5"},
+                          .n_columns = columns,
+                          .rows = t->rows[k],
+                          .n_rows = rows[k]};
+}
+
+// ---- In words ------------------------------------------------------------------------------------------------------
+
+static void say_demand(const search_gait *run, char *text)
+{
+    const moray_common *common = &run->job.common;
+    int used = snprintf(text, TEXT, "%d links, current (%g, %g) m/s, course %g deg; %s model", common->robot.links,
+                        common->current[0], common->current[1], common->course / DEG, model_names[common->model]);
+    if (isfinite(run->demand.power))
+        used += snprintf(text + used, (size_t)(TEXT - used), ", mean joint power at most %.4g W", run->demand.power);
+    if (run->demand.speed > 0)
+        snprintf(text + used, (size_t)(TEXT - used), ", speed along the course at least %.4g m/s", run->demand.speed);
+}
+
+static int optimum_of_global(const search_gait *run)
+{
+    for (int k = 0; k < run->n; k++)
+        if (run->optimum[k].global)
+            return k + 1;
+    return 0;
+}
+
+static void say_found(const search_gait *run, char *text)
+{
+    int used =
+        snprintf(text, TEXT, "%d %s from %d starts (%s: %d orbits, %.1f s)", run->n, run->n == 1 ? "optimum" : "optima",
+                 run->starts, search_gait_locals[run->local_method], run->orbits, run->seconds);
+    if (run->n > run->shown)
+        used += snprintf(text + used, (size_t)(TEXT - used), ", the best %d shown", run->shown);
+    if (run->lost > 0)
+        used +=
+            snprintf(text + used, (size_t)(TEXT - used), "; %d starts lead to no gait within the limits", run->lost);
+    if (run->global_method > 0 && optimum_of_global(run) > 0)
+        used += snprintf(text + used, (size_t)(TEXT - used), "; %s (%d orbits, %.1f s) leads to optimum %d",
+                         search_gait_globals[run->global_method], run->global.evaluations, run->global.seconds,
+                         optimum_of_global(run));
+    else if (run->global_method > 0)
+        used += snprintf(text + used, (size_t)(TEXT - used), "; %s (%d orbits, %.1f s) leads to none",
+                         search_gait_globals[run->global_method], run->global.evaluations, run->global.seconds);
+    snprintf(text + used, (size_t)(TEXT - used), ".");
+}
+
+static double largest_difference(const search_gait *run)
+{
+    double most = 0;
+    for (int k = 0; k < run->shown; k++)
+        most = fmax(most, fabs(polished_value(run, &run->optimum[k]) - value_of(run, &run->optimum[k])));
+    return most;
+}
+
+static void say_certificates(const search_gait *run, char *text)
+{
+    int passed = 0;
+    for (int k = 0; k < run->shown; k++)
+        passed += run->optimum[k].at.certificate.pass;
+    snprintf(text, TEXT,
+             "Search over orbits and collocation differ by at most %.1e %s. Certificates of the collocation: %d of %d "
+             "pass.",
+             largest_difference(run), unit_of(run), passed, run->shown);
+}
+
+static void print_tables(const search_gait *run)
+{
+    char text[TEXT];
+    struct tables t;
+    say_demand(run, text);
+    printf("%s\n\n", text);
+    make_tables(run, &t);
+    for (int k = 0; k < TABLES; k++) {
+        moray_table_print(&t.table[k], stdout);
+        printf("\n");
+    }
+    say_found(run, text);
+    printf("%s\n", text);
+    say_certificates(run, text);
+    printf("%s\n", text);
+}
+
+// ---- JSON ----------------------------------------------------------------------------------------------------------
+
+static void json_optimum(moray_json *json, const search_gait *run, const optimum *o)
+{
+    moray_json_open(json, NULL);
+    moray_json_number(json, "starts_that_end_here", o->hits);
+    moray_json_bool(json, "global_ends_here", o->global);
+    moray_json_open(json, "search");
+    moray_json_number(json, "course_speed_m_s", moray_course_speed(&o->orbit.steady, run->spec.course));
+    moray_json_number(json, "power_W", o->orbit.steady.power);
+    moray_json_number(json, "value", value_of(run, o));
+    moray_json_number(json, "difference_to_collocation", polished_value(run, o) - value_of(run, o));
+    moray_json_number(json, "largest_multiplier", o->floquet.largest);
+    moray_json_bool(json, "stable", o->floquet.stable);
+    moray_json_close(json);
+    gait_job_json_stage(json, &run->job, &o->at);
+    moray_json_close(json);
+}
+
+static void json_found(moray_json *json, const search_gait *run)
+{
+    moray_json_open(json, "search");
+    moray_json_text(json, "goal", search_gait_fastest(run) ? "speed" : "economy");
+    moray_json_text(json, "local", search_gait_locals[run->local_method]);
+    moray_json_number(json, "starts", run->starts);
+    moray_json_number(json, "starts_lost", run->lost);
+    moray_json_number(json, "optima", run->n);
+    moray_json_number(json, "orbits", run->orbits);
+    moray_json_number(json, "time_s", run->seconds);
+    moray_json_text(json, "global", search_gait_globals[run->global_method]);
+    moray_json_number(json, "global_orbits", run->global.evaluations);
+    moray_json_number(json, "global_time_s", run->global.seconds);
+    moray_json_number(json, "largest_difference", largest_difference(run));
+    moray_json_close(json);
+}
+
+static moray_json *make_json(const search_gait *run)
+{
+    moray_json *json = moray_json_new();
+    gait_job_json_head(json, &run->job);
+    json_found(json, run);
+    moray_json_open_list(json, "optimum");
+    for (int k = 0; k < run->shown; k++)
+        json_optimum(json, run, &run->optimum[k]);
+    moray_json_close(json);
+    moray_json_open(json, "baseline");
+    moray_gait_to_json(json, "gait", &run->spec.robot, run->job.paper.gait);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &run->job.paper, run->spec.course);
+    moray_json_close(json);
+    return json;
+}
+
+// ---- Files ---------------------------------------------------------------------------------------------------------
+
+static moray_status draw_ridge(search_gait *run, moray_output *output)
+{
+    double delta[SEARCH_GAIT_RIDGE], value[SEARCH_GAIT_RIDGE], at[SEARCH_GAIT_SHOWN], best[SEARCH_GAIT_SHOWN];
+    MORAY_TRY(search_gait_ridge(run, delta, value));
+    for (int k = 0; k < run->shown; k++) {
+        at[k] = run->optimum[k].gait.delta / DEG;
+        best[k] = value_of(run, &run->optimum[k]);
+    }
+    const moray_curve curves[] = {
+        {.label = "best gait of each phase shift", .x = delta, .y = value, .n = SEARCH_GAIT_RIDGE},
+        {.label = "optima", .x = at, .y = best, .n = run->shown, .style = MORAY_CURVE_POINTS}};
+    const moray_figure figure = {.name = "ridge",
+                                 .title = "The ridge: best gait within the limits for each phase shift",
+                                 .x_label = "phase shift delta [deg]",
+                                 .y_label = search_gait_fastest(run) ? "speed along the course [m/s]"
+                                                                     : "joint work per distance [J/m]",
+                                 .curves = curves,
+                                 .n_curves = 2};
+    return moray_output_figure(output, &figure);
+}
+
+static moray_status write_files(search_gait *run, const moray_json *json)
+{
+    moray_output *output = run->job.common.output;
+    char text[2 * TEXT + 1], *end = text;
+    struct tables t;
+    FILE *file;
+    MORAY_TRY(moray_output_file(output, "summary.json", &file));
+    MORAY_TRY(moray_json_write(json, file));
+    MORAY_TRY(gait_job_trajectory(&run->job, &run->optimum[0].at, output));
+    const moray_status figure = draw_ridge(run, output);
+    if (figure.code == MORAY_INTERRUPTED)
+        return figure;
+    if (moray_failed(figure) && !run->job.common.quiet)
+        fprintf(stderr, "search_gait: no figure: %s\n", figure.text);
+    say_found(run, text);
+    while (*end)
+        end++;
+    *end++ = ' ';
+    say_certificates(run, end);
+    make_tables(run, &t);
+    const moray_report report = {.title = "search_gait",
+                                 .text = text,
+                                 .tables = t.table,
+                                 .n_tables = TABLES,
+                                 .argc = run->job.common.argc,
+                                 .argv = run->job.common.argv};
+    MORAY_TRY(moray_output_report(output, &report));
+    return moray_output_commit(output);
+}
+
+moray_status search_gait_report(search_gait *run)
+{
+    moray_json *json = make_json(run);
+    moray_status status = run->job.common.output ? write_files(run, json) : moray_ok();
+    moray_ticker_end(&run->job.ticker);
+    if (!moray_failed(status) && run->job.common.json)
+        status = moray_json_write(json, stdout);
+    else if (!moray_failed(status))
+        print_tables(run);
+    moray_json_free(json);
+    return status;
+}

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <string.h>
+
+#include "simulate.h"
+
+static const char *const model_names[] = {"control-oriented", "first-principles"};
+
+static bool is_control(const simulate *run)
+{
+    return run->common.model == MORAY_CONTROL_ORIENTED;
+}
+
+// ---- In words ------------------------------------------------------------------------------------------------------
+
+static void describe(const simulate *run, const simulate_results *results, char *text, size_t size)
+{
+    const moray_robot *robot = &run->common.robot;
+    const moray_gait *gait = simulate_last_gait(results);
+    const bool control = is_control(run);
+    const double theta_max =
+        moray_theta_max_from_amplitude(robot, run->common.model, gait->amplitude, gait->delta) / DEG;
+    char changes[60] = "", taper[40] = "";
+    if (results->n_changes > 1)
+        snprintf(changes, sizeof changes, "%d gaits, the last one from t = %g s: ", results->n_changes,
+                 results->schedule[results->n_changes - 1].t);
+    if (gait->taper != 0)
+        snprintf(taper, sizeof taper, ", taper %g", gait->taper);
+    snprintf(text, size,
+             "%d links, %s model, current (%g, %g) m/s. %stheta_max %.4g deg (%s = %.4g %s), omega %.4g deg/s, delta "
+             "%.4g deg, phi_0 %.4g %s%s.",
+             robot->links, model_names[run->common.model], run->common.current[0], run->common.current[1], changes,
+             theta_max, control ? "a" : "alpha", gait->amplitude * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
+             gait->omega / DEG, gait->delta / DEG, gait->offset * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
+             taper);
+}
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+enum { MEAN_ROWS = 10, RUN_ROWS = 8 };
+
+struct tables {
+    moray_table table[2];
+    moray_table_row mean[MEAN_ROWS], run[RUN_ROWS];
+    char title[120], integrator[60];
+};
+
+// Without the rounding errors of what is zero.
+static void tidy(moray_table_row *rows, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (fabs(rows[i].value[0]) < 1e-9)
+            rows[i].value[0] = 0;
+}
+
+static void fill_means(const simulate *run, const simulate_results *r, struct tables *t)
+{
+    const char *effort_unit = is_control(run) ? "N" : "N m";
+    const moray_table_row rows[MEAN_ROWS] = {
+        {.label = "mean velocity v_x", .value = {r->v_x}, .unit = "m/s"},
+        {.label = "mean velocity v_y", .value = {r->v_y}, .unit = "m/s"},
+        {.label = "speed through the water", .value = {r->speed}, .unit = "m/s"},
+        {.label = "speed along the course", .value = {r->course_speed}, .unit = "m/s"},
+        {.label = "mean joint power", .value = {r->power}, .unit = "W"},
+        {.label = "cost of transport", .value = {r->cost_of_transport}, .unit = "J/m"},
+        {.label = is_control(run) ? "peak joint force" : "peak joint torque",
+         .value = {r->peak_effort},
+         .unit = effort_unit},
+        {.label = "largest link angle from heading", .value = {r->peak_link_angle / DEG}, .unit = "deg"},
+        {.label = "mean heading", .value = {r->heading / DEG}, .unit = "deg"},
+        {.label = "peak effort of the whole run", .value = {r->peak_effort_of_run}, .unit = effort_unit},
+    };
+    memcpy(t->mean, rows, sizeof rows);
+    tidy(t->mean, MEAN_ROWS);
+    if (r->window.periods > 0)
+        snprintf(t->title, sizeof t->title, "Last %d period%s, %.5g s to %.5g s", r->window.periods,
+                 r->window.periods > 1 ? "s" : "", r->window.from, r->window.to);
+    else
+        snprintf(t->title, sizeof t->title, "%.5g s to %.5g s, less than a period of the last gait", r->window.from,
+                 r->window.to);
+    t->table[0] = (moray_table){.title = t->title, .n_columns = 1, .rows = t->mean, .n_rows = MEAN_ROWS};
+}
+
+static void fill_run(const simulate *run, const simulate_results *r, struct tables *t)
+{
+    const moray_table_row rows[RUN_ROWS] = {
+        {.label = "end of the simulation", .value = {r->t1}, .unit = "s"},
+        {.label = "position p_x", .value = {r->end.p_x}, .unit = "m"},
+        {.label = "position p_y", .value = {r->end.p_y}, .unit = "m"},
+        {.label = "heading", .value = {r->end.heading / DEG}, .unit = "deg"},
+        {.label = "joint work", .value = {r->energy}, .unit = "J"},
+        {.label = "integrator", .text = t->integrator},
+        {.label = "steps", .value = {(double)r->statistics.steps}},
+        {.label = "evaluations of the right-hand side", .value = {(double)r->statistics.rhs_evaluations}},
+    };
+    snprintf(t->integrator, sizeof t->integrator, "%s, rtol %g, atol %g", simulate_integrators[run->integrator],
+             r->sim.rtol, r->sim.atol);
+    memcpy(t->run, rows, sizeof rows);
+    tidy(t->run, RUN_ROWS);
+    t->table[1] = (moray_table){.title = "Whole run", .n_columns = 1, .rows = t->run, .n_rows = RUN_ROWS};
+}
+
+static void print_tables(const simulate *run, const simulate_results *results, struct tables *t)
+{
+    char text[500];
+    describe(run, results, text, sizeof text);
+    printf("%s\n\n", text);
+    moray_table_print(&t->table[0], stdout);
+    printf("\n");
+    moray_table_print(&t->table[1], stdout);
+}
+
+// ---- JSON ----------------------------------------------------------------------------------------------------------
+
+static void json_gait(moray_json *json, const simulate *run, const moray_gait_change *change)
+{
+    const moray_robot *robot = &run->common.robot;
+    const bool control = is_control(run);
+    const moray_gait *gait = &change->gait;
+    const double theta_max = moray_theta_max_from_amplitude(robot, run->common.model, gait->amplitude, gait->delta);
+    moray_json_open(json, NULL);
+    moray_json_number(json, "t_s", change->t);
+    moray_json_number(json, "theta_max_deg", theta_max / DEG);
+    moray_json_number(json, control ? "a_m" : "alpha_deg", control ? gait->amplitude : gait->amplitude / DEG);
+    moray_json_number(json, "omega_deg_s", gait->omega / DEG);
+    moray_json_number(json, "delta_deg", gait->delta / DEG);
+    moray_json_number(json, control ? "phi0_m" : "phi0_deg", control ? gait->offset : gait->offset / DEG);
+    moray_json_number(json, "taper", gait->taper);
+    moray_json_close(json);
+}
+
+static void json_head(moray_json *json, const simulate *run, const simulate_results *results)
+{
+    moray_json_text(json, "problem", "simulate");
+    moray_json_text(json, "version", moray_version());
+    moray_json_text(json, "model", is_control(run) ? "control" : "fp");
+    moray_json_open(json, "robot");
+    moray_json_number(json, "links", run->common.robot.links);
+    moray_json_close(json);
+    moray_json_numbers(json, "current_m_s", run->common.current, 2);
+    moray_json_number(json, "course_deg", run->common.course / DEG);
+    moray_json_open_list(json, "gaits");
+    for (int i = 0; i < results->n_changes; i++)
+        json_gait(json, run, &results->schedule[i]);
+    moray_json_close(json);
+}
+
+static void json_mean(moray_json *json, const simulate *run, const simulate_results *r)
+{
+    const bool control = is_control(run);
+    moray_json_open(json, "simulated");
+    moray_json_number(json, "from_s", r->window.from);
+    moray_json_number(json, "to_s", r->window.to);
+    moray_json_number(json, "periods", r->window.periods);
+    moray_json_number(json, "v_x_m_s", r->v_x);
+    moray_json_number(json, "v_y_m_s", r->v_y);
+    moray_json_number(json, "speed_m_s", r->speed);
+    moray_json_number(json, "course_speed_m_s", r->course_speed);
+    moray_json_number(json, "power_W", r->power);
+    moray_json_number(json, "cost_of_transport_J_m", r->cost_of_transport);
+    moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", r->peak_effort);
+    moray_json_number(json, "max_link_angle_deg", r->peak_link_angle / DEG);
+    moray_json_number(json, "heading_deg", r->heading / DEG);
+    moray_json_close(json);
+}
+
+static void json_run(moray_json *json, const simulate *run, const simulate_results *r)
+{
+    const bool control = is_control(run);
+    const double position[] = {r->end.p_x, r->end.p_y};
+    moray_json_open(json, "run");
+    moray_json_number(json, "duration_s", r->t1);
+    moray_json_numbers(json, "end_position_m", position, 2);
+    moray_json_number(json, "end_heading_deg", r->end.heading / DEG);
+    moray_json_number(json, "energy_J", r->energy);
+    moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", r->peak_effort_of_run);
+    moray_json_close(json);
+    moray_json_open(json, "integrator");
+    moray_json_text(json, "name", simulate_integrators[run->integrator]);
+    moray_json_number(json, "rtol", r->sim.rtol);
+    moray_json_number(json, "atol", r->sim.atol);
+    moray_json_number(json, "steps", (double)r->statistics.steps);
+    moray_json_number(json, "rhs_evaluations", (double)r->statistics.rhs_evaluations);
+    moray_json_close(json);
+}
+
+static moray_json *make_json(const simulate *run, const simulate_results *results)
+{
+    moray_json *json = moray_json_new();
+    json_head(json, run, results);
+    json_mean(json, run, results);
+    json_run(json, run, results);
+    return json;
+}
+
+// ---- All of it -----------------------------------------------------------------------------------------------------
+
+static moray_status write_out(const simulate *run, const simulate_results *results, const moray_json *json,
+                              struct tables *t)
+{
+    char text[500];
+    FILE *file;
+    MORAY_TRY(moray_output_file(run->common.output, "summary.json", &file));
+    MORAY_TRY(moray_json_write(json, file));
+    MORAY_TRY(simulate_trajectory(run, results));
+    MORAY_TRY(simulate_figures(run, results));
+    describe(run, results, text, sizeof text);
+    const moray_report report = {.title = "simulate",
+                                 .text = text,
+                                 .tables = t->table,
+                                 .n_tables = 2,
+                                 .argc = run->common.argc,
+                                 .argv = run->common.argv};
+    MORAY_TRY(moray_output_report(run->common.output, &report));
+    return moray_output_commit(run->common.output);
+}
+
+moray_status simulate_report(const simulate *run, const simulate_results *results)
+{
+    struct tables t;
+    moray_json *json = make_json(run, results);
+    fill_means(run, results, &t);
+    fill_run(run, results, &t);
+    moray_status status = run->common.output ? write_out(run, results, json, &t) : moray_ok();
+    if (!moray_failed(status) && run->common.json)
+        status = moray_json_write(json, stdout);
+    else if (!moray_failed(status))
+        print_tables(run, results, &t);
+    moray_json_free(json);
+    return status;
+}

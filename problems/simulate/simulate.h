@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#ifndef PROBLEMS_SIMULATE_SIMULATE_H
+#define PROBLEMS_SIMULATE_SIMULATE_H
+
+#include "moray/moray.h"
+#include "moray/snake.h"
+
+#define DEG (M_PI / 180)
+
+typedef enum { SIMULATE_EXPLICIT, SIMULATE_TR_BDF2, SIMULATE_PAPER } simulate_integrator;
+
+typedef struct simulate {
+    moray_common common;
+    moray_gait_input gait;
+    char schedule_file[MORAY_PATH_SIZE];
+    double duration, output_step, heading, position[2]; // duration NaN: 60 s after the last change of gait
+    int periods;
+    simulate_integrator integrator;
+    double rtol, atol; // NaN: the integrator's own
+} simulate;
+
+// The stretch of time that means are taken over: the last whole periods of the last gait, or all of it.
+typedef struct simulate_window {
+    double from, to;
+    int periods; // 0: not a whole number
+} simulate_window;
+
+typedef struct simulate_results {
+    moray_sim_settings sim;
+    moray_gait_change *schedule; // as far as the simulation goes
+    int n_changes;
+    double t1;
+    moray_swimmer *swimmer; // at the end of the simulation
+    moray_swim_track track; // at every output step and at the end
+    moray_sim_statistics statistics;
+    simulate_window window;
+    double v_x, v_y, speed, course_speed, power, cost_of_transport, heading; // means over the window
+    double peak_effort, peak_link_angle;                                     // in the window
+    double peak_effort_of_run;
+    moray_pose end;
+    double energy;
+} simulate_results;
+
+// Simulates. Error: MORAY_INPUT, MORAY_IO (schedule), MORAY_MEMORY, MORAY_NUMERIC.
+moray_status simulate_run(const simulate *run, simulate_results *results);
+void simulate_release(simulate_results *results); // safe on zeroed results
+
+// Tables or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
+moray_status simulate_report(const simulate *run, const simulate_results *results);
+
+// trajectory.csv. Error: MORAY_IO, MORAY_MEMORY.
+moray_status simulate_trajectory(const simulate *run, const simulate_results *results);
+
+// The figures; one that gnuplot does not draw is left out with a line on standard error. Error: MORAY_MEMORY.
+moray_status simulate_figures(const simulate *run, const simulate_results *results);
+
+extern const char *const simulate_integrators[];
+const moray_gait *simulate_last_gait(const simulate_results *results);
+
+#endif

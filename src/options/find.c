@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "options/options.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool has(const moray_program *program, const moray_option *shared)
+{
+    for (const char *const *flag = program->without; flag && *flag; flag++)
+        if (shared->flag && strcmp(shared->flag, *flag) == 0)
+            return false;
+    return true;
+}
+
+moray_status moray_options_new(moray_options *options, const moray_program *program)
+{
+    int n_robot, n_solver;
+    const moray_option *robot = moray_robot_rows(&n_robot), *solver = moray_solver_rows(&n_solver);
+    if (program->no_robot)
+        n_robot = 0;
+    options->row = calloc((size_t)(program->n_options + n_robot + n_solver), sizeof *options->row);
+    if (!options->row)
+        return moray_error(MORAY_MEMORY, "no memory for the table of options");
+    options->n = 0;
+    options->words = program->words;
+    for (int i = 0; i < program->n_options; i++)
+        options->row[options->n++] = program->options[i];
+    for (int i = 0; i < n_robot; i++)
+        if (has(program, &robot[i]))
+            options->row[options->n++] = robot[i];
+    for (int i = 0; i < n_solver; i++)
+        if (has(program, &solver[i]))
+            options->row[options->n++] = solver[i];
+    return moray_ok();
+}
+
+const moray_option *moray_option_find(const moray_options *options, const char *key)
+{
+    for (int i = 0; i < options->n; i++)
+        if (options->row[i].key && strcmp(options->row[i].key, key) == 0)
+            return &options->row[i];
+    return NULL;
+}
+
+int moray_edit_distance(const char *a, const char *b)
+{
+    enum { longest = 63 };
+    int cost[longest + 1];
+    const size_t n = strlen(b);
+    if (strlen(a) > longest || n > longest)
+        return INT_MAX;
+    for (size_t j = 0; j <= n; j++)
+        cost[j] = (int)j;
+    for (size_t i = 0; a[i]; i++) {
+        int diagonal = cost[0];
+        cost[0]++;
+        for (size_t j = 1; j <= n; j++) {
+            const int replace = diagonal + (a[i] != b[j - 1]),
+                      shift = 1 + (cost[j] < cost[j - 1] ? cost[j] : cost[j - 1]);
+            diagonal = cost[j];
+            cost[j] = replace < shift ? replace : shift;
+        }
+    }
+    return cost[n];
+}
+
+bool moray_is_near(int distance, const char *text)
+{
+    return distance <= 1 + (int)strlen(text) / 3;
+}
+
+moray_status moray_option_unknown(const moray_options *options, const char *key)
+{
+    const char *nearest = NULL;
+    int least = INT_MAX;
+    for (int i = 0; i < options->n; i++) {
+        const int distance = options->row[i].key ? moray_edit_distance(key, options->row[i].key) : INT_MAX;
+        if (distance < least) {
+            least = distance;
+            nearest = options->row[i].key;
+        }
+    }
+    if (moray_is_near(least, key))
+        return moray_error(MORAY_INPUT, "unknown key %.60s; did you mean %s?", key, nearest);
+    return moray_error(MORAY_INPUT, "unknown key %.60s; --help lists the keys", key);
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// Inside the application layer: the rows of one program, and what the command line and the INI file do with them.
+#ifndef SRC_OPTIONS_OPTIONS_H
+#define SRC_OPTIONS_OPTIONS_H
+
+#include "moray/app/program.h"
+
+// The program's rows followed by the shared ones.
+typedef struct moray_options {
+    moray_option *row;
+    int n;
+    const moray_words *words; // NULL: none
+} moray_options;
+
+// Error: MORAY_MEMORY. Free row with free().
+moray_status moray_options_new(moray_options *options, const moray_program *program);
+
+// The shared rows about the robot, and all other shared rows; n: how many.
+const moray_option *moray_robot_rows(int *n);
+const moray_option *moray_solver_rows(int *n);
+
+// Makes the robot of geometry and direct coefficients. Error: MORAY_INPUT.
+moray_status moray_common_make_robot(moray_common *common);
+
+// The row with this key; NULL when there is none, and the error that then names the nearest key.
+const moray_option *moray_option_find(const moray_options *options, const char *key);
+moray_status moray_option_unknown(const moray_options *options, const char *key);
+
+// Number of characters to insert, delete or replace to make b of a; texts beyond 63 bytes are infinitely far (INT_MAX).
+int moray_edit_distance(const char *a, const char *b);
+bool moray_is_near(int distance, const char *text); // near enough to be suggested for text
+
+// Reads text into the row's destination. `name` is the option as the user wrote it, for the message.
+// Error: MORAY_INPUT "name = text: must be ...".
+moray_status moray_option_read(const moray_option *row, const char *name, const char *text, void *settings);
+
+// The allowed interval in the row's unit, and the factor from that unit to the stored one.
+void moray_option_bounds(const moray_option *row, double *min, double *max);
+double moray_option_scale(const moray_option *row);
+
+enum { MORAY_SHOWN_SIZE = 200 };
+
+// What is allowed, as in "must be ..."; and the present value, false when there is none to show.
+void moray_option_allowed(const moray_option *row, char text[MORAY_SHOWN_SIZE]);
+bool moray_option_default(const moray_option *row, const void *settings, char text[MORAY_SHOWN_SIZE]);
+
+// Whether the word is on the list, and the error that then names the nearest one.
+bool moray_word_known(const moray_words *words, const char *name);
+moray_status moray_word_unknown(const moray_words *words, const char *name);
+
+// Marks a known word, or all, as given. Error of the check: MORAY_INPUT when none is.
+void moray_word_mark(const moray_words *words, const char *name, void *settings);
+moray_status moray_words_check(const moray_words *words, const void *settings);
+
+// What the command line said, in its order; by_flag tells --flag VALUE from --set KEY=VALUE. A word has no row.
+typedef struct moray_assignment {
+    const moray_option *row;
+    bool by_flag;
+    const char *value;
+} moray_assignment;
+
+typedef struct moray_arguments {
+    moray_assignment *item;
+    int n;
+    moray_request request;
+} moray_arguments;
+
+// Values point into argv. Error: MORAY_INPUT, MORAY_MEMORY. free(item) in any case.
+moray_status moray_arguments_read(moray_arguments *arguments, const moray_options *options, int argc, char **argv);
+
+// Sets the keys that the INI file gives. Error: MORAY_INPUT or MORAY_IO, with file and line.
+moray_status moray_ini_read(const moray_options *options, const char *path, void *settings);
+
+#endif

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#include "moray/app/results.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// Any decimal of up to 15 digits survives the way through a double, so %.15g prints it if there is one.
+const char *moray_number_text(double value, char text[32])
+{
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, 32, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    if (isnan(value))
+        snprintf(text, 32, "nan"); // without the sign that printf gives some
+    return text;
+}

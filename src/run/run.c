@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "run/run.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "moray/sim.h"
+
+// ---- Options -------------------------------------------------------------------------------------------------------
+
+static const moray_option own_rows[] = {
+    {.section = "solver",
+     .key = "mesh_tol",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(app_run, mesh_tol),
+     .max = INFINITY,
+     .open = true,
+     .help = "largest relative error between nodes that the certificate accepts"},
+    {.section = "solver",
+     .key = "refinements",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(app_run, refinements),
+     .max = 100,
+     .help = "finer meshes tried while the error between nodes is above mesh_tol"},
+    {.section = "solver",
+     .key = "max_iterations",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(app_run, max_iterations),
+     .max = 1000000,
+     .help = "limit of the solver's iterations"},
+    {.section = "solver",
+     .key = "barrier",
+     .type = MORAY_OPTION_REAL,
+     MORAY_AT(app_run, barrier),
+     .max = INFINITY,
+     .open = true,
+     .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"},
+    MORAY_CONTINUE(app_run, from_file),
+    {.flag = "check",
+     .type = MORAY_OPTION_BOOL,
+     MORAY_AT(app_run, check),
+     .help = "only compare the derivatives in use with differences of the functions, and say where they disagree most"},
+};
+enum { own_count = sizeof own_rows / sizeof *own_rows };
+
+static moray_option constant_row(const moray_app_constant *constant, int i)
+{
+    return (moray_option){.section = "problem",
+                          .key = constant->key,
+                          .type = MORAY_OPTION_REAL,
+                          .offset = offsetof(app_run, constant) + (size_t)i * sizeof(double),
+                          .size = sizeof(double),
+                          .min = constant->min,
+                          .max = constant->max,
+                          .unit = constant->unit,
+                          .help = constant->help ? constant->help : "a constant of the problem"};
+}
+
+static void start_from_defaults(app_run *run)
+{
+    const moray_app *app = run->app;
+    const moray_settings settings = app->settings ? *app->settings : moray_settings_default();
+    run->common = moray_common_defaults();
+    snprintf(run->common.scheme, sizeof run->common.scheme, "%s", settings.scheme);
+    run->common.intervals = settings.intervals;
+    run->common.tol = settings.tolerance;
+    run->common.linear_solver = settings.linear_solver;
+    run->mesh_tol = settings.mesh_tolerance;
+    run->refinements = settings.max_refinements;
+    run->max_iterations = settings.max_iterations;
+    run->barrier = settings.barrier;
+    for (int i = 0; i < app->n_constants; i++)
+        run->constant[i] = *app->constants[i].value;
+}
+
+// ---- Solving -------------------------------------------------------------------------------------------------------
+
+static bool show_iteration(void *observer, const moray_progress *at)
+{
+    const app_run *run = observer;
+    moray_ticker_show(&run->ticker, "%s: iteration %d, objective %.6g, violation %.1e%s", run->name, at->iteration,
+                      at->objective, at->infeasibility, at->restoring ? " (restoring feasibility)" : "");
+    return !moray_interrupted();
+}
+
+static moray_settings settings_of(app_run *run)
+{
+    moray_settings settings = run->app->settings ? *run->app->settings : moray_settings_default();
+    settings.scheme = run->common.scheme;
+    settings.intervals = run->common.intervals;
+    settings.tolerance = run->common.tol;
+    settings.linear_solver = run->common.linear_solver;
+    settings.mesh_tolerance = run->mesh_tol;
+    settings.max_refinements = run->refinements;
+    settings.max_iterations = run->max_iterations;
+    settings.barrier = run->barrier;
+    settings.progress = show_iteration;
+    settings.observer = run;
+    return settings;
+}
+
+// An unstable equation may leave its domain when it is integrated again: a failed certificate, no failed program.
+static moray_status certify(app_run *run)
+{
+    const moray_sim_settings sim = moray_sim_settings_default();
+    const moray_integrator integrator = moray_sim_integrator(&sim);
+    moray_ticker_show(&run->ticker, "%s: certifying", run->name);
+    moray_status status = moray_certify(run->solution, &integrator, &run->certificate);
+    if (status.code == MORAY_NUMERIC) {
+        run->certificate.resimulation = INFINITY;
+        run->certificate.pass = false;
+        status = moray_ok();
+    }
+    run->certified = !moray_failed(status);
+    return status;
+}
+
+// Goes on from --continue, on the mesh of the file unless the options name another than by default.
+static moray_status load(app_run *run, moray_settings *settings)
+{
+    app_run usual = {.app = run->app};
+    if (!run->from_file[0])
+        return moray_ok();
+    start_from_defaults(&usual);
+    if (run->common.intervals == usual.common.intervals && strcmp(run->common.scheme, usual.common.scheme) == 0)
+        settings->intervals = 0;
+    return moray_solution_load(&run->from, run->ocp, settings, run->from_file);
+}
+
+static moray_status solve(app_run *run)
+{
+    moray_settings settings = settings_of(run);
+    MORAY_TRY(load(run, &settings));
+    const moray_guess from = moray_guess_from_solution(run->from), *guess = run->from ? &from : run->app->guess;
+    run->ticker = moray_ticker_start(stderr, run->common.quiet);
+    moray_interrupt_begin();
+    moray_status status = moray_solve(run->ocp, &settings, guess, &run->solution);
+    moray_interrupt_end();
+    if (!moray_failed(status) && moray_solution_info(run->solution)->outcome == MORAY_NLP_SOLVED)
+        status = certify(run);
+    moray_ticker_end(&run->ticker);
+    if (settings.intervals == 0) { // for the results
+        run->common.intervals = 0;
+        strcpy(run->common.scheme, "continued");
+    }
+    return status;
+}
+
+// ---- Ends ----------------------------------------------------------------------------------------------------------
+
+// What is worst about the solution, in one line.
+static moray_status judge(const app_run *run)
+{
+    const moray_nlp_info *info = moray_solution_info(run->solution);
+    char said[250];
+    if (info->outcome == MORAY_NLP_SOLVED)
+        return moray_ok();
+    if (info->outcome == MORAY_NLP_INTERRUPTED)
+        return moray_interruption(run->solution, run->kept);
+    snprintf(said, sizeof said, "%s", moray_solution_diagnosis(run->solution));
+    for (size_t i = strlen(said); i > 0 && said[i - 1] == '\n'; i--)
+        said[i - 1] = 0;
+    for (char *c = said; *c; c++)
+        *c = *c == '\n' ? ' ' : *c;
+    return moray_error(MORAY_NOT_SOLVED, "%s", said);
+}
+
+static const double doubtful = 1e-4; // difference that rounding does not explain
+
+// What to do about the number that fails the certificate.
+static void say_failure(const app_run *run)
+{
+    const moray_certificate *c = &run->certificate;
+    const double loose = 100 * run->mesh_tol, tight = 100 * run->common.tol;
+    const char *text = c->kkt > tight ? "the solver stopped short of an optimum: try a smaller tol"
+                       : c->mesh_error > run->mesh_tol
+                           ? "the mesh is too coarse: try more refinements, intervals or stages"
+                       : c->between_nodes > loose ? "limits are passed between the nodes: try more intervals"
+                                                  : "the simulation departs from the solution: try more intervals "
+                                                    "or, where the equations are unstable, distrust it";
+    fprintf(stderr, "%s: certificate failed: %s\n", run->name, text);
+}
+
+static moray_status check(const app_run *run)
+{
+    moray_ocp_derivative_report report;
+    MORAY_TRY(moray_ocp_check_derivatives(run->ocp, &report));
+    printf("first derivatives differ by at most %.1e%s%s\n", report.jacobian_error, *report.jacobian ? ": " : "",
+           report.jacobian);
+    printf("second derivatives differ by at most %.1e%s%s\n", report.hessian_error, *report.hessian ? ": " : "",
+           report.hessian);
+    if (report.jacobian_error > doubtful || report.hessian_error > doubtful)
+        return moray_error(MORAY_NUMERIC, "derivatives are wrong, or the functions are not smooth");
+    return moray_ok();
+}
+
+static moray_status work(app_run *run)
+{
+    for (int i = 0; i < run->app->n_constants; i++)
+        *run->app->constants[i].value = run->constant[i];
+    MORAY_TRY(moray_ocp_new(&run->ocp, run->app->spec));
+    if (run->check)
+        return check(run);
+    MORAY_TRY(solve(run));
+    MORAY_TRY(moray_run_show(run));
+    return judge(run);
+}
+
+int moray_app_run(const moray_app *app, int argc, char **argv)
+{
+    moray_option rows[own_count + MORAY_APP_CONSTANTS];
+    app_run run = {.app = app, .name = app->spec->name ? app->spec->name : "problem"};
+    const moray_program program = {.name = run.name,
+                                   .summary = app->summary ? app->summary : "Solves an optimal-control problem.",
+                                   .options = rows,
+                                   .n_options = own_count + app->n_constants,
+                                   .no_robot = true};
+    int exit_code;
+    if (app->n_constants > MORAY_APP_CONSTANTS)
+        return moray_app_end(
+            &program, &run,
+            moray_error(MORAY_INPUT, "%d constants: at most %d", app->n_constants, (int)MORAY_APP_CONSTANTS));
+    memcpy(rows, own_rows, sizeof own_rows);
+    for (int i = 0; i < app->n_constants; i++)
+        rows[own_count + i] = constant_row(&app->constants[i], i);
+    start_from_defaults(&run);
+    if (!moray_app_start(&program, argc, argv, &run, &exit_code))
+        return exit_code;
+    exit_code = moray_app_end(&program, &run, work(&run));
+    if (exit_code == MORAY_EXIT_SOLVED && !run.check && !run.certificate.pass) {
+        say_failure(&run);
+        exit_code = MORAY_EXIT_CERTIFICATE;
+    }
+    moray_solution_free(run.solution);
+    moray_solution_free(run.from);
+    moray_ocp_free(run.ocp);
+    return exit_code;
+}

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+#include "run/run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *moray_entry_name(const char *const *names, const char *letter, int i, char text[MORAY_ENTRY_SIZE])
+{
+    if (names)
+        snprintf(text, MORAY_ENTRY_SIZE, "%s", names[i]);
+    else
+        snprintf(text, MORAY_ENTRY_SIZE, "%s[%d]", letter, i);
+    return text;
+}
+
+const char *moray_phase_name(const moray_ocp_spec *spec, int p)
+{
+    return spec->phase[p].name ? spec->phase[p].name : "phase";
+}
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+// "label", or "label of ascent" where there are several phases.
+static const char *of_phase(const moray_ocp_spec *spec, const char *label, int p, char text[MORAY_ENTRY_SIZE])
+{
+    if (spec->phases > 1)
+        snprintf(text, MORAY_ENTRY_SIZE, "%.30s of %.40s", label, moray_phase_name(spec, p));
+    else
+        snprintf(text, MORAY_ENTRY_SIZE, "%s", label);
+    return text;
+}
+
+// With as many digits as a textbook's.
+static void add_row(run_tables *t, int *n, const char *label, double value, const char *unit)
+{
+    struct run_text *text = &t->texts[*n];
+    snprintf(text->label, sizeof text->label, "%s", label);
+    snprintf(text->value, sizeof text->value, "%.9g", value);
+    t->rows[*n] = (moray_table_row){.label = text->label, .text = text->value, .unit = unit};
+    ++*n;
+}
+
+static int solution_rows(run_tables *t, const app_run *run)
+{
+    const moray_app *app = run->app;
+    const moray_ocp_spec *spec = app->spec;
+    char name[MORAY_ENTRY_SIZE], label[MORAY_ENTRY_SIZE];
+    int n = 0;
+    add_row(t, &n, app->objective ? app->objective : "objective", moray_solution_objective(run->solution),
+            app->objective_unit);
+    for (int i = 0; i < spec->ns; i++)
+        add_row(t, &n, moray_entry_name(spec->s_names, "s", i, name), moray_solution_parameters(run->solution)[i],
+                app->s_units ? app->s_units[i] : NULL);
+    for (int p = 0; p < spec->phases; p++) {
+        double t0, tf;
+        const moray_app_units *units = app->units ? &app->units[p] : NULL;
+        moray_solution_times(run->solution, p, &t0, &tf);
+        add_row(t, &n, of_phase(spec, "initial time", p, label), t0, app->time_unit);
+        add_row(t, &n, of_phase(spec, "final time", p, label), tf, app->time_unit);
+        for (int m = 0; m < spec->phase[p].nq; m++)
+            add_row(t, &n, of_phase(spec, moray_entry_name(NULL, "integral q", m, name), p, label),
+                    moray_solution_integrals(run->solution, p)[m], units && units->q ? units->q[m] : NULL);
+    }
+    return n;
+}
+
+static int count_rows(const moray_ocp_spec *spec)
+{
+    int n = 1 + spec->ns;
+    for (int p = 0; p < spec->phases; p++)
+        n += 2 + spec->phase[p].nq;
+    return n;
+}
+
+static int solver_rows(const app_run *run, moray_table_row *rows)
+{
+    const moray_nlp_info *info = moray_solution_info(run->solution);
+    const moray_nlp_size size = moray_solution_size(run->solution);
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(run->solution, &meshes);
+    const moray_table_row filled[] = {
+        {.label = "outcome", .text = moray_nlp_outcome_text(info->outcome)},
+        {.label = "scheme", .text = run->common.scheme},
+        {.label = "meshes tried", .value = {meshes}},
+        {.label = "intervals of the last", .value = {mesh[meshes - 1].intervals}},
+        {.label = "variables", .value = {size.variables}},
+        {.label = "constraints", .value = {size.constraints}},
+        {.label = "iterations", .value = {info->iterations}},
+        {.label = "solver time", .value = {info->seconds}, .unit = "s"},
+        {.label = "of it in the problem's functions", .value = {info->evaluation_seconds}, .unit = "s"}};
+    memcpy(rows, filled, sizeof filled);
+    return sizeof filled / sizeof *filled;
+}
+
+// One row a mesh, the newest last.
+static int mesh_rows(const app_run *run, moray_table_row *rows)
+{
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(run->solution, &meshes);
+    for (int k = 0; k < meshes; k++)
+        rows[k] = (moray_table_row){
+            .label = moray_nlp_outcome_text(mesh[k].outcome),
+            .value = {mesh[k].intervals, mesh[k].nodes, mesh[k].error, mesh[k].iterations, mesh[k].seconds}};
+    return meshes;
+}
+
+static int certificate_rows(const app_run *run, moray_table_row *rows)
+{
+    const moray_certificate *c = &run->certificate;
+    const double loose = 100 * run->mesh_tol;
+    const moray_table_row filled[] = {
+        {.label = "optimality and feasibility (KKT)", .value = {c->kkt, 100 * run->common.tol}},
+        {.label = "error of the dynamics between nodes", .value = {c->mesh_error, run->mesh_tol}},
+        {.label = "violation of limits between nodes", .value = {c->between_nodes, loose}},
+        {.label = "difference to a re-simulation", .value = {c->resimulation, loose}},
+        {.label = "spread of the Hamiltonian", .value = {c->hamiltonian, NAN}}};
+    memcpy(rows, filled, sizeof filled);
+    return sizeof filled / sizeof *filled;
+}
+
+moray_status moray_run_tables_new(run_tables *t, const app_run *run)
+{
+    enum { solver_room = 10, certificate_room = 5 };
+    const int solution_room = count_rows(run->app->spec);
+    int meshes;
+    moray_solution_history(run->solution, &meshes);
+    *t =
+        (run_tables){.rows = calloc((size_t)(solution_room + solver_room + meshes + certificate_room), sizeof *t->rows),
+                     .texts = calloc((size_t)solution_room, sizeof *t->texts)};
+    if (!t->rows || !t->texts) {
+        moray_run_tables_free(t);
+        return moray_error(MORAY_MEMORY, "no memory for %d rows of results", solution_room);
+    }
+    moray_table_row *rows = t->rows;
+    int n = solution_rows(t, run);
+    t->table[t->n++] = (moray_table){.title = "Solution", .n_columns = 1, .rows = rows, .n_rows = n};
+    rows += n;
+    n = solver_rows(run, rows);
+    t->table[t->n++] = (moray_table){.title = "Solver", .n_columns = 1, .rows = rows, .n_rows = n};
+    rows += n;
+    n = mesh_rows(run, rows);
+    if (meshes > 1)
+        t->table[t->n++] = (moray_table){.title = "Meshes",
+                                         .columns = {"intervals", "nodes", "error", "iterations", "time [s]"},
+                                         .n_columns = 5,
+                                         .rows = rows,
+                                         .n_rows = n};
+    rows += n;
+    if (run->certified)
+        t->table[t->n++] = (moray_table){.title = run->certificate.pass ? "Certificate: pass" : "Certificate: FAIL",
+                                         .columns = {"found", "allowed"},
+                                         .n_columns = 2,
+                                         .rows = rows,
+                                         .n_rows = certificate_rows(run, rows)};
+    return moray_ok();
+}
+
+void moray_run_tables_free(run_tables *t)
+{
+    free(t->rows);
+    free(t->texts);
+    *t = (run_tables){0};
+}
+
+// ---- JSON ----------------------------------------------------------------------------------------------------------
+
+static void json_meshes(moray_json *json, const moray_solution *solution)
+{
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(solution, &meshes);
+    moray_json_open_list(json, "meshes");
+    for (int k = 0; k < meshes; k++) {
+        moray_json_open(json, NULL);
+        moray_json_text(json, "status", moray_nlp_outcome_text(mesh[k].outcome));
+        moray_json_number(json, "intervals", mesh[k].intervals);
+        moray_json_number(json, "nodes", mesh[k].nodes);
+        moray_json_number(json, "nvar", mesh[k].variables);
+        moray_json_number(json, "iterations", mesh[k].iterations);
+        moray_json_number(json, "time_s", mesh[k].seconds);
+        moray_json_number(json, "mesh_error", mesh[k].error);
+        moray_json_number(json, "objective", mesh[k].objective);
+        moray_json_close(json);
+    }
+    moray_json_close(json);
+}
+
+static void json_phase(moray_json *json, const app_run *run, int p)
+{
+    double t0, tf;
+    moray_solution_times(run->solution, p, &t0, &tf);
+    moray_json_open(json, NULL);
+    moray_json_text(json, "name", moray_phase_name(run->app->spec, p));
+    moray_json_number(json, "t0", t0);
+    moray_json_number(json, "tf", tf);
+    moray_json_numbers(json, "integrals", moray_solution_integrals(run->solution, p), run->app->spec->phase[p].nq);
+    moray_json_close(json);
+}
+
+static moray_json *make_json(const app_run *run)
+{
+    const moray_ocp_spec *spec = run->app->spec;
+    const bool solved = moray_solution_info(run->solution)->outcome == MORAY_NLP_SOLVED;
+    moray_json *json = moray_json_new();
+    char name[MORAY_ENTRY_SIZE];
+    moray_json_text(json, "problem", run->name);
+    moray_json_text(json, "version", moray_version());
+    moray_json_text(json, "scheme", run->common.scheme);
+    moray_json_number(json, "intervals", run->common.intervals);
+    moray_json_open(json, "constants");
+    for (int i = 0; i < run->app->n_constants; i++)
+        moray_json_number(json, run->app->constants[i].key, run->constant[i]);
+    moray_json_close(json);
+    moray_json_open(json, "parameters");
+    for (int i = 0; i < spec->ns; i++)
+        moray_json_number(json, moray_entry_name(spec->s_names, "s", i, name),
+                          moray_solution_parameters(run->solution)[i]);
+    moray_json_close(json);
+    moray_json_open_list(json, "phases");
+    for (int p = 0; p < spec->phases; p++)
+        json_phase(json, run, p);
+    moray_json_close(json);
+    moray_solver_to_json(json, run->solution);
+    moray_json_close(json);
+    json_meshes(json, run->solution);
+    moray_certificate_to_json(json, run->certified ? &run->certificate : NULL);
+    moray_json_text(json, "diagnosis", solved ? NULL : moray_solution_diagnosis(run->solution));
+    return json;
+}
+
+// ---- Everything ----------------------------------------------------------------------------------------------------
+
+static moray_status write_files(const app_run *run, const run_tables *tables, const moray_json *json)
+{
+    FILE *file;
+    MORAY_TRY(moray_output_file(run->common.output, "summary.json", &file));
+    MORAY_TRY(moray_json_write(json, file));
+    MORAY_TRY(moray_run_write_trajectory(run));
+    MORAY_TRY(moray_run_write_costates(run));
+    const moray_report report = {.title = run->name,
+                                 .text = moray_solution_diagnosis(run->solution),
+                                 .tables = tables->table,
+                                 .n_tables = tables->n,
+                                 .argc = run->common.argc,
+                                 .argv = run->common.argv};
+    MORAY_TRY(moray_output_report(run->common.output, &report));
+    return moray_output_commit(run->common.output);
+}
+
+static void print_tables(const app_run *run, const run_tables *tables)
+{
+    printf("%s\n\n", run->name);
+    for (int k = 0; k < tables->n; k++) {
+        moray_table_print(&tables->table[k], stdout);
+        printf("\n");
+    }
+    printf("%s", moray_solution_diagnosis(run->solution));
+}
+
+moray_status moray_run_show(app_run *run)
+{
+    run_tables tables;
+    if (moray_solution_info(run->solution)->outcome == MORAY_NLP_INTERRUPTED)
+        MORAY_TRY(moray_iterate_keep(&run->common, run->name, run->solution, run->kept));
+    MORAY_TRY(moray_run_tables_new(&tables, run));
+    moray_json *json = make_json(run);
+    moray_status status = run->common.output ? write_files(run, &tables, json) : moray_ok();
+    if (!moray_failed(status) && run->common.json)
+        status = moray_json_write(json, stdout);
+    else if (!moray_failed(status))
+        print_tables(run, &tables);
+    moray_json_free(json);
+    moray_run_tables_free(&tables);
+    return status;
+}

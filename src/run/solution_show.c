@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "moray/app/run.h"
+
+#include <math.h>
+
+void moray_solver_to_json(moray_json *json, const moray_solution *solution)
+{
+    const moray_nlp_info *info = moray_solution_info(solution);
+    const moray_nlp_size size = moray_solution_size(solution);
+    moray_json_open(json, "solver");
+    moray_json_text(json, "status", moray_nlp_outcome_text(info->outcome));
+    moray_json_number(json, "iterations", info->iterations);
+    moray_json_number(json, "objective", moray_solution_objective(solution));
+    moray_json_number(json, "nvar", size.variables);
+    moray_json_number(json, "ncon", size.constraints);
+    moray_json_number(json, "nnz_jac", size.nnz_jac);
+    moray_json_number(json, "nnz_hess", size.nnz_hess);
+    moray_json_number(json, "time_s", info->seconds);
+    moray_json_number(json, "eval_time_s", info->evaluation_seconds);
+    moray_json_text(json, "linear_solver", moray_linear_solver_text(info->linear_solver));
+}
+
+void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate)
+{
+    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN};
+    const moray_certificate *c = certificate ? certificate : &none;
+    moray_json_open(json, "certificate");
+    moray_json_bool(json, "pass", c->pass);
+    moray_json_number(json, "kkt", c->kkt);
+    moray_json_number(json, "mesh_error", c->mesh_error);
+    moray_json_number(json, "between_nodes", c->between_nodes);
+    moray_json_number(json, "resimulation", c->resimulation);
+    moray_json_number(json, "hamiltonian", c->hamiltonian);
+    moray_json_close(json);
+}
+
+void moray_solver_line(const moray_solution *solution, const char *scheme, int intervals, char *text, size_t size)
+{
+    const moray_nlp_info *info = moray_solution_info(solution);
+    const moray_nlp_size n = moray_solution_size(solution);
+    snprintf(text, size, "%s, %d intervals: %s in %d iterations, %.2f s (%d variables, %d constraints)", scheme,
+             intervals, moray_nlp_outcome_text(info->outcome), info->iterations, info->seconds, n.variables,
+             n.constraints);
+}
+
+void moray_certificate_line(const moray_certificate *c, char *text, size_t size)
+{
+    snprintf(text, size, "Certificate: %s (KKT %.1e, mesh error %.1e, between nodes %.1e, re-simulation %.1e)",
+             c->pass ? "pass" : "FAIL", c->kkt, c->mesh_error, c->between_nodes, c->resimulation);
+}

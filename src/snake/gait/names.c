@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include <stdio.h>
+
+#include "snake/gait/endpoint.h"
+
+void moray_gait_event_names(const struct gait_endpoint *e, const char **name)
+{
+    for (int r = 0; r < e->nx - 2; r++)
+        *name++ = "periodicity";
+    *name++ = "way across the course";
+    *name++ = "omega T";
+    if (!e->series)
+        *name++ = "theta_max";
+    if (e->head)
+        *name++ = "theta_max of the head";
+    if (e->tail)
+        *name++ = "theta_max of the tail";
+    if (e->power)
+        *name++ = "power";
+    for (int k = 0; k < (e->head && e->tail ? 2 : 1) && e->rate; k++)
+        *name++ = "joint rate";
+    if (e->speed)
+        *name++ = "course speed";
+}
+
+void moray_gait_path_names(int n, int efforts, int links, gait_name *text, const char **name)
+{
+    const struct {
+        const char *what;
+        int count;
+    } kinds[] = {{"joint effort", efforts}, {"link angle", links}, {"joint rate", n}};
+    int i = 0;
+    for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds; kind++)
+        for (int k = 0; k < kinds[kind].count && i < n; k++, i++) {
+            snprintf(text[i], sizeof *text, "%s %d", kinds[kind].what, k + 1);
+            name[i] = text[i];
+        }
+}

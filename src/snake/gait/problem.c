@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "snake/gait/problem.h"
+
+moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAMETERS])
+{
+    return (moray_gait){.amplitude = s[0], .omega = s[1], .delta = s[2], .offset = s[3], .taper = s[4]};
+}
+
+void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAMETERS])
+{
+    const double parameters[] = {gait->amplitude, gait->omega, gait->delta, gait->offset, gait->taper};
+    memcpy(s, parameters, sizeof parameters);
+}
+
+static moray_status check_range(const char *name, moray_bounds range, double least, double most, double unit)
+{
+    if (!(range.lower <= range.upper) || range.lower < least || range.upper > most)
+        return moray_error(MORAY_INPUT, "%s = %g:%g: must be a range lo:hi within %g:%g", name, range.lower / unit,
+                           range.upper / unit, least / unit, most / unit);
+    return moray_ok();
+}
+
+static moray_status check_limit(const char *name, double value)
+{
+    if (!(value > 0))
+        return moray_error(MORAY_INPUT, "%s = %g: must be above 0, or none", name, value);
+    return moray_ok();
+}
+
+static moray_status check_spec(const moray_gait_problem_spec *spec)
+{
+    const double degree = M_PI / 180;
+    const moray_gait_limits *limits = &spec->limits;
+    MORAY_TRY(moray_robot_check(&spec->robot));
+    if (spec->joints == MORAY_JOINTS_FREE)
+        return moray_error(MORAY_INPUT,
+                           "joints = free: an optimal gait has its joints on the gait, on a series or in closed loop");
+    const bool control = spec->model == MORAY_CONTROL_ORIENTED;
+    if (!control && spec->joints == MORAY_JOINTS_CLOSED_LOOP)
+        return moray_error(MORAY_INPUT, "joints: the first-principles model has none in closed loop");
+    MORAY_TRY(check_range("theta_max_deg", limits->theta_max, 0, 89 * degree, degree));
+    MORAY_TRY(check_range("omega_deg_s", limits->omega, 1e-3 * degree, 1e5 * degree, degree));
+    MORAY_TRY(check_range("delta_deg", limits->delta, 1 * degree, 179 * degree, degree));
+    if (control)
+        MORAY_TRY(check_range("phi0_m", limits->offset, -spec->robot.l, spec->robot.l, 1));
+    else
+        MORAY_TRY(check_range("phi0_deg", limits->offset, -90 * degree, 90 * degree, degree));
+    const double most = spec->robot.links > 2 ? 1 : 0; // a joint alone has no taper
+    MORAY_TRY(check_range("taper", limits->taper, 0 - most, most, 1));
+    MORAY_TRY(check_limit("power_W", limits->power));
+    MORAY_TRY(check_limit("joint_rate", limits->joint_rate));
+    MORAY_TRY(check_limit("joint_effort", limits->joint_effort));
+    if (!(limits->course_speed >= 0 && isfinite(limits->course_speed)))
+        return moray_error(MORAY_INPUT, "speed_m_s = %g: must be finite and above 0, or none", limits->course_speed);
+    if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]) || !isfinite(spec->course))
+        return moray_error(MORAY_INPUT, "current = %g,%g, course = %g: must be finite", spec->current[0],
+                           spec->current[1], spec->course);
+    return moray_ok();
+}
+
+static bool limited(double value)
+{
+    return value < MORAY_INFINITY;
+}
+
+// The least speed to ask for; work per distance means nothing where the robot makes no way.
+static double least_speed(const moray_gait_problem_spec *spec)
+{
+    const double some_way = 1e-3;
+    return spec->goal == MORAY_GAIT_THRIFTIEST ? fmax(spec->limits.course_speed, some_way) : spec->limits.course_speed;
+}
+
+static bool on_series(const moray_gait_problem *problem)
+{
+    return problem->spec.joints == MORAY_JOINTS_SERIES;
+}
+
+// Whether theta_max bounds the links' angles in place of their amplitude.
+static bool by_link_angles(const moray_gait_problem *problem)
+{
+    return on_series(problem) || problem->spec.limits.link_angles;
+}
+
+static moray_status make_plant(moray_gait_problem *problem)
+{
+    const moray_gait_problem_spec *spec = &problem->spec;
+    const moray_plant_spec plant = {.robot = spec->robot,
+                                    .joints = spec->joints,
+                                    .current = {spec->current[0], spec->current[1]},
+                                    .path_forces = limited(spec->limits.joint_effort),
+                                    .path_angles = by_link_angles(problem) ||
+                                                   (spec->model == MORAY_CONTROL_ORIENTED &&
+                                                    (spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0)),
+                                    .path_rates = on_series(problem) && limited(spec->limits.joint_rate),
+                                    .harmonics = spec->harmonics};
+    problem->size = moray_plant_sizes(&plant);
+    return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&problem->plant, &plant)
+                                                 : moray_fp_plant(&problem->plant, &plant);
+}
+
+static moray_status make_endpoint(moray_gait_problem *problem)
+{
+    const moray_gait_problem_spec *spec = &problem->spec;
+    const int joints = spec->joints == MORAY_JOINTS_CLOSED_LOOP ? spec->robot.links - 1 : 0;
+    const bool series = on_series(problem);
+    problem->endpoint = (struct gait_endpoint){.nx = problem->size.nx,
+                                               .position = joints + 1,
+                                               .revolute = spec->model == MORAY_FIRST_PRINCIPLES,
+                                               .L = 2 * spec->robot.l,
+                                               .links = spec->robot.links,
+                                               .series = series ? problem->size.ns : 0,
+                                               .head = !series && spec->limits.taper.upper > 0,
+                                               .tail = !series && spec->limits.taper.lower < 0,
+                                               .course = {cos(spec->course), sin(spec->course)},
+                                               .goal = spec->goal,
+                                               .power = limited(spec->limits.power),
+                                               .rate = !series && limited(spec->limits.joint_rate),
+                                               .speed = least_speed(spec) > 0};
+    return moray_gait_endpoint_map(&problem->ends, &problem->endpoint);
+}
+
+static int path_efforts(const moray_gait_problem *problem)
+{
+    return limited(problem->spec.limits.joint_effort) ? problem->spec.robot.links - 1 : 0;
+}
+
+static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
+{
+    const moray_gait_limits *limits = &problem->spec.limits;
+    const int efforts = path_efforts(problem), angles = efforts + problem->spec.robot.links;
+    for (int i = 0; i < problem->size.nc; i++) {
+        const double most = i < efforts  ? limits->joint_effort
+                            : i < angles ? limits->theta_max.upper
+                                         : limits->joint_rate;
+        c[i] = moray_between(-most, most);
+    }
+}
+
+static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e)
+{
+    const moray_gait_limits *limits = &problem->spec.limits;
+    for (int i = 0; i < problem->size.nx - 2 + 1; i++)
+        *e++ = moray_fixed(0);
+    *e++ = moray_fixed(2 * M_PI);
+    const struct gait_endpoint *endpoint = &problem->endpoint;
+    const moray_bounds amplitude = moray_gait_amplitude_bounds(
+        endpoint, limits->link_angles ? moray_between(limits->theta_max.lower, M_PI / 2) : limits->theta_max);
+    if (!endpoint->series)
+        *e++ = amplitude;
+    for (int k = 0; k < endpoint->head + endpoint->tail; k++)
+        *e++ = moray_at_most(amplitude.upper * amplitude.upper);
+    if (endpoint->power)
+        *e++ = moray_at_most(limits->power);
+    for (int k = 0; k < (endpoint->head && endpoint->tail ? 2 : 1) && endpoint->rate; k++)
+        *e++ = moray_at_most(limits->joint_rate);
+    if (endpoint->speed)
+        *e++ = moray_at_least(least_speed(&problem->spec));
+}
+
+static const char *const goals[][2] = {
+    [MORAY_GAIT_FASTEST] = {"fastest gait, control-oriented", "fastest gait, first principles"},
+    [MORAY_GAIT_THRIFTIEST] = {"thriftiest gait, control-oriented", "thriftiest gait, first principles"}};
+static const char *const s_names[][MORAY_GAIT_PARAMETERS] = {{"a", "omega", "delta", "phi_0", "taper"},
+                                                             {"alpha", "omega", "delta", "phi_0", "taper"}};
+static const char *const gait_states[][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
+                                             {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
+
+// Bounds of the parameters, s[ns].
+static void fill_parameter_bounds(const moray_gait_problem *problem, moray_bounds *s)
+{
+    const moray_gait_limits *limits = &problem->spec.limits;
+    const int n = problem->spec.robot.links - 1;
+    const double swing = problem->spec.model == MORAY_CONTROL_ORIENTED
+                             ? 2 * problem->spec.robot.l * sin(limits->theta_max.upper) // of a, by (33)
+                             : 2 * limits->theta_max.upper;                             // of alpha, by (27)
+    const double largest = by_link_angles(problem) ? 2 * swing : swing;
+    if (!on_series(problem)) {
+        const moray_bounds all[] = {moray_between(0, largest), limits->omega, limits->delta, limits->offset,
+                                    limits->taper};
+        memcpy(s, all, sizeof all);
+        return;
+    }
+    s[0] = limits->omega;
+    for (int i = 1; i < problem->size.ns; i++)
+        s[i] = i <= n ? limits->offset : moray_between(-largest, largest);
+    s[1 + 2 * n] = moray_fixed(0); // q_11
+}
+
+static moray_status make_ocp(moray_gait_problem *problem)
+{
+    const moray_gait_limits *limits = &problem->spec.limits;
+    const int nx = problem->size.nx, nc = problem->size.nc, ne = problem->endpoint.events, ns = problem->size.ns,
+              at = problem->endpoint.position;
+    problem->block = calloc((size_t)(nx + nc + ne + ns), sizeof *problem->block);
+    problem->names = calloc((size_t)(ne + nc), sizeof *problem->names);
+    problem->path_names = calloc((size_t)nc + 1, sizeof *problem->path_names);
+    if (!problem->block || !problem->names || !problem->path_names)
+        return moray_error(MORAY_MEMORY, "no memory for the gait problem");
+    moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc, *s = e + ne;
+    for (int r = 0; r < nx; r++)
+        x0[r] = r == at || r == at + 1 ? moray_fixed(0) : moray_free();
+    fill_path_bounds(problem, c);
+    fill_event_bounds(problem, e);
+    fill_parameter_bounds(problem, s);
+    moray_gait_event_names(&problem->endpoint, problem->names);
+    moray_gait_path_names(nc, path_efforts(problem), problem->spec.robot.links, problem->path_names,
+                          problem->names + ne);
+    const moray_phase_spec phase = {
+        .name = "period",
+        .nx = nx,
+        .nc = nc,
+        .nq = problem->size.nq,
+        .map = &problem->plant,
+        .t0 = moray_fixed(0),
+        .tf =
+            moray_between(1.8 * M_PI / limits->omega.upper, 2.2 * M_PI / limits->omega.lower), // omega alone is to bind
+        .x0 = {x0, nx},
+        .c = {c, nc},
+        .c_names = problem->names + ne,
+        .x_names = problem->spec.joints == MORAY_JOINTS_CLOSED_LOOP ? NULL : gait_states[problem->spec.model],
+    };
+    return moray_ocp_new(&problem->ocp,
+                         &(moray_ocp_spec){.name = goals[problem->spec.goal][problem->spec.model],
+                                           .phases = 1,
+                                           .phase = &phase,
+                                           .ns = ns,
+                                           .s = {s, ns},
+                                           .s_names = on_series(problem) ? NULL : s_names[problem->spec.model],
+                                           .ne = ne,
+                                           .e = {e, ne},
+                                           .e_names = problem->names,
+                                           .endpoint_map = &problem->ends});
+}
+
+moray_status moray_gait_problem_new(moray_gait_problem **result, const moray_gait_problem_spec *spec)
+{
+    *result = NULL;
+    MORAY_TRY(check_spec(spec));
+    moray_gait_problem *problem = calloc(1, sizeof *problem);
+    if (!problem)
+        return moray_error(MORAY_MEMORY, "no memory for the gait problem");
+    problem->spec = *spec;
+    moray_status status = make_plant(problem);
+    if (!moray_failed(status))
+        status = make_endpoint(problem);
+    if (!moray_failed(status))
+        status = make_ocp(problem);
+    if (moray_failed(status))
+        moray_gait_problem_free(problem);
+    else
+        *result = problem;
+    return status;
+}
+
+void moray_gait_problem_free(moray_gait_problem *problem)
+{
+    if (!problem)
+        return;
+    moray_ocp_free(problem->ocp);
+    moray_map_release(&problem->plant);
+    moray_gait_endpoint_free(&problem->endpoint);
+    free(problem->block);
+    free(problem->names);
+    free(problem->path_names);
+    free(problem);
+}
+
+const moray_ocp *moray_gait_problem_ocp(const moray_gait_problem *problem)
+{
+    return problem->ocp;
+}

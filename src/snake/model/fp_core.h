@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// The first-principles model (2)-(5) for joints of prescribed acceleration, in the number type REAL; fp_model.h
+// includes this text once for each type, which is why it has no include guard.
+
+typedef struct TYPED(fp_vector) {
+    REAL x, y;
+} TYPED(fp_vector);
+
+// Link i: cosine and sine of theta_i; position relative to (p_x, p_y), velocity and acceleration of its centre; fluid
+// force (2) without its first term.
+typedef struct TYPED(fp_link) {
+    REAL c, s;
+    TYPED(fp_vector) r, v, a, f;
+} TYPED(fp_link);
+
+// theta_1..N and their rates, velocity of (p_x, p_y), and phi''[N-1].
+typedef struct TYPED(fp_motion) {
+    const REAL *theta, *dtheta;
+    REAL v_x, v_y;
+    const REAL *ubar;
+} TYPED(fp_motion);
+
+// The N angles of the given mean with angles_i - angles_{i+1} = joints_i, joints[N-1]: (1) read backwards. Serves
+// angles, rates and accelerations alike.
+void TYPED(moray_fp_angles)(int N, REAL mean, const REAL *joints, REAL *angles);
+
+// Accelerations of the links ddtheta[N] and of (p_x, p_y) ddp[2] in the current V, by the three balances of the whole
+// chain; leaves the state of every link in links[N]. False where the balances are singular.
+bool TYPED(moray_fp_accelerations)(const moray_robot *robot, const double V[2], const TYPED(fp_motion) * motion,
+                                   TYPED(fp_link) * links, REAL *ddtheta, REAL *ddp);
+
+// Solves the three balances of the chain for other loads h: moment about (p_x, p_y) and forces, overwritten with the
+// mean theta'' and p_x'', p_y''. Needs c, s, r of the links. False where they are singular.
+bool TYPED(moray_fp_balances)(const moray_robot *robot, const TYPED(fp_link) * links, REAL h[3]);
+
+// Joint torques u[N-1] of (5a) by inverse dynamics, after fp_accelerations; returns the joint power
+// sum u_i phi_i'.
+REAL TYPED(moray_fp_torques)(const moray_robot *robot, const TYPED(fp_motion) * motion, const TYPED(fp_link) * links,
+                             const REAL *ddtheta, REAL *u);

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "snake/model/fp_model.h"
+
+#include <tgmath.h>
+
+#include "snake/model/model.h"
+#include "snake/model/shape.h"
+
+#define REAL double
+#define TYPED(name) name##_d
+#include "snake/model/fp_core.inc"
+#undef REAL
+#undef TYPED
+
+#define REAL double complex
+#define TYPED(name) name##_z
+#include "snake/model/fp_core.inc"
+#undef REAL
+#undef TYPED
+
+static size_t scratch_bytes(int N)
+{
+    return (size_t)N * sizeof(fp_link_d);
+}
+
+static void rest(int N, double theta, double p_x, double p_y, double *x)
+{
+    for (int i = 0; i < N; i++)
+        x[i] = theta;
+    x[N] = p_x;
+    x[N + 1] = p_y;
+    for (int i = N + 2; i < 2 * N + 4; i++)
+        x[i] = 0;
+}
+
+static void joints(int N, const double *x, double *phi, double *v_phi)
+{
+    const double *dtheta = x + N + 2;
+    for (int i = 0; i < N - 1; i++) {
+        phi[i] = x[i] - x[i + 1]; // (1)
+        v_phi[i] = dtheta[i] - dtheta[i + 1];
+    }
+}
+
+// Mean link angle, p_x, p_y, and their rates.
+static void body(int N, const double *x, double out[6])
+{
+    for (int half = 0; half < 2; half++, x += N + 2, out += 3) {
+        out[0] = 0;
+        for (int i = 0; i < N; i++)
+            out[0] += x[i] / N;
+        out[1] = x[N];
+        out[2] = x[N + 1];
+    }
+}
+
+static void assemble(int N, const double *phi, const double *v_phi, const double in[6], double *x)
+{
+    for (int half = 0; half < 2; half++, x += N + 2, in += 3) {
+        moray_fp_angles_d(N, in[0], half ? v_phi : phi, x);
+        x[N] = in[1];
+        x[N + 1] = in[2];
+    }
+}
+
+static bool rates(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
+                  double *u, void *scratch)
+{
+    const int N = robot->links, half = N + 2;
+    const fp_motion_d motion = {
+        .theta = x, .dtheta = x + half, .v_x = x[half + N], .v_y = x[half + N + 1], .ubar = ubar};
+    for (int i = 0; i < half; i++)
+        dx[i] = x[half + i];
+    const bool regular = moray_fp_accelerations_d(robot, current, &motion, scratch, dx + half, dx + half + N);
+    if (u != NULL)
+        moray_fp_torques_d(robot, &motion, scratch, dx + half, u);
+    return regular;
+}
+
+static moray_pose pose(const moray_robot *robot, const double *x)
+{
+    const int N = robot->links;
+    double sum = 0, largest = 0;
+    for (int i = 0; i < N; i++)
+        sum += x[i];
+    for (int i = 0; i < N; i++)
+        largest = fmax(largest, fabs(x[i] - sum / N));
+    return (moray_pose){.heading = sum / N,
+                        .p_x = x[N],
+                        .p_y = x[N + 1],
+                        .v_x = x[2 * N + 2],
+                        .v_y = x[2 * N + 3],
+                        .link_angle = largest};
+}
+
+// x - p_x e = -l Dbar A cos(theta), and y likewise; y_i and angle_i first hold the products with A.
+static void links(const moray_robot *robot, const double *x, double *x_i, double *y_i, double *angle_i)
+{
+    const int N = robot->links;
+    for (int i = 0; i < N - 1; i++) {
+        y_i[i] = -robot->l * (cos(x[i]) + cos(x[i + 1]));
+        angle_i[i] = -robot->l * (sin(x[i]) + sin(x[i + 1]));
+    }
+    moray_shape_dbar(N, y_i, x_i);
+    moray_shape_dbar(N, angle_i, y_i);
+    for (int i = 0; i < N; i++) {
+        x_i[i] += x[N];
+        y_i[i] += x[N + 1];
+        angle_i[i] = x[i];
+    }
+}
+
+const snake_model moray_fp_model = {scratch_bytes, rest, joints, body, assemble, rates, pose, links};

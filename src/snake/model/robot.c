@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "moray/snake/model.h"
+
+#include <math.h>
+
+moray_link_geometry moray_link_geometry_paper(void)
+{
+    return (moray_link_geometry){
+        .length = 0.14, .a_e = 0.05, .b_e = 0.03, .rho = 1000, .C_f = 0.03, .C_D = 2, .C_A = 1, .C_M = 1};
+}
+
+moray_robot moray_robot_paper(void)
+{
+    moray_robot robot = {.links = 10, .rot_damping = 1.15, .rot_gain = 40, .k_p = 200, .k_d = 50};
+    moray_link_geometry geometry = moray_link_geometry_paper();
+    moray_robot_from_geometry(&robot, &geometry);
+    return robot;
+}
+
+// Elliptic cylinder with semi-axes a_e in the plane of motion and b_e across it; paper-notes, section 1.
+void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *g)
+{
+    const double l = g->length / 2, perimeter = g->a_e + g->b_e;
+    const double focal2 = g->a_e * g->a_e - g->b_e * g->b_e;
+    robot->l = l;
+    robot->m = g->rho * M_PI * g->a_e * g->b_e * g->length;
+    robot->J = robot->m * (g->length * g->length / 12 + g->a_e * g->a_e / 4);
+    robot->c_t = g->rho * M_PI * g->C_f * perimeter / 2 * l;
+    robot->c_n = g->rho * g->C_D * 2 * g->b_e * l;
+    robot->mu_n = g->rho * M_PI * g->C_A * g->b_e * g->b_e * g->length;
+    robot->lambda_1 = g->rho * M_PI * g->C_M * focal2 * focal2 * l * l * l / 12;
+    robot->lambda_2 = g->rho * M_PI * g->C_f * perimeter * l * l * l / 6;
+    robot->lambda_3 = g->rho * M_PI * g->C_f * perimeter * l * l * l * l / 8;
+}
+
+moray_status moray_robot_check(const moray_robot *robot)
+{
+    if (robot->links < 2)
+        return moray_error(MORAY_INPUT, "links = %d: a robot needs at least 2 links", robot->links);
+    const struct {
+        const char *name;
+        double value;
+        bool may_be_zero;
+    } fields[] = {
+        {"l", robot->l, false},
+        {"m", robot->m, false},
+        {"J", robot->J, false},
+        {"c_t", robot->c_t, true},
+        {"c_n", robot->c_n, true},
+        {"mu_n", robot->mu_n, true},
+        {"lambda_1", robot->lambda_1, true},
+        {"lambda_2", robot->lambda_2, true},
+        {"lambda_3", robot->lambda_3, true},
+        {"rot_damping", robot->rot_damping, true},
+        {"rot_gain", robot->rot_gain, true},
+        {"k_p", robot->k_p, true},
+        {"k_d", robot->k_d, true},
+    };
+    for (unsigned i = 0; i < sizeof fields / sizeof *fields; i++) {
+        const double value = fields[i].value;
+        if (!isfinite(value) || value < 0 || (value == 0 && !fields[i].may_be_zero))
+            return moray_error(MORAY_INPUT, "%s = %g: must be finite and %s 0", fields[i].name, value,
+                               fields[i].may_be_zero ? "at least" : "above");
+    }
+    return moray_ok();
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdlib.h>
+
+#include "snake/model/model.h"
+#include "snake/model/reading.h"
+
+struct moray_swimmer {
+    moray_robot robot, read; // read: as the reading has it
+    moray_reading reading;
+    moray_model kind;
+    const snake_model *model;
+    double current[2];
+    void *scratch;     // of the model
+    double *reference; // phi, phi_ref and their rates, N-1 each
+};
+
+static const snake_model *model_of(moray_model model)
+{
+    return model == MORAY_CONTROL_ORIENTED ? &moray_control_model : &moray_fp_model;
+}
+
+moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model)
+{
+    *swimmer = NULL;
+    MORAY_TRY(moray_robot_check(robot));
+    moray_swimmer *made = calloc(1, sizeof *made);
+    if (made == NULL)
+        return moray_error(MORAY_MEMORY, "a swimmer of %d links: no memory", robot->links);
+    made->robot = made->read = *robot;
+    made->kind = model;
+    made->model = model_of(model);
+    made->scratch = malloc(made->model->scratch_bytes(robot->links));
+    made->reference = malloc(4 * (size_t)(robot->links - 1) * sizeof(double));
+    if (made->scratch == NULL || made->reference == NULL) {
+        moray_swimmer_free(made);
+        return moray_error(MORAY_MEMORY, "a swimmer of %d links: no memory", robot->links);
+    }
+    *swimmer = made;
+    return moray_ok();
+}
+
+void moray_swimmer_free(moray_swimmer *swimmer)
+{
+    if (swimmer == NULL)
+        return;
+    free(swimmer->scratch);
+    free(swimmer->reference);
+    free(swimmer);
+}
+
+const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer)
+{
+    return &swimmer->robot;
+}
+
+moray_model moray_swimmer_model(const moray_swimmer *swimmer)
+{
+    return swimmer->kind;
+}
+
+int moray_swimmer_states(const moray_swimmer *swimmer)
+{
+    return 2 * swimmer->robot.links + 4;
+}
+
+void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y)
+{
+    swimmer->current[0] = V_x;
+    swimmer->current[1] = V_y;
+}
+
+void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading)
+{
+    if (swimmer->kind != MORAY_CONTROL_ORIENTED)
+        return;
+    swimmer->reading = reading;
+    swimmer->read = moray_reading_robot(&swimmer->robot, reading);
+}
+
+void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x)
+{
+    swimmer->model->rest(swimmer->robot.links, theta, p_x, p_y, x);
+}
+
+void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi)
+{
+    swimmer->model->joints(swimmer->robot.links, x, phi, v_phi);
+}
+
+void moray_state_body(moray_model model, int links, const double *x, double body[6])
+{
+    model_of(model)->body(links, x, body);
+}
+
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
+                           double *x)
+{
+    const int n = swimmer->robot.links - 1;
+    double *phi = swimmer->reference, *v_phi = phi + n;
+    moray_gait_reference(gait, n, t, phi, v_phi, v_phi + n);
+    swimmer->model->assemble(n + 1, phi, v_phi, body, x);
+}
+
+static bool all_finite(const double *values, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!isfinite(values[i]))
+            return false;
+    return true;
+}
+
+bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u)
+{
+    const bool regular = swimmer->model->rates(&swimmer->read, swimmer->current, x, ubar, dx, u, swimmer->scratch);
+    if (swimmer->reading & MORAY_READ_23H_PRINTED)
+        dx[moray_swimmer_states(swimmer) - 1] += moray_reading_23h_excess(&swimmer->read, swimmer->current, x);
+    return regular && all_finite(dx, moray_swimmer_states(swimmer)) &&
+           (u == NULL || all_finite(u, swimmer->robot.links - 1));
+}
+
+void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
+                           double *ubar)
+{
+    const int n = swimmer->robot.links - 1;
+    const double k_p = swimmer->robot.k_p, k_d = swimmer->robot.k_d;
+    double *phi = swimmer->reference, *v_phi = phi + n, *phi_ref = v_phi + n, *dphi_ref = phi_ref + n;
+    moray_swimmer_joints(swimmer, x, phi, v_phi);
+    moray_gait_reference(gait, n, t, phi_ref, dphi_ref, ubar);
+    for (int i = 0; i < n; i++) // (34)
+        ubar[i] += k_d * (dphi_ref[i] - v_phi[i]) + k_p * (phi_ref[i] - phi[i]);
+}
+
+moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x)
+{
+    return swimmer->model->pose(&swimmer->read, x);
+}
+
+void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i)
+{
+    swimmer->model->links(&swimmer->read, x, x_i, y_i, angle_i);
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+//
+// The control-oriented model averaged over a period of the gait, as a map. With phi = a sin(psi + (i-1) delta) + phi_0
+// the means of the features over psi are
+//   s: (N-1) phi_0     q: a^2 Q_1 / 2 + phi_0^2 Q_0     w: a^2 omega W     z: 0
+// for B = A Dbar has entries of which only the antisymmetric part, 1 - (k-j)/N, survives, and in w alone. To second
+// order in a the wave of s also drives one of v_n, which works back on the means: <s v_n> and <s dv_n> below, from
+//   mt N dv_n + N c_n v_n = 2 kappa s,     kappa = mu_p dv_t + c_p v_tr.
+#include <complex.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tgmath.h>
+
+#include "moray/snake/plant.h"
+#include "snake/model/control_body.h"
+
+enum { states = 8, inputs = 13 };
+
+typedef struct average {
+    control_body body;
+    int n;           // joints
+    double Q_0, G_0; // |A^T e|^2 and e^T G e, G = (D D^T)^{-1}
+} average;
+
+// What depends on delta alone: means of quadratic forms of the wave, per a^2 (and omega).
+typedef struct wave {
+    double complex Q_1, W, G_1, sigma; // |A^T wave|^2, thrust, wave^T G wave, |sum of the wave|^2
+} wave;
+
+// Sum along the m-th diagonal of G, of entries j (N - k) / N for j <= k.
+static double gram_diagonal(int N, int m)
+{
+    const double K = N - 1 - m; // entries: sum over j = 1..K of j (K + 1 - j)
+    return K * (K + 1) * (K + 2) / (6 * N);
+}
+
+static wave wave_of(const average *self, double complex delta)
+{
+    const int n = self->n, N = n + 1;
+    wave out = {.Q_1 = 2 + (n - 1) * (2 + 2 * cos(delta)), .sigma = n};
+    const double complex turn = 2 * cos(delta); // cos((m+1) delta) = turn cos(m delta) - cos((m-1) delta), sin likewise
+    double complex c = cos(delta), c_before = 1, s = sin(delta), s_before = 0;
+    out.G_1 = gram_diagonal(N, 0);
+    for (int m = 1; m < n; m++) {
+        out.W -= (n - m) * (1 - (double)m / N) * s;
+        out.G_1 += 2 * gram_diagonal(N, m) * c;
+        out.sigma += 2 * (n - m) * c;
+        const double complex c_next = turn * c - c_before, s_next = turn * s - s_before;
+        c_before = c, c = c_next;
+        s_before = s, s = s_next;
+    }
+    return out;
+}
+
+typedef struct means {
+    double complex s, q, w, v_tr, v_nr;
+} means;
+
+// Mean accelerations by the averaged (15b), (15c), linear in them; the wave's part is `lift` kappa, with lift =
+// 2 a^2 sigma (c_p c_n + mu_p mt omega^2) / (N (c_n^2 + mt^2 omega^2)).
+static void accelerations(const control_body *b, const means *y, double complex lift, double complex *dv_t,
+                          double complex *dv_n)
+{
+    const double complex coupling = 2 * b->mu_p * y->s;
+    const double complex M_tt = b->N * b->m - lift * b->mu_p, M_nn = b->N * b->mt;
+    const double complex f_t =
+        -b->c_p * y->w + 2 * b->c_p * y->s * y->v_nr - (b->N * b->c_t + b->ch_n * y->q - lift * b->c_p) * y->v_tr;
+    const double complex f_n = 2 * b->c_p * y->s * y->v_tr - b->N * b->c_n * y->v_nr;
+    const double complex determinant = M_tt * M_nn - coupling * coupling;
+    *dv_t = (M_nn * f_t + coupling * f_n) / determinant;
+    *dv_n = (M_tt * f_n + coupling * f_t) / determinant;
+}
+
+// in = [theta, p_x, p_y, v_theta, v_t, v_n, phi_0, phi_0', phi_0'', a, omega, delta, t]
+static void evaluate(void *context, const double complex *in, double complex *out)
+{
+    const average *self = context;
+    const control_body *b = &self->body;
+    const double complex c = cos(in[0]), s = sin(in[0]), v_theta = in[3], v_t = in[4], v_n = in[5];
+    const double complex phi_0 = in[6], a2 = in[9] * in[9], omega = in[10];
+    const wave of = wave_of(self, in[11]);
+    const means y = {.s = self->n * phi_0,
+                     .q = a2 * of.Q_1 / 2 + phi_0 * phi_0 * self->Q_0,
+                     .w = a2 * omega * of.W,
+                     .v_tr = v_t - (b->V_x * c + b->V_y * s),
+                     .v_nr = v_n - (-b->V_x * s + b->V_y * c)};
+    const double complex lift = 2 * a2 * of.sigma * (b->c_p * b->c_n + b->mu_p * b->mt * omega * omega) /
+                                (b->N * (b->c_n * b->c_n + b->mt * b->mt * omega * omega));
+    double complex dv_t, dv_n;
+    accelerations(b, &y, lift, &dv_t, &dv_n);
+    const double complex kappa = b->mu_p * dv_t + b->c_p * y.v_tr;
+    out[0] = v_theta;
+    out[1] = v_t * c - v_n * s;
+    out[2] = v_t * s + v_n * c;
+    out[3] = b->turning * y.v_tr * y.s - b->damping * v_theta; // (20)
+    out[4] = dv_t;
+    out[5] = dv_n;
+    out[6] = in[7];
+    out[7] = in[8];
+    out[8] = b->c_n * (a2 * omega * omega * of.G_1 / 2 + in[7] * in[7] * self->G_0) +
+             b->mt * self->G_0 * in[7] * in[8] + kappa * y.w;
+}
+
+moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec)
+{
+    const double probe[inputs] = {0.1, 0, 0, 0.2, 0.2, 0.05, 0.01, 0.003, 0.002, 0.04, 2, 0.7, 0.4};
+    *map = (moray_map){0};
+    MORAY_TRY(moray_robot_check(&spec->robot));
+    if (spec->joints != MORAY_JOINTS_STEERED || spec->path_forces || spec->path_angles)
+        return moray_error(MORAY_INPUT, "the averaged plant is steered and has no path outputs");
+    average *self = calloc(1, sizeof *self);
+    if (!self)
+        return moray_error(MORAY_MEMORY, "no memory for an averaged plant");
+    const int N = spec->robot.links;
+    *self = (average){.body = moray_body_of(&spec->robot, spec->current), .n = N - 1, .Q_0 = 4 * N - 6};
+    self->G_0 = N * ((double)N * N - 1) / 12; // sum of k (N - k) / 2, the solution of D D^T x = e
+    return moray_map_from_complex(map, inputs, states + 1, evaluate, self, free, probe);
+}

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "moray/snake/steering.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tgmath.h>
+
+enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2 };
+
+struct moray_steering {
+    moray_steering_spec spec;
+    moray_map plant;
+    moray_bounds *block;
+    const char **names; // of controls and events
+    moray_ocp *ocp;
+};
+
+moray_gait moray_steering_gait(const double s[parameters])
+{
+    return (moray_gait){.amplitude = s[0], .omega = s[1], .delta = s[2]};
+}
+
+void moray_steering_parameters(const moray_gait *gait, double s[parameters])
+{
+    memcpy(s, (double[]){gait->amplitude, gait->omega, gait->delta}, parameters * sizeof *s);
+}
+
+moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const moray_steering_limits *limits,
+                                                const moray_gait *gait, moray_model from, moray_model to)
+{
+    const double scale = moray_gait_map(robot, gait, from, to).amplitude / gait->amplitude;
+    moray_steering_limits mapped = *limits;
+    double *const offsets[] = {&mapped.offset, &mapped.offset_rate, &mapped.offset_acceleration};
+    for (int k = 0; k < 3; k++)
+        if (*offsets[k] < MORAY_INFINITY)
+            *offsets[k] *= scale;
+    return mapped;
+}
+
+// ---- Checks --------------------------------------------------------------------------------------------------------
+
+static moray_status check_range(const char *name, moray_bounds range, double least, double most, double unit)
+{
+    if (!(range.lower <= range.upper) || range.lower < least || range.upper > most)
+        return moray_error(MORAY_INPUT, "%s = %g:%g: must be a range lo:hi within %g:%g", name, range.lower / unit,
+                           range.upper / unit, least / unit, most / unit);
+    return moray_ok();
+}
+
+static moray_status check_limit(const char *name, double value)
+{
+    if (!(value > 0))
+        return moray_error(MORAY_INPUT, "%s = %g: must be above 0, or none", name, value);
+    return moray_ok();
+}
+
+static moray_status check_spec(const moray_steering_spec *spec)
+{
+    const double degree = M_PI / 180;
+    const moray_steering_limits *limits = &spec->limits;
+    MORAY_TRY(moray_robot_check(&spec->robot));
+    MORAY_TRY(check_range("theta_max_deg", limits->theta_max, 0, 89 * degree, degree));
+    MORAY_TRY(check_range("omega_deg_s", limits->omega, 1e-3 * degree, 1e5 * degree, degree));
+    MORAY_TRY(check_range("delta_deg", limits->delta, 1 * degree, 179 * degree, degree));
+    MORAY_TRY(check_limit("offset limit", limits->offset));
+    MORAY_TRY(check_limit("offset rate limit", limits->offset_rate));
+    MORAY_TRY(check_limit("offset acceleration limit", limits->offset_acceleration));
+    MORAY_TRY(check_limit("power_W", limits->power));
+    if (spec->averaged && spec->model != MORAY_CONTROL_ORIENTED)
+        return moray_error(MORAY_INPUT, "averaged: only the control-oriented model has an averaged plant");
+    if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]))
+        return moray_error(MORAY_INPUT, "current = %g,%g: must be finite", spec->current[0], spec->current[1]);
+    return moray_ok();
+}
+
+// ---- Ends ----------------------------------------------------------------------------------------------------------
+
+// a / (L cos(delta/2)) = sin theta_max of (33), or alpha / (2 sin(delta/2)) = theta_max of (27).
+static moray_num amplitude_event(const moray_steering_spec *spec, const moray_num *s)
+{
+    return spec->model == MORAY_CONTROL_ORIENTED ? s[0] / (2 * spec->robot.l * cos(s[2] / 2))
+                                                 : s[0] / (2 * sin(s[2] / 2));
+}
+
+static moray_bounds amplitude_bounds(const moray_steering_spec *spec)
+{
+    const moray_bounds theta_max = spec->limits.theta_max;
+    return spec->model == MORAY_CONTROL_ORIENTED ? moray_between(sin(theta_max.lower), sin(theta_max.upper))
+                                                 : theta_max;
+}
+
+// The objective, and as events the amplitude, the mean power and the task's own.
+static void ends(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    const moray_steering_spec *spec = data;
+    const moray_steering_task *task = &spec->task;
+    const moray_num duration = at->phase->tf - at->phase->t0, work = at->phase->q[task->nq];
+    moray_end_values own = {.objective = 0, .e = out->e + own_events};
+    if (task->events)
+        task->events(at, &own, task->self);
+    out->objective = own.objective + task->weight_time * duration + task->weight_power * work;
+    for (int m = 0; m < task->nq; m++)
+        out->objective += task->weight[m] * at->phase->q[m];
+    out->e[0] = amplitude_event(spec, at->s);
+    out->e[1] = work / duration;
+}
+
+// ---- Building ------------------------------------------------------------------------------------------------------
+
+// The task's functions on the inputs of the phase, joined to the plant's.
+static moray_status make_plant(moray_steering *problem)
+{
+    const moray_steering_spec *spec = &problem->spec;
+    const moray_steering_task *task = &spec->task;
+    const moray_plant_spec plant_spec = {
+        .robot = spec->robot, .joints = MORAY_JOINTS_STEERED, .current = {spec->current[0], spec->current[1]}};
+    const int n_in = states + 1 + task->nu + parameters + 1, extra = task->nc + task->nq;
+    const double typical[states + 1] = {0.1, 0.2, 0.3, 0.1, 0.2, 0.02, 0.01, 0.002, 0.001};
+    int place[states + 1 + parameters + 1];
+    moray_map plant, added;
+    MORAY_TRY(spec->averaged                          ? moray_average_plant(&plant, &plant_spec)
+              : spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&plant, &plant_spec)
+                                                      : moray_fp_plant(&plant, &plant_spec));
+    if (extra == 0) {
+        problem->plant = plant;
+        return moray_ok();
+    }
+    double probe[states + 1 + 16 + parameters + 1] = {0};
+    memcpy(probe, typical, sizeof typical);
+    for (int k = 0; k < task->nu; k++)
+        probe[states + 1 + k] = 0.45 * task->u[k].lower + 0.55 * task->u[k].upper;
+    memcpy(probe + n_in - 4, (double[]){0.05, 2, 0.7, 0.6 * spec->t0.lower + 0.4 * spec->tf.lower}, 4 * sizeof *probe);
+    const moray_status status = moray_map_from_complex(&added, n_in, extra, task->extra, task->self, NULL, probe);
+    if (moray_failed(status)) {
+        moray_map_release(&plant);
+        return status;
+    }
+    for (int k = 0; k < states + 1 + parameters + 1; k++)
+        place[k] = k <= states ? k : k + task->nu;
+    return moray_map_join(&problem->plant, &plant, place, &added, states);
+}
+
+static moray_bounds narrower(moray_bounds one, moray_bounds other)
+{
+    return moray_between(fmax(one.lower, other.lower), fmin(one.upper, other.upper));
+}
+
+static moray_bounds within(double limit)
+{
+    return moray_between(-limit, limit);
+}
+
+static const char *const s_names[][parameters] = {{"a", "omega", "delta"}, {"alpha", "omega", "delta"}};
+static const char *const x_names[][states] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n", "phi_0", "phi_0'"},
+                                              {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y", "phi_0", "phi_0'"}};
+
+static moray_status make_ocp(moray_steering *problem)
+{
+    const moray_steering_spec *spec = &problem->spec;
+    const moray_steering_limits *limits = &spec->limits;
+    const moray_steering_task *task = &spec->task;
+    const int nu = 1 + task->nu, ne = own_events + task->ne;
+    problem->block = calloc((size_t)(3 * states + nu + ne), sizeof *problem->block);
+    problem->names = calloc((size_t)(nu + ne), sizeof *problem->names);
+    if (!problem->block || !problem->names)
+        return moray_error(MORAY_MEMORY, "no memory for the steering problem");
+    moray_bounds *x = problem->block, *x0 = x + states, *xf = x0 + states, *u = xf + states, *e = u + nu;
+    const char **u_names = problem->names, **e_names = u_names + nu;
+    for (int r = 0; r < states; r++)
+        x[r] = r == 6 ? within(limits->offset) : r == 7 ? within(limits->offset_rate) : moray_free();
+    for (int r = 0; r < states; r++) {
+        x0[r] = narrower(x[r], spec->x0[r]);
+        xf[r] = narrower(x[r], spec->xf[r]);
+    }
+    u[0] = within(limits->offset_acceleration), u_names[0] = "phi_0''";
+    e[0] = amplitude_bounds(spec), e_names[0] = "theta_max";
+    e[1] = moray_at_most(limits->power), e_names[1] = "mean power";
+    for (int k = 0; k < task->nu; k++)
+        u[1 + k] = task->u[k], u_names[1 + k] = task->u_names[k];
+    for (int k = 0; k < task->ne; k++)
+        e[own_events + k] = task->e[k], e_names[own_events + k] = task->e_names[k];
+    const bool control = spec->model == MORAY_CONTROL_ORIENTED;
+    const double largest = control ? 2 * spec->robot.l * sin(limits->theta_max.upper) // of a, by (33)
+                                   : 2 * limits->theta_max.upper;                     // of alpha, by (27)
+    const moray_bounds s[] = {moray_between(0, largest), limits->omega, limits->delta};
+    const moray_phase_spec phase = {.name = task->name,
+                                    .nx = states,
+                                    .nu = nu,
+                                    .nc = task->nc,
+                                    .nq = task->nq + 1,
+                                    .map = &problem->plant,
+                                    .t0 = spec->t0,
+                                    .tf = spec->tf,
+                                    .x = {x, states},
+                                    .x0 = {x0, states},
+                                    .xf = {xf, states},
+                                    .u = {u, nu},
+                                    .c = {task->c, task->nc},
+                                    .x_names = x_names[spec->model],
+                                    .u_names = u_names,
+                                    .c_names = task->c_names};
+    return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = task->name,
+                                                          .phases = 1,
+                                                          .phase = &phase,
+                                                          .ns = parameters,
+                                                          .s = {s, parameters},
+                                                          .s_names = s_names[spec->model],
+                                                          .ne = ne,
+                                                          .e = {e, ne},
+                                                          .e_names = e_names,
+                                                          .endpoint = ends,
+                                                          .data = &problem->spec});
+}
+
+moray_status moray_steering_new(moray_steering **result, const moray_steering_spec *spec)
+{
+    *result = NULL;
+    MORAY_TRY(check_spec(spec));
+    moray_steering *problem = calloc(1, sizeof *problem);
+    if (!problem)
+        return moray_error(MORAY_MEMORY, "no memory for the steering problem");
+    problem->spec = *spec;
+    moray_status status = make_plant(problem);
+    if (!moray_failed(status))
+        status = make_ocp(problem);
+    if (moray_failed(status))
+        moray_steering_free(problem);
+    else
+        *result = problem;
+    return status;
+}
+
+void moray_steering_free(moray_steering *problem)
+{
+    if (!problem)
+        return;
+    moray_ocp_free(problem->ocp);
+    moray_map_release(&problem->plant);
+    free(problem->block);
+    free(problem->names);
+    free(problem);
+}
+
+// ---- Reading -------------------------------------------------------------------------------------------------------
+
+const moray_ocp *moray_steering_ocp(const moray_steering *problem)
+{
+    return problem->ocp;
+}
+
+const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem)
+{
+    return &problem->spec;
+}
+
+double moray_steering_work(const moray_steering *problem, const moray_solution *solution)
+{
+    return moray_solution_integrals(solution, 0)[problem->spec.task.nq];
+}
+
+moray_offset moray_steering_offset(const moray_solution *solution, double t)
+{
+    double t0, tf, x[states], u[16];
+    moray_solution_times(solution, 0, &t0, &tf);
+    moray_solution_at(solution, 0, t, x, u);
+    if (t > tf)
+        return (moray_offset){.value = x[6]};
+    return (moray_offset){x[6], x[7], u[0]};
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "moray/snake/turn.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tgmath.h>
+
+#include "snake/steer/guess.h"
+
+enum { states = MORAY_STEERING_STATES };
+
+struct moray_turn_task {
+    moray_turn_spec spec;
+    double weight;
+    moray_bounds e[2];
+};
+
+static const char *const event_names[] = {"heading at the end", "turning at the end"};
+
+static void extra(void *self, const double complex *in, double complex *out)
+{
+    const moray_turn_task *task = self;
+    const moray_num steering = in[states] / task->spec.limits.offset;
+    *out = steering * steering;
+}
+
+// Heading and its rate without the undulation, in whatever stroke the turn ends.
+static void events(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    const moray_turn_task *task = data;
+    const double *factor = task->spec.undulation;
+    const moray_num omega = at->s[1], c = cos(omega * at->phase->tf), s = sin(omega * at->phase->tf);
+    out->e[0] = at->phase->xf[0] - factor[0] * c - factor[1] * s;
+    out->e[1] = at->phase->xf[3] - omega * (factor[1] * c - factor[0] * s);
+}
+
+static moray_status check(const moray_turn_spec *spec)
+{
+    if (!isfinite(spec->heading))
+        return moray_error(MORAY_INPUT, "heading at the end = %g: must be finite", spec->heading);
+    if (!(spec->limits.offset < MORAY_INFINITY))
+        return moray_error(MORAY_INPUT, "offset: must be limited, the steering effort counts in it");
+    if (!(spec->steering >= 0))
+        return moray_error(MORAY_INPUT, "weight of the steering = %g: must not be below 0", spec->steering);
+    if (!(spec->shortest > 0 && spec->longest > spec->shortest))
+        return moray_error(MORAY_INPUT, "time of the turn = %g:%g s: must be a range above 0", spec->shortest,
+                           spec->longest);
+    return moray_ok();
+}
+
+static moray_steering_spec steering_spec(const moray_turn_spec *spec, moray_turn_task *task)
+{
+    moray_steering_spec steering = {.robot = spec->robot,
+                                    .model = spec->model,
+                                    .averaged = spec->averaged,
+                                    .current = {spec->current[0], spec->current[1]},
+                                    .limits = spec->limits,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_between(spec->shortest, spec->longest),
+                                    .task = {.name = "turn",
+                                             .nq = 1,
+                                             .extra = extra,
+                                             .ne = 2,
+                                             .events = events,
+                                             .self = task,
+                                             .e = task->e,
+                                             .e_names = event_names,
+                                             .weight = &task->weight,
+                                             .weight_time = 1}};
+    for (int r = 0; r < states; r++) {
+        steering.x0[r] = moray_fixed(spec->start[r]);
+        steering.xf[r] = r >= 6 ? moray_fixed(0) : moray_free();
+    }
+    for (int k = 0; k < 2 && spec->to_position; k++)
+        steering.xf[1 + k] = moray_fixed(spec->position[k]);
+    return steering;
+}
+
+moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec)
+{
+    *problem = (moray_turn){0};
+    MORAY_TRY(check(spec));
+    problem->task = calloc(1, sizeof *problem->task);
+    if (!problem->task)
+        return moray_error(MORAY_MEMORY, "no memory for the turn");
+    *problem->task =
+        (moray_turn_task){.spec = *spec, .weight = spec->steering, .e = {moray_fixed(spec->heading), moray_fixed(0)}};
+    const moray_steering_spec steering = steering_spec(spec, problem->task);
+    const moray_status status = moray_steering_new(&problem->steering, &steering);
+    if (moray_failed(status))
+        moray_turn_free(problem);
+    return status;
+}
+
+void moray_turn_free(moray_turn *problem)
+{
+    moray_steering_free(problem->steering);
+    free(problem->task);
+    *problem = (moray_turn){0};
+}
+
+// ---- Plans ---------------------------------------------------------------------------------------------------------
+
+// How long it takes at least, roughly.
+static double likely(const moray_turn_spec *spec, double speed, double turn_rate)
+{
+    const double ramp = spec->limits.offset / spec->limits.offset_rate;
+    double seconds = fabs(spec->heading) / fabs(turn_rate) + 2 * ramp + 1;
+    if (spec->to_position) {
+        const double *V = spec->current, way = hypot(spec->position[0], spec->position[1]);
+        const double with = way > 0 ? (V[0] * spec->position[0] + V[1] * spec->position[1]) / way : 0;
+        seconds = fmax(seconds, way / fmax(speed + with, 0.2 * speed));
+    }
+    return seconds;
+}
+
+// Turning steadily; where the end has a position, straight there.
+static void guess_steady(steering_guess *guess, const moray_turn_spec *spec, const moray_straight_motion *straight,
+                         double seconds, double turn_rate)
+{
+    const int n = guess->samples.n;
+    const double *V = spec->current, rate = spec->heading / seconds, step = seconds / (n - 1);
+    double p[2] = {0, 0};
+    for (int k = 0; k < n; k++) {
+        double *x = guess->x + k * states;
+        const double heading = rate * step * k;
+        guess->time[k] = step * k;
+        moray_straight_motion_start(straight, heading, V, x);
+        if (spec->averaged)
+            x[0] = heading;
+        x[3] = rate;
+        x[6] = fmin(fmax(rate / turn_rate, -0.9), 0.9) * spec->limits.offset;
+        memcpy(x + 1, p, sizeof p);
+        for (int i = 0; i < 2; i++)
+            p[i] += step * (spec->to_position ? spec->position[i] / seconds
+                                              : straight->speed * (i ? sin(heading) : cos(heading)) + V[i]);
+    }
+    moray_steering_parameters(&straight->gait, guess->s);
+}
+
+static moray_status pose_problem(moray_turn_plan *plan, moray_turn_spec *spec, double turn_rate)
+{
+    const double seconds = likely(spec, plan->straight.speed, turn_rate);
+    moray_straight_motion_start(&plan->straight, 0, spec->current, spec->start);
+    if (spec->averaged)
+        spec->start[0] = spec->start[3] = 0;
+    for (int k = 0; k < 2; k++)
+        spec->undulation[k] = spec->averaged ? 0 : plan->straight.undulation[k];
+    spec->shortest = 0.1;
+    spec->longest = 6 * seconds;
+    return moray_turn_new(&plan->problem, spec);
+}
+
+static moray_status make(moray_turn_plan *plan, moray_turn_spec *spec, const moray_settings *settings,
+                         const moray_gait *gait, double turn_rate, const moray_turn_plan *from, double stretch)
+{
+    steering_guess samples;
+    MORAY_TRY(moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, gait));
+    MORAY_TRY(pose_problem(plan, spec, turn_rate));
+    MORAY_TRY(moray_steering_guess_new(&samples, 16 * settings->intervals + 1, 1));
+    if (from)
+        moray_steering_guess_from_other(&samples, &spec->robot, from->solution, &from->straight, spec->model, stretch);
+    else
+        guess_steady(&samples, spec, &plan->straight, likely(spec, plan->straight.speed, turn_rate), turn_rate);
+    const moray_guess guess = {.phase = &samples.samples, .s = samples.s};
+    const moray_status status =
+        moray_solve(moray_steering_ocp(plan->problem.steering), settings, &guess, &plan->solution);
+    free(samples.time);
+    MORAY_TRY(status);
+    if (!spec->averaged)
+        return moray_ok();
+    const moray_gait found = moray_steering_gait(moray_solution_parameters(plan->solution));
+    return moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, &found);
+}
+
+moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec, const moray_settings *settings,
+                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from, double stretch)
+{
+    moray_turn_spec own = *spec;
+    if (!own.averaged)
+        moray_steering_keep_gait(&own.limits, &own.robot, own.model, gait);
+    *plan = (moray_turn_plan){0};
+    const moray_status status = make(plan, &own, settings, gait, turn_rate, from, stretch);
+    if (moray_failed(status))
+        moray_turn_plan_free(plan);
+    return status;
+}
+
+void moray_turn_plan_free(moray_turn_plan *plan)
+{
+    moray_solution_free(plan->solution);
+    moray_turn_free(&plan->problem);
+    *plan = (moray_turn_plan){0};
+}

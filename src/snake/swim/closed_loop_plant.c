@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "snake/swim/closed_loop_plant.h"
+
+#include <stdlib.h>
+
+moray_status moray_swim_plant_new(swim_plant *plant, moray_swimmer *swimmer, const moray_gait *gait)
+{
+    const int n_states = moray_swimmer_states(swimmer), n_joints = moray_swimmer_robot(swimmer)->links - 1;
+    double *memory = calloc((size_t)(2 * n_states + 1 + 4 * n_joints), sizeof *memory);
+    if (!memory)
+        return moray_error(MORAY_MEMORY, "no memory to simulate a swimmer of %d states", n_states);
+    *plant = (swim_plant){.swimmer = swimmer,
+                          .gait = *gait,
+                          .n_states = n_states,
+                          .n_joints = n_joints,
+                          .x = memory,
+                          .dx = memory + n_states + 1,
+                          .ubar = memory + 2 * n_states + 1,
+                          .u = memory + 2 * n_states + 1 + n_joints,
+                          .phi = memory + 2 * n_states + 1 + 2 * n_joints,
+                          .v_phi = memory + 2 * n_states + 1 + 3 * n_joints};
+    return moray_ok();
+}
+
+void moray_swim_plant_free(swim_plant *plant)
+{
+    free(plant->x);
+    *plant = (swim_plant){0};
+}
+
+static bool rates(swim_plant *plant, double t, const double *x, double *dx)
+{
+    if (plant->controller) {
+        const moray_offset offset = plant->controller->offset(t, plant->controller->self);
+        plant->gait.offset = offset.value;
+        plant->gait.offset_rate = offset.rate;
+        plant->gait.offset_acceleration = offset.acceleration;
+    }
+    moray_swimmer_control(plant->swimmer, &plant->gait, t, x, plant->ubar);
+    return moray_swimmer_rates(plant->swimmer, x, plant->ubar, dx, plant->u);
+}
+
+static bool rhs(double t, const double *x, double *dx, void *self)
+{
+    swim_plant *plant = self;
+    if (!rates(plant, t, x, dx))
+        return false;
+    moray_swimmer_joints(plant->swimmer, x, plant->phi, plant->v_phi);
+    double power = 0;
+    for (int i = 0; i < plant->n_joints; i++)
+        power += plant->u[i] * plant->v_phi[i];
+    dx[plant->n_states] = power;
+    return true;
+}
+
+moray_ode moray_swim_plant_ode(swim_plant *plant)
+{
+    return (moray_ode){.n = plant->n_states + 1, .rhs = rhs, .self = plant};
+}
+
+moray_swim_sample moray_swim_plant_sample(swim_plant *plant, double t, const double *x)
+{
+    rates(plant, t, x, plant->dx); // of an accepted state, where the simulator has asked before
+    return (moray_swim_sample){
+        .t = t, .x = x, .u = plant->u, .pose = moray_swimmer_pose(plant->swimmer, x), .energy = x[plant->n_states]};
+}

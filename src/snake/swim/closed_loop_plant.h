@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+//
+// A swimmer in closed loop as an equation to simulate: its state, then the joint work as one more.
+#ifndef SRC_SNAKE_SWIM_CLOSED_LOOP_PLANT_H
+#define SRC_SNAKE_SWIM_CLOSED_LOOP_PLANT_H
+
+#include "moray/snake/swim.h"
+
+typedef struct swim_plant {
+    moray_swimmer *swimmer;             // the caller's
+    moray_gait gait;                    // followed now
+    const moray_controller *controller; // NULL: nobody steers
+    int n_states, n_joints;
+    double *x;                           // n_states + 1: room for a start or end state
+    double *ubar, *u, *phi, *v_phi, *dx; // scratch
+} swim_plant;
+
+// Error: MORAY_MEMORY.
+moray_status moray_swim_plant_new(swim_plant *plant, moray_swimmer *swimmer, const moray_gait *gait);
+void moray_swim_plant_free(swim_plant *plant);
+
+// n_states + 1 states; `self` is the plant.
+moray_ode moray_swim_plant_ode(swim_plant *plant);
+
+// The sample of the state x[n_states + 1]; points into x and the plant.
+moray_swim_sample moray_swim_plant_sample(swim_plant *plant, double t, const double *x);
+
+#endif

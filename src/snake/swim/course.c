@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stddef.h>
+
+#include "snake/swim/steady.h"
+
+static const double ON_COURSE = 1e-6; // [rad]
+static const double MATCHED = 1e-6;   // of the target
+enum { MOST_STEPS = 20 };
+
+static double degrees(double angle)
+{
+    return angle * 180 / M_PI;
+}
+
+// Direction in which the robot must swim through the water, at its present speed, for its track to lie on the course.
+static moray_status crab_direction(const moray_swim_setup *setup, double course, const moray_steady *steady,
+                                   double *direction)
+{
+    const double *V = setup->current, along = V[0] * cos(course) + V[1] * sin(course);
+    const double W = -V[0] * sin(course) + V[1] * cos(course), U = steady->speed;
+    if (steady->turning)
+        return moray_error(MORAY_NOT_SOLVED, "the gait turns at %.4g rad/s: it holds no course", steady->heading_drift);
+    if (fabs(W) >= U)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "the gait's speed through the water U = %.4g m/s cannot hold the course of %.4g deg against "
+                           "a cross current of W = %.4g m/s",
+                           U, degrees(course), W);
+    if (sqrt(U * U - W * W) + along <= 0)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "the gait's speed through the water U = %.4g m/s cannot make way on the course of %.4g deg "
+                           "against a current of %.4g m/s along it and W = %.4g m/s across",
+                           U, degrees(course), along, W);
+    *direction = course - asin(W / U);
+    return moray_ok();
+}
+
+// Steady swimming from the start heading, and by how much the robot swims to the left of where it must [rad].
+static moray_status error_of(const moray_swim_setup *setup, const moray_gait *gait, double course, double start_heading,
+                             int min_periods, moray_steady *steady, double *error)
+{
+    double direction = 0;
+    MORAY_TRY(moray_swim_settle(setup, gait, start_heading, min_periods, steady, NULL, 2));
+    MORAY_TRY(crab_direction(setup, course, steady, &direction));
+    const double swims = atan2(steady->v_y - setup->current[1], steady->v_x - setup->current[0]);
+    *error = remainder(swims - direction, 2 * M_PI);
+    return moray_ok();
+}
+
+// Secant on the start heading; the slope is 1 but for what the current does to the transient from rest.
+static moray_status hold(const moray_swim_setup *setup, const moray_gait *gait, double course, double start_heading,
+                         moray_steady *steady)
+{
+    double heading = start_heading, slope = 1, error;
+    MORAY_TRY(error_of(setup, gait, course, heading, 0, steady, &error));
+    for (int k = 0; k < MOST_STEPS && fabs(error) > ON_COURSE; k++) {
+        const double step = -error / slope, before = error;
+        heading += step;
+        MORAY_TRY(error_of(setup, gait, course, heading, steady->periods, steady, &error));
+        slope = fmax((error - before) / step, 0.3);
+    }
+    if (fabs(error) > ON_COURSE)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "no start heading found for the course of %.4g deg: from %.4g deg the robot swims %.2g deg "
+                           "off it",
+                           degrees(course), degrees(heading), degrees(error));
+    return moray_ok();
+}
+
+moray_status moray_swim_hold_course(const moray_swim_setup *setup, const moray_gait *gait, double course,
+                                    moray_steady *steady)
+{
+    return hold(setup, gait, course, course, steady);
+}
+
+// What is matched, and the power of omega with which it grows at constant shape where drag is linear in velocity.
+typedef struct {
+    const char *name, *unit;
+    double target, exponent;
+    bool is_power;
+} aim;
+
+static moray_status match(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
+                          moray_steady *steady)
+{
+    if (!(to->target > 0 && isfinite(to->target)))
+        return moray_error(MORAY_INPUT, "%s to match = %g %s: must be finite and above 0", to->name, to->target,
+                           to->unit);
+    double slope = to->exponent, heading = course, step = 0, before = 0;
+    for (int k = 0; k < MOST_STEPS; k++) {
+        MORAY_TRY(hold(setup, gait, course, heading, steady));
+        const double value = to->is_power ? steady->power : steady->speed, error = log(value / to->target);
+        if (fabs(error) <= MATCHED)
+            return moray_ok();
+        if (!isfinite(error))
+            break;
+        if (k > 0)
+            slope = fmax((error - before) / step, 0.2 * to->exponent);
+        step = fmax(fmin(-error / slope, 1), -1);
+        before = error;
+        heading = steady->start_heading;
+        gait->omega *= exp(step);
+    }
+    return moray_error(MORAY_NOT_SOLVED, "no omega found at which the %s is %.6g %s: it is %.6g at omega = %.6g rad/s",
+                       to->name, to->target, to->unit, to->is_power ? steady->power : steady->speed, gait->omega);
+}
+
+moray_status moray_swim_match_power(const moray_swim_setup *setup, moray_gait *gait, double course, double power,
+                                    moray_steady *steady)
+{
+    return match(setup, gait, course, &(aim){"mean power", "W", power, 2, true}, steady);
+}
+
+moray_status moray_swim_match_speed(const moray_swim_setup *setup, moray_gait *gait, double course, double speed,
+                                    moray_steady *steady)
+{
+    return match(setup, gait, course, &(aim){"speed through the water", "m/s", speed, 1, false}, steady);
+}

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+//
+// The orbit as a motion: states between the nodes, the swimmer on it, means and peaks.
+#include <math.h>
+#include <string.h>
+
+#include "snake/swim/orbit.h"
+#include "snake/swim/steady.h"
+#include "snake/model/fp_model.h"
+
+int moray_orbit_locate(moray_orbit *orbit, double t)
+{
+    const orbit_system *system = &orbit->system;
+    const double h = moray_orbit_step(system), last = system->spec.intervals - 1;
+    const double interval = fmax(0, fmin(floor(t / h), last));
+    moray_scheme_basis(&system->scheme, t / h - interval, orbit->ell, orbit->integral);
+    return (int)interval;
+}
+
+double moray_orbit_integral(const moray_orbit *orbit, int interval, int row)
+{
+    const orbit_system *system = &orbit->system;
+    const int points = system->scheme.points;
+    const double *out = system->out + interval * (points - 1) * system->outputs + row;
+    double sum = 0;
+    for (int j = 0; j < points; j++)
+        sum += orbit->integral[j] * out[j * system->outputs];
+    return moray_orbit_step(system) * sum;
+}
+
+void moray_orbit_state(const moray_orbit *orbit, int interval, double x[ORBIT_STATES])
+{
+    const double *start = orbit->z + interval * (orbit->system.scheme.points - 1) * ORBIT_STATES;
+    for (int r = 0; r < ORBIT_STATES; r++)
+        x[r] = start[r] + moray_orbit_integral(orbit, interval, r);
+}
+
+// Joint work of the intervals before this one.
+static double work_before(const moray_orbit *orbit, int interval)
+{
+    const orbit_system *system = &orbit->system;
+    const moray_scheme *scheme = &system->scheme;
+    double sum = 0;
+    for (int k = 0; k < interval; k++)
+        for (int j = 0; j < scheme->points; j++)
+            sum += scheme->b[j] * system->out[(k * (scheme->points - 1) + j) * system->outputs + system->power];
+    return moray_orbit_step(system) * sum;
+}
+
+// The swimmer's state from the plant's, with the joints on the gait (phi, then v_phi).
+static void swimmer_state(moray_orbit *orbit, const double plant[ORBIT_STATES])
+{
+    const int N = orbit->system.spec.robot.links, joints = N - 1;
+    const bool control = orbit->system.spec.model == MORAY_CONTROL_ORIENTED;
+    for (int half = 0; half < 2; half++) {
+        double *x = orbit->x + half * (N + 2);
+        const double *phi = orbit->phi + half * joints, *rigid = plant + 3 * half;
+        if (control) {
+            memcpy(x, phi, (size_t)joints * sizeof *x);
+            memcpy(x + joints, rigid, 3 * sizeof *x);
+        } else {
+            moray_fp_angles_d(N, rigid[0], phi, x);
+            memcpy(x + N, rigid + 1, 2 * sizeof *x);
+        }
+    }
+}
+
+moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample *sample)
+{
+    const int joints = orbit->system.spec.robot.links - 1, interval = moray_orbit_locate(orbit, t);
+    double x[ORBIT_STATES], *phi = orbit->phi;
+    moray_orbit_state(orbit, interval, x);
+    moray_gait_reference(&orbit->gait, joints, t, phi, phi + joints, phi + 2 * joints);
+    swimmer_state(orbit, x);
+    if (!moray_swimmer_rates(orbit->swimmer, orbit->x, phi + 2 * joints, orbit->dx, orbit->u))
+        return moray_error(MORAY_NUMERIC, "the model is not finite on the orbit at t = %g", t);
+    *sample = (moray_swim_sample){.t = t,
+                                  .x = orbit->x,
+                                  .u = orbit->u,
+                                  .pose = moray_swimmer_pose(orbit->swimmer, orbit->x),
+                                  .energy = work_before(orbit, interval) +
+                                            moray_orbit_integral(orbit, interval, orbit->system.power)};
+    return moray_ok();
+}
+
+static void keep_peak(orbit_peak *peak, const moray_swim_sample *sample, int joints)
+{
+    for (int i = 0; i < joints; i++)
+        if (fabs(sample->u[i]) > peak->effort)
+            *peak =
+                (orbit_peak){.time = sample->t, .effort = fabs(sample->u[i]), .joint = i, .negative = sample->u[i] < 0};
+}
+
+// Both ends are one sample.
+static moray_status measure_samples(moray_orbit *orbit, moray_steady *steady)
+{
+    const double T = moray_orbit_period(&orbit->system);
+    moray_swim_sample sample;
+    orbit->peak = (orbit_peak){0};
+    for (int k = 0; k <= FINEST; k++) {
+        MORAY_TRY(moray_orbit_sample(orbit, T * k / FINEST, &sample));
+        keep_peak(&orbit->peak, &sample, orbit->system.spec.robot.links - 1);
+        steady->peak_link_angle = fmax(steady->peak_link_angle, sample.pose.link_angle);
+        steady->heading += (k == 0 || k == FINEST ? 0.5 : 1) * sample.pose.heading / FINEST;
+    }
+    steady->peak_effort = orbit->peak.effort;
+    return moray_ok();
+}
+
+moray_status moray_orbit_measure(moray_orbit *orbit, moray_steady *steady)
+{
+    const orbit_system *system = &orbit->system;
+    const double T = moray_orbit_period(system), *V = system->spec.current;
+    const double *last = orbit->z + (system->nodes - 1) * ORBIT_STATES;
+    *steady = (moray_steady){.v_x = (last[1] - orbit->z[1]) / T,
+                             .v_y = (last[2] - orbit->z[2]) / T,
+                             .power = work_before(orbit, system->spec.intervals) / T,
+                             .heading_drift = (last[0] - orbit->z[0]) / T,
+                             .start_heading = orbit->z[0]};
+    steady->speed = hypot(steady->v_x - V[0], steady->v_y - V[1]);
+    steady->cost_of_transport = steady->speed > 0 ? steady->power / steady->speed : INFINITY;
+    steady->turning = fabs(last[0] - orbit->z[0]) > TURNING;
+    return measure_samples(orbit, steady);
+}
+
+static moray_status fill_track(moray_orbit *orbit, int points, moray_swim_track *track)
+{
+    const double T = moray_orbit_period(&orbit->system);
+    moray_swim_sample sample;
+    for (int k = 0; k < points; k++) {
+        MORAY_TRY(moray_orbit_sample(orbit, T * k / (points - 1), &sample));
+        moray_swim_track_add(&sample, track);
+    }
+    return moray_ok();
+}
+
+moray_status moray_orbit_track(moray_orbit *orbit, int points, moray_swim_track *track)
+{
+    *track = (moray_swim_track){0};
+    if (points < 2)
+        return moray_error(MORAY_INPUT, "points = %d: an orbit has at least 2", points);
+    if (!orbit->found)
+        return moray_error(MORAY_INPUT, "no orbit has been found yet");
+    MORAY_TRY(moray_swim_track_new(track, orbit->swimmer, points));
+    const moray_status status = fill_track(orbit, points, track);
+    if (moray_failed(status))
+        moray_swim_track_free(track);
+    return status;
+}

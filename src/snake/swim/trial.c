@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "moray/snake/trial.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+moray_status moray_test_rig_new(moray_test_rig *rig, const moray_robot *robot, const double current[2], double course)
+{
+    *rig = (moray_test_rig){
+        .current = {current[0], current[1]}, .course = course, .settings = moray_swim_settings_default()};
+    for (int model = 0; model < 2; model++) {
+        moray_status status = moray_swimmer_new(&rig->swimmer[model], robot, (moray_model)model);
+        if (moray_failed(status)) {
+            moray_test_rig_free(rig);
+            return status;
+        }
+        moray_swimmer_set_current(rig->swimmer[model], current[0], current[1]);
+    }
+    return moray_ok();
+}
+
+void moray_test_rig_free(moray_test_rig *rig)
+{
+    for (int model = 0; model < 2; model++) {
+        moray_swimmer_free(rig->swimmer[model]);
+        rig->swimmer[model] = NULL;
+    }
+}
+
+moray_swim_setup moray_test_rig_setup(const moray_test_rig *rig, moray_model model)
+{
+    return (moray_swim_setup){
+        .swimmer = rig->swimmer[model], .current = {rig->current[0], rig->current[1]}, .settings = rig->settings};
+}
+
+moray_gait moray_gait_paper(const moray_robot *robot)
+{
+    const double degree = M_PI / 180, delta = 40 * degree;
+    return (moray_gait){.amplitude = moray_amplitude_from_theta_max(robot, MORAY_CONTROL_ORIENTED, 20 * degree, delta),
+                        .omega = 120 * degree,
+                        .delta = delta};
+}
+
+moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_model model, moray_gait_trial *trial)
+{
+    const moray_swim_setup setup = moray_test_rig_setup(rig, model);
+    trial->why[model] = moray_swim_hold_course(&setup, &trial->gait[model], rig->course, &trial->steady[model]);
+    trial->held[model] = !moray_failed(trial->why[model]);
+    return trial->held[model]
+               ? moray_ok()
+               : moray_swim_steady(&setup, &trial->gait[model], rig->course, &trial->steady[model], NULL, 0);
+}
+
+moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *gait, moray_model from,
+                                  moray_gait_trial *trial)
+{
+    for (int model = 0; model < 2; model++) {
+        const moray_robot *robot = moray_swimmer_robot(rig->swimmer[model]);
+        trial->gait[model] = moray_gait_map(robot, gait, from, (moray_model)model);
+        MORAY_TRY(moray_gait_trial_swim(rig, (moray_model)model, trial));
+    }
+    return moray_ok();
+}
+
+moray_gait_gain moray_gait_gain_over(const moray_test_rig *rig, const moray_gait_trial *trial,
+                                     const moray_gait_trial *baseline)
+{
+    const moray_model model = MORAY_FIRST_PRINCIPLES;
+    const moray_swim_setup setup = moray_test_rig_setup(rig, model);
+    const moray_steady *base = &baseline->steady[model];
+    moray_gait faster = trial->gait[model], thriftier = trial->gait[model];
+    moray_steady steady;
+    moray_gait_gain gain = {NAN, NAN, NAN, {0}, {0}};
+    gain.why_no_speed = moray_swim_match_power(&setup, &faster, rig->course, base->power, &steady);
+    if (!moray_failed(gain.why_no_speed)) {
+        gain.speed_percent_at_equal_power = 100 * (steady.speed / base->speed - 1);
+        gain.omega_at_equal_power = faster.omega;
+    }
+    gain.why_no_power = moray_swim_match_speed(&setup, &thriftier, rig->course, base->speed, &steady);
+    if (!moray_failed(gain.why_no_power))
+        gain.power_percent_at_equal_speed = 100 * (steady.power / base->power - 1);
+    return gain;
+}
+
+// Positions along the course at 2n times: of the samples, and one period before each (or the start).
+struct progress_along {
+    double course_x, course_y;
+    double *along;
+    int next;
+};
+
+static bool note_position(const moray_swim_sample *sample, void *self)
+{
+    struct progress_along *at = self;
+    at->along[at->next++] = sample->pose.p_x * at->course_x + sample->pose.p_y * at->course_y;
+    return true;
+}
+
+static int by_time(const void *one, const void *other)
+{
+    const double a = *(const double *)one, b = *(const double *)other;
+    return (a > b) - (a < b);
+}
+
+static double position_at(const double *times, const double *along, int n, double t)
+{
+    const double *found = bsearch(&t, times, (size_t)n, sizeof *times, by_time);
+    return along[found - times];
+}
+
+moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const moray_gait_trial *trial, moray_model model,
+                                     double horizon, int n, double *time, double *speed)
+{
+    const moray_gait_change change = {0, trial->gait[model]};
+    const double period = 2 * M_PI / change.gait.omega;
+    const int states = moray_swimmer_states(rig->swimmer[model]);
+    double *times = calloc((size_t)(4 * n + states), sizeof *times), *along = times + 2 * n, *x = along + 2 * n;
+    if (!times)
+        return moray_error(MORAY_MEMORY, "no memory for %d samples", n);
+    for (int k = 0; k < n; k++) {
+        time[k] = times[2 * k] = horizon * k / (n - 1);
+        times[2 * k + 1] = fmax(time[k] - period, 0);
+    }
+    qsort(times, 2 * (size_t)n, sizeof *times, by_time);
+    struct progress_along progress = {cos(rig->course), sin(rig->course), along, 0};
+    const moray_swim_plan plan = {.t1 = horizon,
+                                  .schedule = &change,
+                                  .n_changes = 1,
+                                  .times = times,
+                                  .n_times = 2 * n,
+                                  .observe = note_position,
+                                  .observer = &progress};
+    moray_swimmer_rest(rig->swimmer[model], trial->steady[model].start_heading, 0, 0, x);
+    moray_status status = moray_swim_run(rig->swimmer[model], &rig->settings.sim, &plan, x, NULL);
+    for (int k = 0; k < n && !moray_failed(status); k++) {
+        const double before = fmax(time[k] - period, 0), span = time[k] - before;
+        const double moved = position_at(times, along, 2 * n, time[k]) - position_at(times, along, 2 * n, before);
+        speed[k] = span > 0 ? moved / span : 0;
+    }
+    free(times);
+    return status;
+}

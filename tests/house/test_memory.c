@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+//
+// Every allocation of the library fails once: each run then ends with MORAY_MEMORY and frees what it had, which the
+// leak sanitizer sees. The linker leads the library's calls here (--wrap), those of its dependencies not.
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <tgmath.h>
+#include <unistd.h>
+
+#include "moray/snake/gait_problem.h"
+#include "moray/ocp.h"
+#include "moray/snake/orbit.h"
+#include "moray/app/results.h"
+#include "moray/sim.h"
+#include "moray/snake/swim.h"
+
+static long calls, fatal; // allocations so far; the one that fails, 0 for none
+
+static bool fails(void)
+{
+    return ++calls == fatal;
+}
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t n, size_t size);
+void *__real_realloc(void *block, size_t size);
+char *__real_strdup(const char *text);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_realloc(void *block, size_t size);
+char *__wrap_strdup(const char *text);
+
+void *__wrap_malloc(size_t size)
+{
+    return fails() ? NULL : __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t n, size_t size)
+{
+    return fails() ? NULL : __real_calloc(n, size);
+}
+
+void *__wrap_realloc(void *block, size_t size)
+{
+    return fails() ? NULL : __real_realloc(block, size);
+}
+
+char *__wrap_strdup(const char *text)
+{
+    return fails() ? NULL : __real_strdup(text);
+}
+
+// ---- What is run ---------------------------------------------------------------------------------------------------
+
+// The mass of Bryson and Denham, with refinement: problem, solution, certificate, and a second solve from the first.
+static void push(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = at->u[0];
+    out->c[0] = at->x[0] - 1.0 / 9;
+    out->g[0] = at->u[0] * at->u[0] / 2;
+}
+
+static void effort(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static moray_status certify(const moray_solution *solution)
+{
+    const moray_sim_settings sim = moray_sim_settings_default();
+    const moray_integrator integrator = moray_sim_integrator(&sim);
+    moray_certificate certificate;
+    return moray_certify(solution, &integrator, &certificate);
+}
+
+static moray_status solve_twice(const moray_ocp *ocp)
+{
+    moray_settings settings = moray_settings_default();
+    moray_solution *first = NULL, *second = NULL;
+    settings.intervals = 4;
+    settings.max_refinements = 1;
+    moray_status status = moray_solve(ocp, &settings, NULL, &first);
+    if (!moray_failed(status))
+        status = certify(first);
+    if (!moray_failed(status)) {
+        const moray_guess guess = moray_guess_from_solution(first);
+        settings.intervals = 6;
+        status = moray_solve(ocp, &settings, &guess, &second);
+    }
+    moray_solution_free(first);
+    moray_solution_free(second);
+    return status;
+}
+
+static moray_status turn(void)
+{
+    moray_ocp *ocp = NULL;
+    const moray_phase_spec phase = {.name = "turn",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nc = 1,
+                                    .nq = 1,
+                                    .continuous = push,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(1)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(-1)),
+                                    .c = MORAY_BOUNDS(moray_at_most(0))};
+    moray_status status =
+        moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "turn", .phases = 1, .phase = &phase, .endpoint = effort});
+    if (!moray_failed(status))
+        status = solve_twice(ocp);
+    moray_ocp_free(ocp);
+    return status;
+}
+
+static moray_robot small_robot(void)
+{
+    moray_robot robot = moray_robot_paper();
+    robot.links = 3;
+    return robot;
+}
+
+// The orbit of a gait, its stability and its gradients.
+static moray_status orbit(void)
+{
+    const moray_robot robot = small_robot();
+    const moray_gait gait = {.amplitude = 0.3, .omega = 2, .delta = 1};
+    moray_orbit_spec spec = moray_orbit_spec_default(&robot, MORAY_FIRST_PRINCIPLES);
+    moray_orbit *orbit = NULL;
+    moray_orbit_result result;
+    moray_floquet floquet;
+    moray_orbit_gradient gradient;
+    spec.intervals = 4;
+    moray_status status = moray_orbit_new(&orbit, &spec);
+    if (!moray_failed(status))
+        status = moray_orbit_solve(orbit, &gait, &result);
+    if (!moray_failed(status))
+        status = moray_orbit_floquet(orbit, &floquet);
+    if (!moray_failed(status))
+        status = moray_orbit_gradients(orbit, &gradient);
+    moray_orbit_free(orbit);
+    return status;
+}
+
+// The best gait of a small robot, from its orbit by simulation, on one model. Stopped early it ends with a diagnosis,
+// which says as much as there is memory for.
+static moray_status solve_gait(const moray_gait_problem *problem, moray_swimmer *swimmer, const moray_gait *gait)
+{
+    const moray_swim_setup setup = {.swimmer = swimmer, .settings = moray_swim_settings_default()};
+    moray_settings settings = moray_settings_default();
+    moray_steady steady;
+    moray_swim_track track = {0};
+    moray_solution *solution = NULL;
+    settings.scheme = "lobatto5";
+    settings.intervals = 6;
+    settings.max_iterations = 2;
+    moray_status status = moray_swim_steady(&setup, gait, 0, &steady, &track, 9);
+    if (!moray_failed(status))
+        status = moray_gait_problem_solve(problem, &settings, gait, &track, &solution);
+    moray_solution_free(solution);
+    moray_swim_track_free(&track);
+    return status;
+}
+
+static moray_status swim(moray_model model)
+{
+    const moray_gait_limits limits = {.theta_max = moray_between(0.01, 0.5),
+                                      .omega = moray_between(0.5, 4),
+                                      .delta = moray_between(0.5, 1.5),
+                                      .offset = moray_fixed(0),
+                                      .taper = moray_fixed(0),
+                                      .power = 0.05,
+                                      .joint_rate = MORAY_INFINITY,
+                                      .joint_effort = 5};
+    const moray_gait_problem_spec spec = {.robot = small_robot(), .model = model, .limits = limits};
+    const moray_gait gait = {.amplitude = model == MORAY_CONTROL_ORIENTED ? 0.05 : 0.3, .omega = 2, .delta = 1};
+    moray_gait_problem *problem = NULL;
+    moray_swimmer *swimmer = NULL;
+    moray_status status = moray_swimmer_new(&swimmer, &spec.robot, model);
+    if (!moray_failed(status))
+        status = moray_gait_problem_new(&problem, &spec);
+    if (!moray_failed(status))
+        status = solve_gait(problem, swimmer, &gait);
+    moray_gait_problem_free(problem);
+    moray_swimmer_free(swimmer);
+    return status;
+}
+
+static moray_status swim_control(void)
+{
+    return swim(MORAY_CONTROL_ORIENTED);
+}
+
+static moray_status swim_fp(void)
+{
+    return swim(MORAY_FIRST_PRINCIPLES);
+}
+
+// A directory of results.
+static char directory[] = "/tmp/moray_memory_XXXXXX";
+
+static moray_status write_results(moray_output *output)
+{
+    FILE *file;
+    MORAY_TRY(moray_output_file(output, "summary.json", &file));
+    moray_json *json = moray_json_new();
+    moray_json_number(json, "speed_m_s", 0.25);
+    moray_json_open(json, "gait");
+    moray_json_text(json, "name", "eel");
+    moray_json_close(json);
+    const moray_status status = moray_json_write(json, file);
+    moray_json_free(json);
+    return moray_failed(status) ? status : moray_output_commit(output);
+}
+
+static moray_status results(void)
+{
+    moray_output *output = NULL;
+    moray_status status = moray_output_open(&output, directory);
+    if (!moray_failed(status))
+        status = write_results(output);
+    moray_output_free(output);
+    return status;
+}
+
+// ---- Every allocation ----------------------------------------------------------------------------------------------
+
+static void fail_each(const char *what, bool may_do_without, moray_status (*run)(void))
+{
+    long k = 0, wrong = 0, last = 0;
+    moray_status status, odd = moray_ok();
+    do {
+        calls = 0;
+        fatal = ++k;
+        status = run();
+        if (calls >= fatal && status.code != MORAY_MEMORY && !(may_do_without && status.code == MORAY_OK)) {
+            wrong++;
+            last = k;
+            odd = status;
+        }
+    } while (calls >= fatal);
+    fatal = 0;
+    CHECK_OK(status, what);
+    CHECK(k > 2, "%s: %ld allocations", what, k - 1);
+    CHECK(wrong == 0, "%s: each reported as out of memory; %ld are not, the last, %ld, as '%s: %s'", what, wrong, last,
+          moray_code_text(odd.code), odd.text);
+}
+
+int main(void)
+{
+    char summary[60];
+    if (!CHECK(mkdtemp(directory) != NULL, "a directory"))
+        return 1;
+    fail_each("problem, solution, certificate", false, turn);
+    fail_each("orbit", false, orbit);
+    fail_each("gait on the control-oriented model", true, swim_control);
+    fail_each("gait on the first-principles model", true, swim_fp);
+    fail_each("results", false, results);
+    remove(strcat(strcpy(summary, directory), "/summary.json"));
+    rmdir(directory);
+    return tap_done();
+}

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+//
+// Bad input to the collocation core: every refusal names the thing, its value and what is allowed.
+#include "tap.h"
+
+#include <string.h>
+#include <tgmath.h>
+
+#include "moray/ocp.h"
+#include "moray/scheme.h"
+#include "rk4.h"
+
+static const int rk4_steps = 20;
+static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+
+static void check_status(moray_status status, moray_code code, const char *expected)
+{
+    CHECK(status.code == code && strstr(status.text, expected), "%s", status.text[0] ? status.text : expected);
+}
+
+static void refused(moray_status status, const char *expected)
+{
+    check_status(status, MORAY_INPUT, expected);
+}
+
+// ---- Problems ----
+
+static void push(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = at->u[0];
+    out->g[0] = at->u[0] * at->u[0];
+}
+
+static void energy(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static const moray_bounds nought[] = {{0, 0}, {0, 0}}, one[] = {{1, 1}, {0, 0}}, huge_goal[] = {{9, 9}, {0, 0}},
+                          narrow[] = {{-2, 2}, {-1e20, 1e20}}, undefined[] = {{0, NAN}, {0, 1}};
+
+static moray_phase_spec cart(void)
+{
+    return (moray_phase_spec){.name = "cart",
+                              .nx = 2,
+                              .nu = 1,
+                              .nq = 1,
+                              .continuous = push,
+                              .t0 = moray_fixed(0),
+                              .tf = moray_fixed(1),
+                              .x0 = {nought, 2},
+                              .xf = {one, 2}};
+}
+
+static moray_ocp_spec task(const moray_phase_spec *phase)
+{
+    return (moray_ocp_spec){.name = "task", .phases = 1, .phase = phase, .endpoint = energy};
+}
+
+static void problem_refused(const moray_ocp_spec *spec, const char *expected)
+{
+    moray_ocp *ocp;
+    refused(moray_ocp_new(&ocp, spec), expected);
+    CHECK(!ocp, "and there is no problem");
+}
+
+static void phase_refused(moray_phase_spec phase, const char *expected)
+{
+    const moray_ocp_spec spec = task(&phase);
+    problem_refused(&spec, expected);
+}
+
+static void test_phases(void)
+{
+    const moray_map narrow_map = {.n_in = 3, .n_out = 3};
+    moray_phase_spec phase = cart();
+    phase.nx = 0;
+    phase_refused(phase, "phase cart: nx 0, nu 1, nc 0, nq 1; nx must be positive, none negative");
+    phase = cart();
+    phase.nc = -1;
+    phase_refused(phase, "nc -1, nq 1; nx must be positive, none negative");
+    phase = cart();
+    phase.map = &narrow_map;
+    phase_refused(phase, "phase cart: needs a continuous function or a map, and only one");
+    phase.continuous = NULL;
+    phase_refused(phase, "phase cart: the map has 3 inputs and 3 outputs, the phase 4 and 3");
+    phase = cart();
+    phase.t0 = moray_fixed(2);
+    phase_refused(phase, "phase cart: ends by 1, before it may begin at 2");
+    phase = cart();
+    phase.t0 = moray_between(1, 0);
+    phase_refused(phase, "t0[0] of cart: lower bound 1 is above upper bound 0");
+    phase = cart();
+    phase.u = (moray_bounds_list){undefined, 1};
+    phase_refused(phase, "u[0] of cart: a bound is not a number");
+    phase = cart();
+    phase.x = (moray_bounds_list){narrow, 2};
+    phase.xf = (moray_bounds_list){huge_goal, 2};
+    phase_refused(phase, "xf[0] of cart: [9, 9] does not meet the bounds [-2, 2] of x");
+    phase = cart();
+    phase.nc = 1;
+    phase_refused(phase, "c of cart: 0 bounds given, 1 needed");
+}
+
+static void test_problems(void)
+{
+    const moray_map narrow_map = {.n_in = 3, .n_out = 1};
+    const moray_phase_spec phase = cart();
+    moray_ocp_spec spec = task(&phase);
+    spec.phases = 0;
+    problem_refused(&spec, "problem task: 0 phases, ns 0, ne 0; there must be a phase, none negative");
+    spec = task(&phase);
+    spec.ne = -2;
+    problem_refused(&spec, "ne -2; there must be a phase, none negative");
+    spec = task(&phase);
+    spec.endpoint = NULL;
+    problem_refused(&spec, "problem task: needs an endpoint function or a map, and only one");
+    spec.endpoint_map = &narrow_map;
+    problem_refused(&spec, "problem task: the endpoint map has 3 inputs and 1 outputs, needs 7 and 1");
+    spec = task(&phase);
+    spec.ne = 1;
+    problem_refused(&spec, "e of task: 0 bounds given, 1 needed");
+}
+
+static moray_ocp *make(const moray_ocp_spec *spec)
+{
+    moray_ocp *ocp;
+    CHECK_OK(moray_ocp_new(&ocp, spec), "a good problem");
+    return ocp;
+}
+
+// ---- Settings and schemes ----
+
+static void test_settings(void)
+{
+    const moray_phase_spec phase = cart();
+    const moray_ocp_spec spec = task(&phase);
+    moray_ocp *ocp = make(&spec);
+    const moray_settings good = moray_settings_default();
+    moray_settings settings = good;
+    moray_solution *solution;
+    settings.intervals = -3;
+    refused(moray_solve(ocp, &settings, NULL, &solution), "intervals = -3: must be at least 1");
+    settings = good, settings.tolerance = 1;
+    refused(moray_solve(ocp, &settings, NULL, &solution), "tolerance = 1: must lie between 0 and 1");
+    settings = good, settings.mesh_tolerance = 0;
+    refused(moray_solve(ocp, &settings, NULL, &solution), "mesh_tolerance = 0: must be positive");
+    settings = good, settings.max_iterations = -1;
+    refused(moray_solve(ocp, &settings, NULL, &solution), "max_iterations = -1: must not be negative");
+    settings = good, settings.max_refinements = -1;
+    refused(moray_solve(ocp, &settings, NULL, &solution), "max_refinements = -1: must not be negative");
+    settings = good, settings.print_level = 99;
+    refused(moray_solve(ocp, &settings, NULL, &solution),
+            "Ipopt refuses the settings: tolerance 1e-08, 1000 iterations, print level 99");
+    CHECK(!solution, "and there is no solution");
+    moray_ocp_free(ocp);
+
+    moray_scheme scheme;
+    refused(moray_scheme_new(&scheme, MORAY_LOBATTO, 1), "1 stages: this family has 2 to 64");
+    refused(moray_scheme_new(&scheme, MORAY_GAUSS, 65), "65 stages: this family has 1 to 64");
+}
+
+// ---- Guesses ----
+
+static void guess_refused(const moray_ocp *ocp, const moray_guess *guess, const char *expected)
+{
+    const moray_settings settings = moray_settings_default();
+    moray_solution *solution;
+    refused(moray_solve(ocp, &settings, guess, &solution), expected);
+}
+
+static void test_guesses(void)
+{
+    const moray_phase_spec phase = cart();
+    moray_ocp_spec spec = task(&phase);
+    spec.ns = 1;
+    moray_ocp *ocp = make(&spec);
+    double s[] = {1}, time[] = {0, 1}, x[] = {0, 0, 1, 0}, u[] = {0, 0};
+    moray_samples samples = {2, time, x, NULL};
+    const moray_guess guess = {.phase = &samples, .s = s};
+    guess_refused(ocp, &guess, "guess of phase cart: times, states or controls are missing");
+    samples.u = u;
+    x[2] = INFINITY;
+    guess_refused(ocp, &guess, "guess of phase cart: sample 1 is not finite");
+    x[2] = 1;
+    time[1] = -1;
+    guess_refused(ocp, &guess, "guess of phase cart: time -1 of sample 1 is before the one of sample 0");
+    time[1] = 1;
+    s[0] = NAN;
+    guess_refused(ocp, &guess, "guess: parameter 0 is not finite");
+    moray_ocp_free(ocp);
+}
+
+static void test_simulated_guesses(void)
+{
+    const moray_phase_spec phase = cart();
+    const moray_ocp_spec spec = task(&phase);
+    moray_ocp *ocp = make(&spec);
+    const double x0[] = {0, 0};
+    moray_guess guess;
+    moray_drive drive = {.t0 = 1, .tf = 0, .x0 = x0};
+    refused(moray_guess_simulate(&guess, ocp, &drive, NULL, NULL, NULL, &rk4), "guess of phase cart: from t = 1 to 0");
+    drive = (moray_drive){.tf = 1, .x0 = x0, .samples = 1};
+    refused(moray_guess_simulate(&guess, ocp, &drive, NULL, NULL, NULL, &rk4),
+            "guess of phase cart: samples = 1: must be 0 or at least 2");
+    drive = (moray_drive){.tf = 1};
+    refused(moray_guess_simulate(&guess, ocp, &drive, NULL, NULL, NULL, &rk4),
+            "guess of phase cart: needs x0, for it is the first");
+    moray_ocp_free(ocp);
+}
+
+// x1' = 1 / x1 at x1 = 0.
+static void pole(const moray_node *at, moray_rates *out, const void *data)
+{
+    push(at, out, data);
+    out->f[0] = 1 / at->x[0];
+}
+
+static void test_outside_the_domain(void)
+{
+    moray_phase_spec phase = cart();
+    phase.continuous = pole;
+    phase.xf = phase.x0;
+    const moray_ocp_spec spec = task(&phase);
+    moray_ocp *ocp = make(&spec);
+    const moray_settings settings = moray_settings_default();
+    moray_solution *solution;
+    check_status(moray_solve(ocp, &settings, NULL, &solution), MORAY_NUMERIC,
+                 "at the guess, dynamics of state x[0] of phase cart is not finite at t = 0");
+    moray_ocp_free(ocp);
+}
+
+// ---- Files ----
+
+static void test_files(void)
+{
+    static char path[5000];
+    const moray_phase_spec phase = cart();
+    const moray_ocp_spec spec = task(&phase);
+    moray_ocp *ocp = make(&spec);
+    const moray_settings settings = moray_settings_default();
+    moray_solution *solution;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    memset(path, 'a', sizeof path - 1);
+    refused(moray_solution_save(solution, path), "aaa... is too long");
+    check_status(moray_solution_save(solution, "no/such/directory/file"), MORAY_IO, "no/such/directory/file.part: ");
+    moray_solution_free(solution);
+    check_status(moray_solution_load(&solution, ocp, &settings, "no/such/file"), MORAY_IO, "no/such/file: ");
+    moray_ocp_free(ocp);
+}
+
+int main(void)
+{
+    test_phases();
+    test_problems();
+    test_settings();
+    test_guesses();
+    test_simulated_guesses();
+    test_outside_the_domain();
+    test_files();
+    return tap_done();
+}

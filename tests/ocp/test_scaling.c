@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+//
+// A problem has the same optimum in whatever units it is written.
+#include "tap.h"
+
+#include <stdlib.h>
+#include <tgmath.h>
+
+#include "moray/ocp.h"
+
+// What a metre, a second and a kilogram are in the units of a problem.
+struct units {
+    const char *name;
+    double m, s, kg;
+};
+static const struct units si = {"m, s, kg", 1, 1, 1};
+static const struct units others[] = {{"mm, ms, g", 1e3, 1e3, 1e3}, {"km, h, t", 1e-3, 1 / 3600., 1e-3}};
+enum { count = sizeof others / sizeof *others };
+
+static double force(const struct units *in)
+{
+    return in->kg * in->m / (in->s * in->s);
+}
+
+static double energy(const struct units *in)
+{
+    return force(in) * in->m;
+}
+
+// ---- A sledge with drag and a limited power, over a distance with the least work and time; its mass has a price ----
+
+static void slide(const moray_node *at, moray_rates *out, const void *data)
+{
+    const struct units *in = data;
+    const double drag = 0.3 * in->kg / in->m;
+    const moray_num v = at->x[1], thrust = at->u[0];
+    out->f[0] = v;
+    out->f[1] = (thrust - drag * v * v) / at->s[0];
+    out->c[0] = thrust * v;
+    out->g[0] = thrust * thrust / (2 * in->kg / in->s); // losses of the motor
+}
+
+static void arrive(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    const struct units *in = data;
+    const moray_phase_ends *end = &at->phase[0];
+    const double price = 40 * energy(in) / in->s, worth = 900 * energy(in) * in->kg;
+    out->objective = end->q[0] + price * end->tf + worth / at->s[0];
+    out->e[0] = at->s[0] * end->xf[1] * end->xf[1] / 2; // left when it arrives
+}
+
+static moray_ocp *sledge(const struct units *in)
+{
+    const double speed = in->m / in->s, power = energy(in) / in->s;
+    const moray_phase_spec phase = {.name = "track",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nc = 1,
+                                    .nq = 1,
+                                    .continuous = slide,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_between(2 * in->s, 100 * in->s),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0.1 * speed)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(50 * in->m), moray_free()),
+                                    .u = MORAY_BOUNDS(moray_between(-20 * force(in), 30 * force(in))),
+                                    .c = MORAY_BOUNDS(moray_at_most(100 * power))};
+    moray_ocp *ocp = NULL;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "sledge",
+                                                   .phases = 1,
+                                                   .phase = &phase,
+                                                   .ns = 1,
+                                                   .s = MORAY_BOUNDS(moray_between(5 * in->kg, 50 * in->kg)),
+                                                   .ne = 1,
+                                                   .e = MORAY_BOUNDS(moray_at_most(10 * energy(in))),
+                                                   .endpoint = arrive,
+                                                   .data = in}),
+             "sledge");
+    return ocp;
+}
+
+// ---- In all units ----
+
+struct found {
+    bool solved;
+    double objective; // in J
+    int iterations;
+};
+
+static struct found solve(const struct units *in)
+{
+    moray_ocp *ocp = sledge(in);
+    moray_settings settings = moray_settings_default();
+    settings.max_iterations = 200;
+    moray_solution *solution = NULL;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), in->name);
+    const moray_nlp_info *info = moray_solution_info(solution);
+    const struct found found = {info->outcome == MORAY_NLP_SOLVED, moray_solution_objective(solution) / energy(in),
+                                info->iterations};
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    return found;
+}
+
+int main(void)
+{
+    const struct found reference = solve(&si);
+    CHECK(reference.solved, "in %s: optimum %.9g after %d iterations", si.name, reference.objective,
+          reference.iterations);
+    for (int k = 0; k < count; k++) {
+        const struct found found = solve(&others[k]);
+        CHECK(found.solved && fabs(found.objective / reference.objective - 1) < 1e-7,
+              "in %s: the same optimum, %.10g, after %d iterations", others[k].name, found.objective, found.iterations);
+    }
+    return tap_done();
+}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+//
+// The textbook problems that are solved in a second or two: optimum as published, and certificate.
+#include "tap.h"
+
+#include <string.h>
+
+#include "classics/classics.h"
+#include "rk4.h"
+
+static const int rk4_steps = 40;
+static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+
+// Too long for here; problems/classics solves them.
+static const char *const long_ones[] = {
+    "hang-glider", "hang-glider-500", "hang-glider-1000", "low-thrust", "low-thrust-slack", "swimmer",
+    "climb",       "launch"};
+
+static bool is_long(const char *name)
+{
+    for (unsigned i = 0; i < sizeof long_ones / sizeof *long_ones; i++)
+        if (strcmp(name, long_ones[i]) == 0)
+            return true;
+    return false;
+}
+
+static void test_one(const struct classic *classic)
+{
+    struct classic_result result;
+    char diagnosis[600];
+    const moray_settings settings = classic_settings(classic);
+    const moray_status status = classic_solve(classic, &settings, &rk4, &result, diagnosis, (int)sizeof diagnosis);
+    if (!CHECK(!moray_failed(status), "%s: %s", classic->name, status.text))
+        return;
+    if (!classic->published) {
+        CHECK(strcmp(classic_agreement(classic, &result), "solved") == 0, "%s from its start: %.10g, %s", classic->name,
+              result.value, moray_nlp_outcome_text(result.outcome));
+        return;
+    }
+    CHECK(result.agrees, "%s: %.10g, published %s%s%s", classic->name, result.value, classic->published,
+          classic->computed ? ", by the data " : "", classic->computed ? classic->computed : "");
+    if (classic->fixed_mesh)
+        CHECK(result.certificate.kkt < 100 * settings.tolerance && result.meshes == 1,
+              "%s: optimal on the published mesh: KKT %.1e", classic->name, result.certificate.kkt);
+    else
+        CHECK(result.certificate.pass, "%s: KKT %.1e, mesh %.1e, between nodes %.1e, re-simulation %.1e", classic->name,
+              result.certificate.kkt, result.certificate.mesh_error, result.certificate.between_nodes,
+              result.certificate.resimulation);
+}
+
+static void test_mesh_history(void)
+{
+    struct classic_result result;
+    const struct classic *classic = classic_find("moon-lander");
+    const moray_settings settings = classic_settings(classic);
+    int iterations = 0;
+    CHECK_OK(classic_solve(classic, &settings, &rk4, &result, NULL, 0), classic->name);
+    for (int k = 0; k < result.meshes; k++)
+        iterations += result.mesh[k].iterations;
+    CHECK(result.meshes > 1 && result.mesh[0].intervals == classic->intervals &&
+              result.mesh[result.meshes - 1].error <= settings.mesh_tolerance && iterations == result.iterations,
+          "%d meshes, the first of %d intervals, the last with error %.1e", result.meshes, result.mesh[0].intervals,
+          result.mesh[result.meshes - 1].error);
+    CHECK(result.seconds > 0, "%.3f s of the processor", result.seconds);
+}
+
+static void test_unsolved(void)
+{
+    struct classic_result result;
+    char diagnosis[600];
+    const struct classic *classic = classic_find("obstacle");
+    moray_settings settings = classic_settings(classic);
+    settings.max_iterations = 1;
+    CHECK_OK(classic_solve(classic, &settings, &rk4, &result, diagnosis, (int)sizeof diagnosis), classic->name);
+    CHECK(strcmp(classic_agreement(classic, &result), "NOT SOLVED") == 0 && diagnosis[0], "after one iteration: %s: %s",
+          classic_agreement(classic, &result), diagnosis);
+}
+
+// A value agrees with what is printed when rounding it or cutting it gives the printed digits.
+static void test_judgement(void)
+{
+    const struct {
+        const char *published;
+        bool agrees;
+    } cases[] = {{"1.80160312", true},  {"1.8016", true}, {"1.802", true}, {"1.801", true},      {"1.8017", false},
+                 {"1.80160311", false}, {"1.8", true},    {"2", true},     {"1.80160314", false}};
+    for (unsigned k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct classic changed = *classic_find("brachistochrone");
+        struct classic_result result;
+        const moray_settings settings = classic_settings(&changed);
+        changed.published = cases[k].published;
+        CHECK_OK(classic_solve(&changed, &settings, &rk4, &result, NULL, 0), changed.published);
+        CHECK(result.agrees == cases[k].agrees, "%.10f %s with %s", result.value,
+              cases[k].agrees ? "agrees" : "does not agree", changed.published);
+    }
+    CHECK(!classic_find("no such problem"), "a problem that is not there");
+}
+
+int main(void)
+{
+    int n = 0;
+    for (const struct classic *const *c = classics; *c; c++, n++)
+        if (!is_long((*c)->name))
+            test_one(*c);
+    CHECK(n >= 20, "%d problems in the table", n);
+    test_mesh_history();
+    test_unsolved();
+    test_judgement();
+    return tap_done();
+}

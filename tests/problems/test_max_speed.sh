@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+# The program max_speed as a user meets it. Arguments: the program, the source directory.
+. "$2/tests/program.sh"
+
+# ---- The control-oriented model, from the paper's gait and from random starts (paper-notes, section 5)
+run --model control --json --set random_starts=7 --out results
+check "solved and certified: $(cat err)" [ $code -eq 0 ]
+check "speed on the control-oriented model $(number predicted speed_m_s)" near "$(number predicted speed_m_s)" 0.2597 1e-4
+check "at $(number predicted power_W) W" near "$(number predicted power_W)" 0.3972 5e-5
+check "delta $(number delta_deg)" near "$(number delta_deg)" 34.9 0.1
+check "omega $(number omega_deg_s)" near "$(number omega_deg_s)" 104.3 0.1
+check "theta_max $(number theta_max_deg) at its bound" near "$(number theta_max_deg)" 20 1e-5
+check "from every start" [ "$(number starts_at_optimum)" = 8 ]
+check "paper's gait, first-principles, $(number baseline validated)" \
+    eval 'sed -n "/\"baseline\"/,\$p" out | sed -n "/\"validated\"/,/}/p" >block &&
+          near "$(sed -n "s/.*\"speed_m_s\":[ \t]*\([0-9.e-]*\).*/\1/p" block)" 0.2293 1e-4 &&
+          near "$(sed -n "s/.*\"power_W\":[ \t]*\([0-9.e-]*\).*/\1/p" block)" 0.2646 1e-4'
+check "a loss on the first-principles model is a negative gain" \
+    awk -v g="$(number gain speed_percent_at_equal_power)" 'BEGIN { exit !(g < -1 && g > -20) }'
+for file in summary.json trajectory.csv start.svg report.html; do
+    check "--out has $file" [ -s results/$file ]
+done
+check "nothing else" [ "$(ls -A results | wc -l)" -eq 4 ]
+check "summary.json is what --json prints" cmp -s out results/summary.json
+check "the first line of trajectory.csv names and has units" \
+    eval 'head -n 1 results/trajectory.csv | grep -q "^t \[s\],theta \[rad\],p_x \[m\]"'
+
+# ---- The whole pipeline: control-oriented optimum, first-principles optimum, proof
+run --json
+check "solved and certified: $(cat err)" [ $code -eq 0 ]
+check "first-principles optimum gains at least 3.9 % at equal power: $(number gain speed_percent_at_equal_power)" \
+    awk -v g="$(number gain speed_percent_at_equal_power)" 'BEGIN { exit !(g >= 3.9) }'
+check "simulation confirms its speed" near "$(number predicted speed_m_s)" "$(number validated speed_m_s)" 1e-5
+check "simulation confirms its power" near "$(number predicted power_W)" "$(number validated power_W)" 1e-5
+check "the control-oriented optimum is beside it" near "$(number control_oriented_optimum delta_deg)" 34.9 0.1
+if thorough; then
+run --json --set theta_max_deg=1:60
+check "at least 10.5 % with theta_max free: $(number gain speed_percent_at_equal_power)" \
+    eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" "BEGIN { exit !(g >= 10.5) }"'
+
+run --json --set theta_max_deg=1:60 --set taper=-1:1
+check "at least 11.5 % with a taper as well, larger at the tail: $(number gain speed_percent_at_equal_power)" \
+    eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" -v t="$(number gait taper)" \
+        "BEGIN { exit !(g >= 11.5 && t < -0.1 && t > -0.2) }"'
+fi
+
+run --quiet --model control --set taper=-0.8
+check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
+
+run --quiet
+check "the table says plainly that the gait loses" grep -q 'LOSES on the first-principles model' out
+check "and puts both models' gains side by side" grep -q 'The control-oriented model itself predicted' out
+
+# ---- Currents
+run --current 0.1,0.1 --json
+check "a current it can stem: exit 0" [ $code -eq 0 ]
+run --current=-0.5,0
+check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.5000 m/s of it run against" err'
+run --current 0,0.4
+check "a cross current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.4000 m/s of it run across" err'
+
+# ---- Interrupted: ends at the next iteration and says so (timeout sends what Ctrl-C sends; a busy machine needs longer
+#      until there is something to leave)
+for seconds in 2 4 8 16; do
+    timeout --preserve-status -s INT $seconds "$program" --model control --set random_starts=10000 --out interrupted \
+        >out 2>err </dev/null
+    code=$?
+    [ ! -e interrupted ] || break
+done
+check "Ctrl-C leaves the best solution and says how to go on: $(cat err)" eval '[ $code -eq 130 ] && one_line && [ ! -s out ] &&
+    grep -qF "to go on: --continue interrupted/max_speed.iterate" err && [ "$(ls -A interrupted)" = max_speed.iterate ]'
+run --json --model control --continue interrupted/max_speed.iterate
+check "--continue starts from it alone" eval '[ $code -eq 0 ] && grep -q "\"starts\":.1," out'
+sed "1s/control-oriented/of another/" interrupted/max_speed.iterate >other
+refuse "is of problem fastest gait, of another" --model control --continue other
+
+# ---- Bad input
+printf '[robot]\nlinks = 10\nspeed = 3\n' >unknown.ini
+: >file
+refuse 'unknown.ini:3' --robot unknown.ini
+refuse "no_such.ini" --robot no_such.ini
+refuse '--links = 1' --links 1
+refuse 'm_kg = -1' --set m_kg=-1
+refuse 'c_n = nan' --set c_n=nan
+refuse 'delta_deg = 50:30' --set delta_deg=50:30
+refuse 'theta_max_deg = 95' --set theta_max_deg=95
+refuse 'taper = -2' --set taper=-2:0
+refuse 'power_W = 0' --set power_W=0
+refuse 'power_w' --set power_w=1
+refuse 'scheme = euler' --scheme euler
+run --json --out file/below
+check "an unwritable --out fails before the solve: $(cat err)" \
+    eval '[ $code -eq 2 ] && [ ! -s out ] && [ "$(wc -l <err)" -eq 1 ] && grep -q "file/below" err'
+tap_done

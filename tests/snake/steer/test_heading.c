@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+//
+// Heading references against what their texts say; plans against a simulation of the whole swimmer under the offset
+// found, which shares with them the model alone.
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "moray/snake/trial.h"
+#include "moray/snake/heading.h"
+#include "moray/snake/closed_loop.h"
+
+#define DEG (M_PI / 180)
+
+// ---- References ----------------------------------------------------------------------------------------------------
+
+static moray_reference read_ok(const char *text)
+{
+    moray_reference reference;
+    CHECK_OK(moray_reference_read(&reference, text), text);
+    return reference;
+}
+
+static void check_at(const moray_reference *reference, double t, double heading, double rate)
+{
+    double got;
+    CHECK_NEAR(moray_reference_at(reference, t, &got) / DEG, heading, 1e-12, "heading [deg]");
+    CHECK_NEAR(got / DEG, rate, 1e-12, "its rate [deg/s]");
+}
+
+static void test_points(void)
+{
+    moray_reference steps = read_ok("steps: 2=30 , 5=-10"), ramps = read_ok("ramps:1=0,3=20,3=50,7=30");
+    check_at(&steps, 0, 0, 0);
+    check_at(&steps, 2, 0, 0); // jumps count as made after their time
+    check_at(&steps, 2 + 1e-9, 30, 0);
+    check_at(&steps, 100, -10, 0);
+    check_at(&ramps, 0, 0, 0);
+    check_at(&ramps, 2, 10, 10);
+    check_at(&ramps, 3, 20, 10);
+    check_at(&ramps, 3 + 1e-13, 50, -5);
+    check_at(&ramps, 6, 35, -5);
+    check_at(&ramps, 9, 30, 0);
+    CHECK_NEAR(moray_reference_fastest(&ramps, 0, 10) / DEG, 10, 1e-12, "fastest, the jump aside [deg/s]");
+    CHECK_NEAR(moray_reference_fastest(&ramps, 4, 10) / DEG, 5, 1e-12, "and from 4 s on");
+    CHECK(moray_reference_fastest(&steps, 0, 10) == 0, "steps turn at no rate");
+    moray_reference_free(&ramps);
+    moray_reference_free(&steps);
+    moray_reference_free(&steps);
+    CHECK(steps.n == 0 && !steps.time, "freed twice");
+}
+
+static void test_sine(void)
+{
+    moray_reference sine = read_ok("sine:20,8");
+    check_at(&sine, 2, 20, 0);
+    check_at(&sine, 4, 0, -20 * 2 * M_PI / 8);
+    check_at(&sine, 1, 20 * sqrt(0.5), 20 * sqrt(0.5) * 2 * M_PI / 8);
+    CHECK_NEAR(moray_reference_fastest(&sine, 0, 100) / DEG, 20 * 2 * M_PI / 8, 1e-12, "fastest [deg/s]");
+    moray_reference_free(&sine);
+}
+
+static void write_file(const char *name, const char *text)
+{
+    FILE *file = fopen(name, "w");
+    CHECK(file && fputs(text, file) >= 0 && fclose(file) == 0, "%s is written", name);
+}
+
+static void test_file(const char *folder)
+{
+    char name[200], text[6000] = "t_s,heading_deg\r\n";
+    snprintf(name, sizeof name, "%s/reference.csv", folder);
+    for (int k = 0; k < 100; k++) // more than the first room
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%d, %g\r\n%s", k, 0.5 * k, k == 7 ? "\n" : "");
+    write_file(name, text);
+    moray_reference reference = read_ok(name);
+    CHECK(reference.n == 100, "%d points", reference.n);
+    check_at(&reference, 60.5, 30.25, 0.5);
+    moray_reference_free(&reference);
+    unlink(name);
+}
+
+static void refuse(const char *text, moray_code code, const char *says)
+{
+    moray_reference reference;
+    const moray_status status = moray_reference_read(&reference, text);
+    CHECK(status.code == code && strstr(status.text, says), "'%s': %s", text, status.text);
+    CHECK(reference.n == 0 && !reference.time, "leaves nothing");
+}
+
+static void test_refused(const char *folder)
+{
+    static const struct {
+        const char *text, *says;
+    } files[] = {{"time,heading\n0,1\n", "t_s,heading_deg"}, {"t_s,heading_deg\n0,1\n1;2\n", ":3:"},
+                 {"t_s,heading_deg\n2,1\n1,2\n", "ascend"},  {"t_s,heading_deg\n0,1,2\n", ":2:"},
+                 {"t_s,heading_deg\n\n", "no points"},       {"t_s,heading_deg\n0,nan\n", "finite"}};
+    char name[200];
+    refuse("steps:", MORAY_INPUT, "no points");
+    refuse("steps:2", MORAY_INPUT, "'2'");
+    refuse("steps:2=30;4=1", MORAY_INPUT, "T=H");
+    refuse("steps:5=1,2=30", MORAY_INPUT, "ascend");
+    refuse("ramps:0=inf", MORAY_INPUT, "finite");
+    refuse("sine:20", MORAY_INPUT, "PERIOD");
+    refuse("sine:20,0", MORAY_INPUT, "above 0");
+    refuse("sine:20,3x", MORAY_INPUT, "PERIOD");
+    refuse("no_such.csv", MORAY_IO, "no_such.csv");
+    snprintf(name, sizeof name, "%s/bad.csv", folder);
+    for (unsigned k = 0; k < sizeof files / sizeof *files; k++) {
+        write_file(name, files[k].text);
+        refuse(name, MORAY_INPUT, files[k].says);
+    }
+    unlink(name);
+}
+
+// Jumps at 4 and 9 of 12 s lie on the ends of k intervals when k is a multiple of 12.
+static void test_intervals(void)
+{
+    moray_reference steps = read_ok("steps:4=30,9=0"), ramp = read_ok("ramps:0=0,9=5");
+    CHECK(moray_reference_intervals(&steps, 0, 12, 19) == 24, "24 intervals fit where 19 are enough");
+    CHECK(moray_reference_intervals(&steps, 0, 12, 24) == 24, "and 24 where 24 are");
+    CHECK(moray_reference_intervals(&steps, 0, 3, 7) == 7, "before the jumps any number fits");
+    CHECK(moray_reference_intervals(&ramp, 0, 12, 7) == 8, "a corner at 9 s of 12 s counts too");
+    const int k = moray_reference_intervals(&steps, 0, 12, 13);
+    CHECK(k >= 13 && k <= 16, "no more than 1.3 times as many: %d", k);
+    moray_reference_free(&steps);
+    moray_reference_free(&ramp);
+}
+
+// ---- Plans ---------------------------------------------------------------------------------------------------------
+
+enum { HORIZON = 12 };
+static const double unit = 10 * DEG;
+
+static moray_heading_spec spec_of(moray_model model, const moray_reference *reference)
+{
+    const moray_robot robot = moray_robot_paper();
+    const moray_gait paper = moray_gait_paper(&robot);
+    moray_steering_limits limits = {.theta_max = moray_between(1 * DEG, 20 * DEG),
+                                    .omega = moray_between(60 * DEG, 240 * DEG),
+                                    .delta = moray_between(20 * DEG, 80 * DEG),
+                                    .offset = 0.015,
+                                    .offset_rate = 0.01,
+                                    .offset_acceleration = MORAY_INFINITY,
+                                    .power = 0.4};
+    return (moray_heading_spec){.robot = robot,
+                                .model = model,
+                                .current = {0.1, 0.05},
+                                .limits =
+                                    moray_steering_limits_map(&robot, &limits, &paper, MORAY_CONTROL_ORIENTED, model),
+                                .weight = {.heading = 1 / (unit * unit), .power = 0.3, .steering = 0.01},
+                                .reference = reference,
+                                .max_error = MORAY_INFINITY,
+                                .t1 = HORIZON};
+}
+
+static moray_settings settings_of(int intervals)
+{
+    moray_settings settings = moray_settings_default();
+    settings.scheme = "radau5";
+    settings.intervals = intervals;
+    settings.barrier = 1e-2;
+    settings.max_refinements = 3;
+    settings.mesh_tolerance = 1e-7;
+    return settings;
+}
+
+static moray_gait paper_gait(moray_model model)
+{
+    const moray_robot robot = moray_robot_paper();
+    const moray_gait paper = moray_gait_paper(&robot);
+    return moray_gait_map(&robot, &paper, MORAY_CONTROL_ORIENTED, model);
+}
+
+static bool moray_is_solved(const moray_heading_plan *plan)
+{
+    return plan->solution && moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED;
+}
+
+// Mean of (phi_0'' / limit)^2, by the midpoint rule.
+static double steering_effort(const moray_heading_plan *plan, double limit)
+{
+    enum { n = 200000 };
+    double sum = 0;
+    for (int k = 0; k < n; k++) {
+        const double a = moray_steering_offset(plan->solution, HORIZON * (k + 0.5) / n).acceleration / limit;
+        sum += a * a / n;
+    }
+    return sum;
+}
+
+// The objective of the plan is that of the swimmer, all joints controlled by (34), who steers by it.
+static void test_objective(const moray_heading_plan *plan, const moray_heading_spec *spec)
+{
+    const moray_plan steer = {plan->solution, 1};
+    const moray_controller controller = moray_plan_controller(&steer);
+    moray_closed_loop closed_loop;
+    const moray_closed_loop_spec how = {.robot = &spec->robot,
+                                        .straight = &plan->straight,
+                                        .current = {spec->current[0], spec->current[1]},
+                                        .controller = &controller,
+                                        .duration = HORIZON,
+                                        .intervals = 2400,
+                                        .tolerance = 1e-9};
+    CHECK_OK(moray_closed_loop_run(&closed_loop, &how), "closed_loop");
+    const moray_heading_score score = moray_closed_loop_heading_score(&closed_loop, &plan->straight, spec->reference);
+    const double swum = spec->weight.heading * score.rms * score.rms + spec->weight.power * score.power +
+                        spec->weight.steering * steering_effort(plan, spec->limits.offset);
+    const double predicted = moray_solution_objective(plan->solution);
+    CHECK_NEAR(predicted / swum, 1, 2e-6, "objective predicted, of that swum");
+    CHECK(score.rms > 1 * DEG && score.rms < 10 * DEG, "RMS error %g deg", score.rms / DEG);
+    moray_closed_loop_free(&closed_loop);
+}
+
+static void test_plan(moray_model model, const moray_reference *reference, const moray_heading_plan *from)
+{
+    const moray_heading_spec spec = spec_of(model, reference);
+    const moray_settings settings = settings_of(24);
+    const moray_gait gait = paper_gait(model);
+    moray_heading_plan plan, again;
+    CHECK_OK(moray_heading_plan_make(&plan, &spec, &settings, &gait, NULL), "plan from the reference");
+    CHECK_OK(moray_heading_plan_make(&again, &spec, &settings, &gait, from), "from another plan");
+    CHECK(moray_is_solved(&plan) && moray_is_solved(&again), "both are solved");
+    CHECK_RELATIVE(moray_solution_objective(again.solution), moray_solution_objective(plan.solution), 1e-6,
+                   "and are one");
+    for (int k = 0; k <= 100; k++) {
+        const moray_offset offset = moray_steering_offset(plan.solution, HORIZON * k / 100.0);
+        if (fabs(offset.value) > spec.limits.offset * (1 + 1e-6) ||
+            fabs(offset.rate) > spec.limits.offset_rate * (1 + 1e-3))
+            CHECK(false, "t = %g s: offset %g, rate %g", HORIZON * k / 100.0, offset.value, offset.rate);
+    }
+    test_objective(&plan, &spec);
+    moray_heading_plan_free(&again);
+    moray_heading_plan_free(&plan);
+}
+
+// On the averaged plant the gait is free, and comes to the limit of the power.
+static void test_averaged(moray_heading_plan *averaged, const moray_reference *reference)
+{
+    moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
+    const moray_settings settings = settings_of(12);
+    const moray_gait gait = paper_gait(MORAY_CONTROL_ORIENTED);
+    spec.averaged = true;
+    spec.weight.power = 0;
+    CHECK_OK(moray_heading_plan_make(averaged, &spec, &settings, &gait, NULL), "averaged plan");
+    CHECK(moray_is_solved(averaged), "is solved");
+    const double work = moray_steering_work(averaged->problem.steering, averaged->solution);
+    CHECK(work / HORIZON < 0.4 * (1 + 1e-6), "within the power: %g W", work / HORIZON);
+    CHECK(averaged->straight.gait.amplitude > 0.03, "amplitude found %g m", averaged->straight.gait.amplitude);
+}
+
+static void test_limits(const moray_reference *reference)
+{
+    moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
+    moray_heading problem;
+    moray_status status;
+    spec.t1 = 0;
+    status = moray_heading_new(&problem, &spec);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "horizon"), "%s", status.text);
+    spec.t1 = HORIZON;
+    spec.max_error = 0;
+    status = moray_heading_new(&problem, &spec);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "largest heading error"), "%s", status.text);
+    spec.max_error = MORAY_INFINITY;
+    spec.limits.offset = MORAY_INFINITY;
+    status = moray_heading_new(&problem, &spec);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "offset"), "%s", status.text);
+}
+
+// A tube that the step leaves room for is kept; the error is largest at the step.
+static void test_tube(const moray_reference *reference)
+{
+    moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
+    const moray_settings settings = settings_of(24);
+    const moray_gait gait = paper_gait(MORAY_CONTROL_ORIENTED);
+    moray_heading_plan plan;
+    spec.max_error = 12 * DEG; // of 20: either side of the jump has to be within it
+    CHECK_OK(moray_heading_plan_make(&plan, &spec, &settings, &gait, NULL), "plan in a tube");
+    CHECK(moray_is_solved(&plan), "is solved");
+    double largest = 0, rate, x[MORAY_STEERING_STATES], u[1];
+    for (int k = 0; k <= 2400; k++) {
+        const double t = HORIZON * k / 2400.0;
+        moray_solution_at(plan.solution, 0, t, x, u);
+        const double error =
+            moray_straight_motion_heading(&plan.straight, t, x[0]) - moray_reference_at(reference, t, &rate);
+        largest = fmax(largest, fabs(error));
+    }
+    CHECK(largest < 12.05 * DEG && largest > 9.9 * DEG, "largest error %g deg", largest / DEG);
+    moray_heading_plan_free(&plan);
+}
+
+int main(void)
+{
+    char folder[] = "/tmp/test_heading_XXXXXX";
+    if (!CHECK(mkdtemp(folder) != NULL, "a folder"))
+        return tap_done();
+    test_points();
+    test_sine();
+    test_file(folder);
+    test_refused(folder);
+    test_intervals();
+    rmdir(folder);
+    moray_reference step = read_ok("steps:6=20");
+    moray_heading_plan averaged;
+    test_averaged(&averaged, &step);
+    test_plan(MORAY_CONTROL_ORIENTED, &step, &averaged);
+    test_plan(MORAY_FIRST_PRINCIPLES, &step, &averaged);
+    test_limits(&step);
+    test_tube(&step);
+    moray_heading_plan_free(&averaged);
+    moray_reference_free(&step);
+    return tap_done();
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// The fastest turn: derivatives, ends, and a turn on the averaged plant against bounds by hand.
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/snake/trial.h"
+#include "moray/snake/turn.h"
+
+#define DEG (M_PI / 180)
+
+static moray_turn_spec spec_of(moray_model model, bool averaged, int links)
+{
+    const bool control = model == MORAY_CONTROL_ORIENTED;
+    moray_turn_spec spec = {.robot = moray_robot_paper(),
+                            .model = model,
+                            .averaged = averaged,
+                            .current = {0.05, 0.1},
+                            .limits = {.theta_max = moray_between(1 * DEG, 20 * DEG),
+                                       .omega = moray_fixed(120 * DEG),
+                                       .delta = moray_fixed(40 * DEG),
+                                       .offset = control ? 0.015 : 4.5 * DEG,
+                                       .offset_rate = control ? 0.01 : 3 * DEG,
+                                       .offset_acceleration = MORAY_INFINITY,
+                                       .power = MORAY_INFINITY},
+                            .heading = 90 * DEG,
+                            .steering = 1e-3,
+                            .shortest = 1,
+                            .longest = 60,
+                            .undulation = {0.01, -0.03}};
+    spec.robot.links = links;
+    return spec;
+}
+
+static void test_derivatives(moray_model model, bool averaged, int links)
+{
+    moray_turn_spec spec = spec_of(model, averaged, links);
+    moray_turn problem;
+    moray_ocp_derivative_report report;
+    CHECK_OK(moray_turn_new(&problem, &spec), "problem");
+    CHECK_OK(moray_ocp_check_derivatives(moray_steering_ocp(problem.steering), &report), "check");
+    CHECK(report.jacobian_error < 1e-8 && report.hessian_error < 1e-5, "%d links, model %d: %s (%.1e); %s (%.1e)",
+          links, model, report.jacobian, report.jacobian_error, report.hessian, report.hessian_error);
+    moray_turn_free(&problem);
+}
+
+static void test_refusals(void)
+{
+    const moray_turn_spec good = spec_of(MORAY_CONTROL_ORIENTED, false, 5);
+    moray_turn_spec bad[4] = {good, good, good, good};
+    const char *const words[] = {"heading", "offset", "steering", "time of the turn"};
+    bad[0].heading = NAN;
+    bad[1].limits.offset = MORAY_INFINITY;
+    bad[2].steering = -1;
+    bad[3].longest = 1;
+    for (int k = 0; k < 4; k++) {
+        moray_turn problem;
+        const moray_status status = moray_turn_new(&problem, &bad[k]);
+        CHECK(status.code == MORAY_INPUT && strstr(status.text, words[k]), "%s", status.text);
+        CHECK(!problem.steering && !problem.task, "nothing is left");
+    }
+}
+
+// Turns one way and the other on the averaged plant: mirror images in still water, no faster than the offset can be
+// brought to its limit and the robot then turn steadily, at the end as it should be.
+static void test_turn(void)
+{
+    moray_settings settings = moray_settings_default();
+    double took[2], rate, t0, x[MORAY_STEERING_STATES], u[1];
+    settings.scheme = "radau3";
+    settings.intervals = 30;
+    settings.tolerance = 1e-7;
+    for (int side = 0; side < 2; side++) {
+        moray_turn_spec spec = spec_of(MORAY_CONTROL_ORIENTED, true, 10);
+        moray_turn_plan plan;
+        moray_gait gait = moray_gait_paper(&spec.robot), turning = gait;
+        spec.current[0] = spec.current[1] = 0;
+        spec.heading *= side ? -1 : 1;
+        spec.limits.theta_max = moray_fixed(20 * DEG);
+        turning.offset = spec.limits.offset;
+        CHECK_OK(moray_turn_rate(&spec.robot, spec.model, &turning, &rate), "sustained turning");
+        CHECK_OK(moray_turn_plan_make(&plan, &spec, &settings, &gait, rate, NULL, 1), "plan");
+        CHECK(moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED, "solved");
+        moray_solution_times(plan.solution, 0, &t0, &took[side]);
+        moray_solution_at(plan.solution, 0, took[side], x, u);
+        CHECK_NEAR(x[0], spec.heading, 1e-7, "heading at the end");
+        CHECK_NEAR(x[3], 0, 1e-7, "turning at the end");
+        CHECK_NEAR(x[6], 0, 1e-7, "offset at the end");
+        moray_turn_plan_free(&plan);
+    }
+    CHECK_RELATIVE(took[0], took[1], 1e-4, "as long to the right as to the left");
+    const double steady = 90 * DEG / fabs(rate);
+    CHECK(took[0] > 0.9 * steady && took[0] < steady + 2 * 1.5 + 2, "%.2f s, of which %.2f s steady", took[0], steady);
+}
+
+int main(void)
+{
+    for (int links = 3; links <= 10; links += 7) {
+        test_derivatives(MORAY_CONTROL_ORIENTED, false, links);
+        test_derivatives(MORAY_CONTROL_ORIENTED, true, links);
+        test_derivatives(MORAY_FIRST_PRINCIPLES, false, links);
+    }
+    test_refusals();
+    test_turn();
+    return tap_done();
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "moray/snake/gait_input.h"
+
+#define DEG (M_PI / 180)
+
+static moray_robot robot;
+
+static moray_gait made(const moray_gait_input *input, moray_model model)
+{
+    moray_gait gait = {0};
+    CHECK_OK(moray_gait_input_make(input, &robot, model, &gait), "a gait");
+    return gait;
+}
+
+// By hand from (27) and (33), for theta_max = 15 deg, delta = 30 deg.
+static void test_amplitudes(void)
+{
+    const double a = 0.14 * cos(15 * DEG) * sin(15 * DEG), alpha = 2 * sin(15 * DEG) * 15 * DEG;
+    const double given[3][3] = {{15 * DEG, NAN, NAN}, {NAN, a, NAN}, {NAN, NAN, alpha}};
+    for (int i = 0; i < 3; i++) {
+        moray_gait_input input = moray_gait_input_default();
+        input.delta = 30 * DEG;
+        input.theta_max = given[i][0];
+        input.a = given[i][1];
+        input.alpha = given[i][2];
+        CHECK_NEAR(made(&input, MORAY_CONTROL_ORIENTED).amplitude, a, 1e-15, "a");
+        CHECK_NEAR(made(&input, MORAY_FIRST_PRINCIPLES).amplitude, alpha, 1e-15, "alpha");
+    }
+    const moray_gait_input nothing = moray_gait_input_default();
+    CHECK_NEAR(made(&nothing, MORAY_FIRST_PRINCIPLES).amplitude, 2 * sin(20 * DEG) * 20 * DEG, 1e-15, "20 deg unasked");
+    CHECK_NEAR(made(&nothing, MORAY_FIRST_PRINCIPLES).omega, 120 * DEG, 1e-15, "120 deg/s unasked");
+}
+
+// Erratum E3: opposite signs, the ratio of the amplitudes.
+static void test_offsets(void)
+{
+    moray_gait_input input = moray_gait_input_default();
+    input.phi0_m = 0.006;
+    const double a = made(&input, MORAY_CONTROL_ORIENTED).amplitude, alpha = 2 * sin(20 * DEG) * 20 * DEG;
+    CHECK_NEAR(made(&input, MORAY_CONTROL_ORIENTED).offset, 0.006, 0, "phi0_m on its model");
+    CHECK_NEAR(made(&input, MORAY_FIRST_PRINCIPLES).offset, -0.006 * alpha / a, 1e-15, "phi0_m on the other");
+    input.phi0 = -0.006 * alpha / a;
+    CHECK_NEAR(made(&input, MORAY_CONTROL_ORIENTED).offset, 0.006, 1e-15, "both, in agreement");
+    input.phi0_m = NAN;
+    CHECK_NEAR(made(&input, MORAY_CONTROL_ORIENTED).offset, 0.006, 1e-15, "phi0_deg on the other");
+    input.phi0_m = 0.006 * (1 + 2e-6);
+    moray_gait gait;
+    CHECK(moray_gait_input_make(&input, &robot, MORAY_CONTROL_ORIENTED, &gait).code == MORAY_INPUT,
+          "both, in contradiction");
+}
+
+static FILE *start(char path[32])
+{
+    strcpy(path, "/tmp/gait_XXXXXX");
+    const int handle = mkstemp(path);
+    return handle >= 0 ? fdopen(handle, "w") : NULL;
+}
+
+// What a line leaves open stays as in the line before; an amplitude given in other terms takes its place.
+static void test_inheritance(void)
+{
+    char path[32];
+    FILE *file = start(path);
+    moray_gait_change *change = NULL;
+    int n = 0;
+    moray_gait_input first = moray_gait_input_default();
+    first.theta_max = 10 * DEG;
+    first.taper = 0.3;
+    CHECK(file, "a temporary file");
+    if (!file)
+        return;
+    fputs("t_s,delta_deg,a_m,phi0_m\n10,30,,\n20,,0.03,0.004\n30,20,,", file);
+    fclose(file);
+    CHECK_OK(moray_gait_schedule_read(path, &first, &robot, MORAY_CONTROL_ORIENTED, &change, &n), "a schedule");
+    const double theta = 10 * DEG, wanted[4][4] = {{0, 0.14 * cos(20 * DEG) * sin(theta), 40, 0},
+                                                   {10, 0.14 * cos(15 * DEG) * sin(theta), 30, 0},
+                                                   {20, 0.03, 30, 0.004},
+                                                   {30, 0.03, 20, 0.004}};
+    CHECK(n == 4, "%d gaits", n);
+    for (int i = 0; i < 4 && i < n; i++) {
+        CHECK_NEAR(change[i].t, wanted[i][0], 0, "begins");
+        CHECK_NEAR(change[i].gait.amplitude, wanted[i][1], 1e-15, "amplitude");
+        CHECK_NEAR(change[i].gait.delta / DEG, wanted[i][2], 1e-12, "delta");
+        CHECK_NEAR(change[i].gait.offset, wanted[i][3], 0, "offset");
+        CHECK_NEAR(change[i].gait.taper, 0.3, 0, "taper");
+    }
+    free(change);
+    remove(path);
+}
+
+int main(void)
+{
+    robot = moray_robot_paper();
+    test_amplitudes();
+    test_offsets();
+    test_inheritance();
+    return tap_done();
+}
