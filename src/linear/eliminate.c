@@ -68,8 +68,8 @@ struct peak {
     int at;                 // row of the first, -1: none
 };
 
-// Of a column without its diagonal and without row skip.
-static struct peak scan(const struct panel *p, int t, int skip)
+// Of a column without its diagonal and without row skip, in the block.
+static struct peak scan_block(const struct panel *p, int t, int skip)
 {
     const size_t h = (size_t)p->height;
     const double *column = p->P + (size_t)t * h;
@@ -81,29 +81,39 @@ static struct peak scan(const struct panel *p, int t, int skip)
             peak.at = j;
         }
     }
-    for (int i = p->end; i < p->height; i++)
-        peak.outside = fabs(column[i]) > peak.outside ? fabs(column[i]) : peak.outside;
     return peak;
+}
+
+static struct peak scan(const struct panel *p, int t, int skip)
+{
+    struct peak peak = scan_block(p, t, skip);
+    peak.outside = moray_ldl_kernel_largest(p->height - p->end, p->P + (size_t)t * (size_t)p->height + p->end);
+    return peak;
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
 }
 
 static double quality_1x1(double d, struct peak peak)
 {
-    const double most = fmax(peak.inside, peak.outside);
+    const double most = larger(peak.inside, peak.outside);
     return most > 0 ? fabs(d) / most : INFINITY;
 }
 
-// Duff and Reid: the inverse of the pivot times the largest entries beside it.
-static double quality_2x2(const struct panel *p, int t, int r)
+// Duff and Reid: the inverse of the pivot times the largest entries beside it; outside: of column t.
+static double quality_2x2(const struct panel *p, int t, int r, double outside)
 {
     const size_t h = (size_t)p->height;
     const double d = p->P[(size_t)t * h + t], e = p->P[(size_t)r * h + r];
     const double c = t < r ? p->P[(size_t)t * h + r] : p->P[(size_t)r * h + t];
     const double determinant = fabs(d * e - c * c);
-    if (!(determinant > distinct * fmax(fabs(d * e), c * c)))
+    if (!(determinant > distinct * larger(fabs(d * e), c * c)))
         return 0;
-    const struct peak one = scan(p, t, r), other = scan(p, r, t);
-    const double most = fmax(one.inside, one.outside), more = fmax(other.inside, other.outside);
-    const double growth = fmax(fabs(e) * most + fabs(c) * more, fabs(c) * most + fabs(d) * more);
+    const struct peak other = scan(p, r, t);
+    const double most = larger(scan_block(p, t, r).inside, outside), more = larger(other.inside, other.outside);
+    const double growth = larger(fabs(e) * most + fabs(c) * more, fabs(c) * most + fabs(d) * more);
     return growth > 0 ? determinant / growth : INFINITY;
 }
 
@@ -112,11 +122,11 @@ static struct choice judge(const struct panel *p, int t)
     const double d = p->P[(size_t)t * (size_t)p->height + t];
     const struct peak peak = scan(p, t, -1);
     struct choice choice = {t, -1, quality_1x1(d, peak), false};
-    if (fmax(fabs(d), fmax(peak.inside, peak.outside)) <= nothing)
+    if (larger(fabs(d), larger(peak.inside, peak.outside)) <= nothing)
         return (struct choice){t, -1, INFINITY, true};
     if (choice.quality >= good || peak.at < 0)
         return choice;
-    const double quality = quality_2x2(p, t, peak.at);
+    const double quality = quality_2x2(p, t, peak.at, peak.outside);
     return quality > choice.quality ? (struct choice){t, peak.at, quality, false} : choice;
 }
 

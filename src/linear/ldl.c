@@ -79,17 +79,12 @@ void moray_ldl_free(moray_ldl *ldl)
 static moray_status make_plan(moray_ldl *ldl, const double *values)
 {
     struct graph graph;
-    int *work = malloc((3 * (size_t)ldl->n + 2) * sizeof *work);
     moray_status status = moray_ldl_graph_new(&graph, ldl->n, &ldl->pattern, values);
-    if (!work && !moray_failed(status))
-        status = no_memory(ldl->n);
     if (!moray_failed(status)) {
         moray_ldl_graph_equilibrate(&graph);
-        ldl->statistics.pairs = moray_ldl_graph_pair(&graph, work, work + ldl->n);
-        status = moray_ldl_plan_new(&ldl->plan, &graph, work, &ldl->pattern);
+        status = moray_ldl_plan_new(&ldl->plan, &graph, &ldl->pattern);
     }
     moray_ldl_graph_free(&graph);
-    free(work);
     return status;
 }
 
@@ -131,6 +126,7 @@ static moray_status order(moray_ldl *ldl, const double *values)
         forget_plan(ldl);
     ldl->statistics.orders++;
     ldl->statistics.fronts = ldl->plan.nodes;
+    ldl->statistics.pairs = ldl->plan.pairs;
     ldl->statistics.largest = ldl->plan.tallest;
     ldl->statistics.planned = ldl->plan.flops;
     ldl->statistics.entries = (double)ldl->plan.panel_room;

@@ -7,13 +7,13 @@
 
 #include "linear/parts.h"
 
-static const double weak = 1e-2;   // diagonal that makes no pivot of its own, in an equilibrated matrix
-static const double strong = 1e-1; // entry that makes a pair, relative to the largest of the row
+static const double weak = 1e-2; // diagonal that makes no pivot of its own, in an equilibrated matrix
 
 struct search {
     const struct graph *graph;
     int *mate;
-    int crowded; // neighbours of an unknown that would bring too much fill into a pair
+    double strong; // entry that makes a pair, relative to the largest of the row
+    int crowded;   // neighbours of an unknown that would bring too much fill into a pair
 };
 
 static int degree(const struct graph *graph, int i)
@@ -21,19 +21,20 @@ static int degree(const struct graph *graph, int i)
     return graph->start[i + 1] - graph->start[i];
 }
 
-static double least_strong(const struct graph *graph, int i)
+static double least_strong(const struct search *search, int i)
 {
+    const struct graph *graph = search->graph;
     double largest = 0;
     for (int k = graph->start[i]; k < graph->start[i + 1]; k++)
         largest = fmax(largest, graph->size[k]);
-    return strong * largest;
+    return search->strong * largest;
 }
 
 // The free neighbour of fewest neighbours among those with a strong entry; -1: none.
 static int choose(const struct search *search, int i)
 {
     const struct graph *graph = search->graph;
-    const double least = least_strong(graph, i);
+    const double least = least_strong(search, i);
     int best = -1;
     for (int k = graph->start[i]; k < graph->start[i + 1]; k++) {
         const int j = graph->near[k];
@@ -56,7 +57,7 @@ static void join(struct search *search, int i, int j)
 static bool take_over(struct search *search, int i)
 {
     const struct graph *graph = search->graph;
-    const double least = least_strong(graph, i);
+    const double least = least_strong(search, i);
     for (int k = graph->start[i]; k < graph->start[i + 1]; k++) {
         const int j = graph->near[k], other = search->mate[j];
         if (!(graph->size[k] > 0 && graph->size[k] >= least) || other < 0 || graph->diagonal[other] >= weak)
@@ -85,10 +86,10 @@ static void sort_by_degree(const struct graph *graph, int *begin, int *list)
         list[begin[degree(graph, i)]++] = i;
 }
 
-int moray_ldl_graph_pair(const struct graph *graph, int *mate, int *work)
+int moray_ldl_graph_pair(const struct graph *graph, double strong, int *mate, int *work)
 {
     const int n = graph->n;
-    struct search search = {graph, mate, 16 + (int)(10 * sqrt(n))};
+    struct search search = {graph, mate, strong, 16 + (int)(10 * sqrt(n))};
     int *list = work + n + 1, pairs = 0;
     for (int i = 0; i < n; i++)
         mate[i] = -1;

@@ -29,7 +29,7 @@ struct node {
 
 // What the pattern determines.
 struct plan {
-    int n, puts, slots, nodes;
+    int n, puts, slots, nodes, pairs;
     int *order, *position;    // [n] unknown at a position, and the reverse
     int *parent, *count;      // [n] elimination tree by positions, entries in a column of L
     int *block;               // holds the arrays above
@@ -49,8 +49,9 @@ moray_status moray_ldl_graph_new(struct graph *graph, int n, const moray_pattern
 void moray_ldl_graph_free(struct graph *graph);
 // Brings the largest entry of each row near 1.
 void moray_ldl_graph_equilibrate(struct graph *graph);
-// mate[i] <- the unknown that makes a 2x2 pivot with i, or -1. Returns how many pairs.
-int moray_ldl_graph_pair(const struct graph *graph, int *mate, int *work); // work[2 n + 2]
+// mate[i] <- the unknown that makes a 2x2 pivot with i, or -1, by entries that are not less than strong times the
+// largest of the row. Returns how many pairs.
+int moray_ldl_graph_pair(const struct graph *graph, double strong, int *mate, int *work); // work[2 n + 2]
 // order[n] <- a pivot order of little fill that keeps pairs together. Error: MORAY_MEMORY.
 moray_status moray_ldl_graph_order(const struct graph *graph, const int *mate, int *order);
 
@@ -58,8 +59,7 @@ moray_status moray_ldl_graph_order(const struct graph *graph, const int *mate, i
 // --------------------------------------------------------------------------------------------------------
 
 // Error: MORAY_MEMORY.
-moray_status moray_ldl_plan_new(struct plan *plan, const struct graph *graph, const int *mate,
-                                const moray_pattern *pattern);
+moray_status moray_ldl_plan_new(struct plan *plan, const struct graph *graph, const moray_pattern *pattern);
 void moray_ldl_plan_free(struct plan *plan);
 // Numbers positions by the elimination tree, children first, and counts the columns of L.
 void moray_ldl_plan_tree(struct plan *plan, const struct graph *graph, int *work); // work[4 n]
@@ -117,5 +117,8 @@ void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, 
 void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y);
 // x[k] -= sum over i < rows of L[i + k ldl] y[i], k < columns
 void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x);
+
+// The largest |x[i]|, i < n.
+double moray_ldl_kernel_largest(int n, const double *x);
 
 #endif
