@@ -13,11 +13,10 @@ struct merging {
     int *parent, *columns, *height, *zeros, *into; // [fronts]; into: itself, or whom it has joined
 };
 
-// Whether column c and the next share a front from the start: one row fewer and otherwise the same, or a pair.
-static bool continues(const struct plan *plan, const int *mate, int c)
+// Whether column c and the next are a pair: such a pair is the smallest front, single columns aside.
+static bool is_pair(const struct plan *plan, const int *mate, int c)
 {
-    return plan->parent[c] == c + 1 &&
-           (plan->count[c] == plan->count[c + 1] + 1 || mate[plan->order[c]] == plan->order[c + 1]);
+    return plan->parent[c] == c + 1 && mate[plan->order[c]] == plan->order[c + 1];
 }
 
 static void find_fronts(struct merging *m, const struct plan *plan, const int *mate)
@@ -26,7 +25,7 @@ static void find_fronts(struct merging *m, const struct plan *plan, const int *m
     for (int c = 0; c < plan->n; c++) {
         m->front[c] = f;
         columns++;
-        if (c + 1 < plan->n && continues(plan, mate, c))
+        if (c + 1 < plan->n && is_pair(plan, mate, c))
             continue;
         m->columns[f] = columns;
         m->height[f] = columns + plan->count[c] - 1;
@@ -43,12 +42,10 @@ static void find_fronts(struct merging *m, const struct plan *plan, const int *m
 }
 
 // By the share of zeros in the columns of the merged front, which may be larger where the front is small.
-static bool is_worth(const struct merging *m, int f, int up, double zeros)
+static bool is_worth(double columns, double height, double zeros)
 {
-    const double columns = m->columns[f] + m->columns[up], height = m->columns[f] + m->height[up];
     const double share = zeros / (columns * height);
-    return zeros == 0 || columns <= 4 || (columns <= 16 && share < 0.3) || (columns <= 48 && share < 0.1) ||
-           share < 0.02;
+    return columns <= 4 || (columns <= 16 && share < 0.3) || (columns <= 48 && share < 0.1) || share < 0.02;
 }
 
 static void merge(struct merging *m)
@@ -59,7 +56,7 @@ static void merge(struct merging *m)
             continue;
         const int more = m->columns[f] * (m->columns[f] + m->height[up] - m->height[f]);
         const double zeros = (double)m->zeros[f] + m->zeros[up] + more;
-        if (!is_worth(m, f, up, zeros))
+        if (more > 0 && !is_worth(m->columns[f] + m->columns[up], m->columns[f] + m->height[up], zeros))
             continue;
         m->into[f] = up;
         m->columns[up] += m->columns[f];
