@@ -58,7 +58,7 @@ static void add_matrix(moray_ldl *ldl, int s)
     const int shift = f->width - f->columns, planned = f->height - shift;
     for (int c = node->first; c < node->first + node->columns; c++)
         for (int k = plan->start[c]; k < plan->start[c + 1]; k++) {
-            const double value = ldl->value[k] * ldl->scale[c] * ldl->scale[plan->row[k]];
+            const double value = ldl->scaled[k];
             int place = plan->place[k];
             if (shift > 0) {
                 const int row = place % planned;

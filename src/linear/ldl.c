@@ -97,7 +97,7 @@ static moray_status make_room(moray_ldl *ldl)
     ldl->kept_room = (size_t)plan->tallest * (size_t)plan->widest + 1;
     ldl->local_room = (size_t)plan->tallest + 1;
     ldl->front = calloc((size_t)plan->nodes + 1, sizeof *ldl->front);
-    ldl->value = malloc((slots + 3 * n + 1) * sizeof *ldl->value);
+    ldl->value = malloc((2 * slots + 5 * n + 1) * sizeof *ldl->value);
     ldl->update = malloc((plan->update_room + 1) * sizeof *ldl->update);
     ldl->panel = malloc(ldl->panel_room * sizeof *ldl->panel);
     ldl->kept = malloc(ldl->kept_room * sizeof *ldl->kept);
@@ -107,9 +107,12 @@ static moray_status make_room(moray_ldl *ldl)
     if (!ldl->front || !ldl->value || !ldl->update || !ldl->panel || !ldl->kept || !ldl->pivot || !ldl->index ||
         !ldl->local)
         return no_memory(ldl->n);
-    ldl->scale = ldl->value + slots;
+    ldl->scaled = ldl->value + slots;
+    ldl->scale = ldl->scaled + slots;
     ldl->peak = ldl->scale + n;
     ldl->permuted = ldl->peak + n;
+    ldl->rhs = ldl->permuted + n;
+    ldl->solution = ldl->rhs + n;
     for (size_t i = 0; i < n; i++)
         ldl->scale[i] = 1;
     return moray_ok();

@@ -23,6 +23,7 @@ typedef struct moray_ldl_statistics {
     int orders;           // so far
     double planned, done; // multiplications and additions of a factorisation without delays; of the last one
     double entries;       // in the factors, without delays
+    double error; // backward error of the last solve: residual over matrix times solution, in the scale of the factors
     double order_seconds, factor_seconds, solve_seconds; // of the processor, so far
 } moray_ldl_statistics;
 

@@ -89,13 +89,14 @@ struct moray_ldl {
     moray_pattern pattern; // as given
     struct plan plan;
     bool planned, factored;
-    struct front *front;           // [nodes]
-    double *value, *scale, *peak;  // [slots], [n], [n]
-    double *update, *panel, *kept; // contribution blocks; factors; [tallest x widest] columns before division
-    double *pivot;                 // inverse of D, two numbers a pivot: diagonal, coupling to the next
-    int *index;                    // position of each column of a panel, in the order of elimination
-    double *local;                 // [tallest] part of a right-hand side
-    double *permuted;              // [n]
+    struct front *front;               // [nodes]
+    double *value, *scaled;            // [slots] as given, and in the scale of the factors
+    double *scale, *peak;              // [n]
+    double *update, *panel, *kept;     // contribution blocks; factors; [tallest x widest] columns before division
+    double *pivot;                     // inverse of D, two numbers a pivot: diagonal, coupling to the next
+    int *index;                        // position of each column of a panel, in the order of elimination
+    double *local;                     // [tallest] part of a right-hand side
+    double *permuted, *rhs, *solution; // [n]
     size_t panel_room, index_room, kept_room, local_room, panel_used, index_used;
     double threshold;
     moray_ldl_inertia inertia;

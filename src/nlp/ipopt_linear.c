@@ -5,7 +5,6 @@
 #include "nlp/ipopt_linear.h"
 
 #include <stdlib.h>
-#include <stdio.h> //DEBUG
 #include <string.h>
 #include <time.h>
 
@@ -19,6 +18,7 @@ static _Thread_local struct ipopt_linear *current;
 
 // Numbers of MA57's info[], from 0, and what they say.
 enum { needed_fact = 8, needed_ifact = 9, negative = 23, rank = 24 };
+static const double trusted = 1e-7; // backward error of a solution that Ipopt can refine
 enum { fine = 0, no_object = -1, no_factors = -2, singular = 4 };
 
 static double now(void)
@@ -85,7 +85,22 @@ static void factor(ipfint *n, ipfint *entries, double *values, double *fact, ipf
         return;
     moray_ldl *ldl = current->ldl[keep[0]];
     const moray_status status = moray_ldl_factor(ldl, values, cntl[0]);
-    if (getenv("LDLDUMP")) { static _Thread_local int k; char name[200]; moray_pattern *q = (moray_pattern *)((char *)ldl + 8); snprintf(name, 200, "%s.%d", getenv("LDLDUMP"), ++k); if (k == 1 || k == 9) { FILE *f = fopen(name, "wb"); int nn = *n; fwrite(&nn, 4, 1, f); fwrite(&q->nnz, 4, 1, f); fwrite(q->row, 4, q->nnz, f); fwrite(q->col, 4, q->nnz, f); fwrite(values, 8, q->nnz, f); fclose(f);} } //DEBUG
+    if (getenv("LDLDUMP")) {
+        static _Thread_local int k;
+        char name[200];
+        moray_pattern *q = (moray_pattern *)((char *)ldl + 8);
+        snprintf(name, 200, "%s.%d", getenv("LDLDUMP"), ++k);
+        if (k == 1 || k == 9) {
+            FILE *f = fopen(name, "wb");
+            int nn = *n;
+            fwrite(&nn, 4, 1, f);
+            fwrite(&q->nnz, 4, 1, f);
+            fwrite(q->row, 4, q->nnz, f);
+            fwrite(q->col, 4, q->nnz, f);
+            fwrite(values, 8, q->nnz, f);
+            fclose(f);
+        }
+    } // DEBUG
     const moray_ldl_inertia inertia = moray_ldl_inertia_of(ldl);
     if (status.code == MORAY_MEMORY)
         current->failure = status;
@@ -103,7 +118,9 @@ static void solve(ipfint *job, ipfint *n, double *fact, ipfint *fact_size, ipfin
     (void)job, (void)n, (void)fact, (void)fact_size, (void)ifact_size, (void)B_size, (void)work, (void)work_size;
     (void)iwork, (void)icntl;
     const double start = now();
-    const moray_status status = moray_ldl_solve(current->ldl[ifact[0]], *columns, B);
+    moray_ldl *ldl = current->ldl[ifact[0]];
+    const moray_status status = moray_ldl_solve(ldl, *columns, B);
+    current->doubtful = current->doubtful || !(moray_ldl_statistics_of(ldl).error < trusted);
     info[0] = moray_failed(status) ? no_factors : fine;
     current->seconds += now() - start;
 }
@@ -132,9 +149,16 @@ void moray_ipopt_linear_open(struct ipopt_linear *linear)
 
 void moray_ipopt_linear_close(struct ipopt_linear *linear)
 {
-    for (int k = 0; k < linear->patterns; k++) { //DEBUG
-        moray_ldl_statistics q = moray_ldl_statistics_of(linear->ldl[k]); //DEBUG
-        if (getenv("LDLSTAT")) fprintf(stderr, "n fronts %d largest %d pairs %d delayed %d 2x2 %d factors %d solves %d orders %d planned %.3g done %.3g entries %.3g order %.4f factor %.4f (%.3f ms) solve %.4f (%.3f ms)\n", q.fronts, q.largest, q.pairs, q.delayed, q.pivots_2x2, q.factors, q.solves, q.orders, q.planned, q.done, q.entries, q.order_seconds, q.factor_seconds, 1e3*q.factor_seconds/q.factors, q.solve_seconds, 1e3*q.solve_seconds/q.solves); } //DEBUG
+    for (int k = 0; k < linear->patterns; k++) {                          // DEBUG
+        moray_ldl_statistics q = moray_ldl_statistics_of(linear->ldl[k]); // DEBUG
+        if (getenv("LDLSTAT"))
+            fprintf(stderr,
+                    "n fronts %d largest %d pairs %d delayed %d 2x2 %d factors %d solves %d orders %d planned %.3g "
+                    "done %.3g entries %.3g order %.4f factor %.4f (%.3f ms) solve %.4f (%.3f ms)\n",
+                    q.fronts, q.largest, q.pairs, q.delayed, q.pivots_2x2, q.factors, q.solves, q.orders, q.planned,
+                    q.done, q.entries, q.order_seconds, q.factor_seconds, 1e3 * q.factor_seconds / q.factors,
+                    q.solve_seconds, 1e3 * q.solve_seconds / q.solves);
+    } // DEBUG
     for (int k = 0; k < linear->patterns; k++)
         moray_ldl_free(linear->ldl[k]);
     linear->patterns = 0;
