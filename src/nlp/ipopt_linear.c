@@ -85,22 +85,6 @@ static void factor(ipfint *n, ipfint *entries, double *values, double *fact, ipf
         return;
     moray_ldl *ldl = current->ldl[keep[0]];
     const moray_status status = moray_ldl_factor(ldl, values, cntl[0]);
-    if (getenv("LDLDUMP")) {
-        static _Thread_local int k;
-        char name[200];
-        moray_pattern *q = (moray_pattern *)((char *)ldl + 8);
-        snprintf(name, 200, "%s.%d", getenv("LDLDUMP"), ++k);
-        if (k == 1 || k == 9) {
-            FILE *f = fopen(name, "wb");
-            int nn = *n;
-            fwrite(&nn, 4, 1, f);
-            fwrite(&q->nnz, 4, 1, f);
-            fwrite(q->row, 4, q->nnz, f);
-            fwrite(q->col, 4, q->nnz, f);
-            fwrite(values, 8, q->nnz, f);
-            fclose(f);
-        }
-    } // DEBUG
     const moray_ldl_inertia inertia = moray_ldl_inertia_of(ldl);
     if (status.code == MORAY_MEMORY)
         current->failure = status;
@@ -149,16 +133,6 @@ void moray_ipopt_linear_open(struct ipopt_linear *linear)
 
 void moray_ipopt_linear_close(struct ipopt_linear *linear)
 {
-    for (int k = 0; k < linear->patterns; k++) {                          // DEBUG
-        moray_ldl_statistics q = moray_ldl_statistics_of(linear->ldl[k]); // DEBUG
-        if (getenv("LDLSTAT"))
-            fprintf(stderr,
-                    "n fronts %d largest %d pairs %d delayed %d 2x2 %d factors %d solves %d orders %d planned %.3g "
-                    "done %.3g entries %.3g order %.4f factor %.4f (%.3f ms) solve %.4f (%.3f ms)\n",
-                    q.fronts, q.largest, q.pairs, q.delayed, q.pivots_2x2, q.factors, q.solves, q.orders, q.planned,
-                    q.done, q.entries, q.order_seconds, q.factor_seconds, 1e3 * q.factor_seconds / q.factors,
-                    q.solve_seconds, 1e3 * q.solve_seconds / q.solves);
-    } // DEBUG
     for (int k = 0; k < linear->patterns; k++)
         moray_ldl_free(linear->ldl[k]);
     linear->patterns = 0;
