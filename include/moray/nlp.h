@@ -42,7 +42,7 @@ typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
 
 // Which factorisation Ipopt works with: our own, MUMPS, or an MA57 that it finds in libhsl.so (then no other thread may
 // be solving with our own).
-typedef enum { MORAY_LINEAR_OWN, MORAY_LINEAR_MUMPS, MORAY_LINEAR_MA57 } moray_linear_solver;
+typedef enum { MORAY_LINEAR_MUMPS, MORAY_LINEAR_OWN, MORAY_LINEAR_MA57 } moray_linear_solver;
 const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
 
 typedef struct moray_nlp_settings {
@@ -51,7 +51,7 @@ typedef struct moray_nlp_settings {
     double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
     bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
     int print_level;    // 0: Ipopt's own log on standard output, 0..12
-    moray_linear_solver linear_solver; // our own, with MUMPS to fall back on
+    moray_linear_solver linear_solver; // MUMPS; our own falls back on it
     bool timing;                       // false: true has MUMPS or MA57 timed, which goes through a temporary file
     moray_progress_fn *progress;
     void *observer;

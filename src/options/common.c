@@ -14,7 +14,7 @@ static const char *const added_masses[] = {
 static const char *const frames[] = {[MORAY_FRAME_PAPER] = "paper", [MORAY_FRAME_INVARIANT] = "invariant", NULL};
 _Static_assert(sizeof(moray_hydrodynamics) == 5 * sizeof(int), "choices are stored as int");
 static const char *const linear_solvers[] = {
-    [MORAY_LINEAR_OWN] = "moray", [MORAY_LINEAR_MUMPS] = "mumps", [MORAY_LINEAR_MA57] = "ma57", NULL};
+    [MORAY_LINEAR_MUMPS] = "mumps", [MORAY_LINEAR_OWN] = "moray", [MORAY_LINEAR_MA57] = "ma57", NULL};
 _Static_assert(sizeof(moray_model) == sizeof(int) && sizeof(moray_linear_solver) == sizeof(int),
                "choices are stored as int");
 
@@ -128,7 +128,7 @@ static const moray_option solver_rows[] = {
      .type = MORAY_OPTION_CHOICE,
      MORAY_AT(moray_common, linear_solver),
      .choices = linear_solvers,
-     .help = "factorisation inside Ipopt: our own, MUMPS, or an MA57 in libhsl.so"},
+     .help = "factorisation inside Ipopt: MUMPS, our own (fast on small fronts; on trial), or an MA57 in libhsl.so"},
     {.flag = "json",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(moray_common, json),
