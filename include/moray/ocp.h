@@ -5,6 +5,9 @@
 //   minimise J(x0, t0, xf, tf, q of every phase, s)
 //   with     x' = f(x, u, s, t), lower <= c(x, u, s, t) <= upper, q = integral of g(x, u, s, t) dt     on every phase
 //            lower <= e(x0, t0, xf, tf, q of every phase, s) <= upper, and bounds on x, u, s, t0, tf, q
+// Threads may each build, solve and read problems of their own at the same time (where MUMPS factors, the solves take
+// turns). One problem, and what comes of it, belongs to one thread at a time: its functions are evaluated in scratch
+// that the problem owns.
 #ifndef MORAY_OCP_H
 #define MORAY_OCP_H
 
@@ -208,8 +211,10 @@ typedef struct moray_settings {
     int max_iterations;    // 1000
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
-    int print_level;       // 0: Ipopt's log
+    int print_level;       // 0: Ipopt's log on standard error
     bool timing;           // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
+    const moray_ipopt_option *ipopt; // [n_ipopt] further options of Ipopt, which must outlive the solution
+    int n_ipopt;                     // 0
     moray_progress_fn *progress;
     void *observer;
 } moray_settings;

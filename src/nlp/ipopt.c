@@ -9,7 +9,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "nlp/ipopt_timing.h"
+#include "nlp/ipopt_log.h"
+#include "nlp/ipopt_user.h"
+#include "nlp/mumps_lock.h"
 
 struct session {
     const moray_nlp *nlp;
@@ -150,8 +152,9 @@ static bool set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_
     // 3.11 declares its option texts as char * but only reads them.
     bool ok = AddIpoptNumOption(problem, (char *)"tol", settings->tolerance);
     ok = ok && AddIpoptIntOption(problem, (char *)"max_iter", settings->max_iterations);
-    ok = ok && AddIpoptIntOption(problem, (char *)"print_level", settings->print_level);
-    ok = ok && AddIpoptStrOption(problem, (char *)"sb", (char *)"yes"); // no banner
+    ok = ok && AddIpoptIntOption(problem, (char *)"print_level", 0);               // standard output is the caller's
+    ok = ok && AddIpoptStrOption(problem, (char *)"option_file_name", (char *)""); // none, not even ./ipopt.opt
+    ok = ok && AddIpoptStrOption(problem, (char *)"sb", (char *)"yes");            // no banner
     if (settings->barrier > 0)
         ok = ok && AddIpoptNumOption(problem, (char *)"mu_init", settings->barrier);
     ok = ok && AddIpoptStrOption(problem, (char *)"linear_solver", (char *)"mumps");
@@ -218,18 +221,65 @@ static void take_best(const struct session *session, moray_iterate *iterate)
     nlp->constraints(nlp->self, iterate->x, true, iterate->g);
 }
 
-static moray_status run(IpoptProblem problem, struct session *session, moray_iterate *iterate,
-                        struct ipopt_timing *timing)
+struct logs {
+    struct ipopt_log errors, timing;
+};
+
+static void open_logs(IpoptProblem problem, const moray_nlp_settings *settings, int level, struct logs *logs)
+{
+    if (level > 0)
+        OpenIpoptOutputFile(problem, (char *)"stderr", level);
+    if (moray_ipopt_log_open(&logs->errors))
+        OpenIpoptOutputFile(problem, logs->errors.path, ipopt_error_level);
+    if (settings->timing && moray_ipopt_log_open(&logs->timing) &&
+        OpenIpoptOutputFile(problem, logs->timing.path, ipopt_timing_level))
+        AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
+}
+
+static moray_status set_up(IpoptProblem problem, const struct session *session, struct logs *logs)
 {
     const moray_nlp_settings *settings = session->settings;
+    int level;
+    MORAY_TRY(moray_ipopt_print_level(settings, &level));
     if (!set_options(problem, session->nlp, settings, session->last))
-        return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
-                           settings->tolerance, settings->max_iterations, settings->print_level);
-    if (settings->timing && moray_ipopt_timing_open(timing) &&
-        OpenIpoptOutputFile(problem, timing->path, ipopt_timing_level))
-        AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
-    session->info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective,
-                                                   iterate->lambda, iterate->z_lower, iterate->z_upper, session));
+        return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations", settings->tolerance,
+                           settings->max_iterations);
+    MORAY_TRY(moray_ipopt_set_user(problem, settings));
+    open_logs(problem, settings, level, logs);
+    return moray_ok();
+}
+
+// Ipopt takes a factorisation that fails for want of memory for a singular matrix and tries others; in the end its
+// code is of many kinds, but MUMPS has told.
+static bool lacked_memory(enum ApplicationReturnStatus code, moray_nlp_outcome outcome, const struct ipopt_log *errors)
+{
+    static const char *const told[] = {"INFO(1) =-13", "INFO(1) = -13", "Error=-7 ", "Error=-13 "};
+    char line[200];
+    bool lacked = code == Insufficient_Memory;
+    for (unsigned i = 0; i < sizeof told / sizeof *told && stopped_early(outcome); i++)
+        lacked = lacked || moray_ipopt_log_find(errors, told[i], line, sizeof line);
+    return lacked;
+}
+
+// What is no outcome of an optimisation.
+static moray_status judge(enum ApplicationReturnStatus code, const struct session *session, const struct logs *logs)
+{
+    const moray_nlp *nlp = session->nlp;
+    if (lacked_memory(code, session->info->outcome, &logs->errors))
+        return moray_error(MORAY_MEMORY, "no memory to solve for %d variables and %d constraints, after %d iterations",
+                           nlp->n, nlp->m, session->info->iterations);
+    if (code == Invalid_Option)
+        return moray_error(MORAY_INPUT, "Ipopt refuses an option when it starts: is its linear solver there?");
+    return moray_ok();
+}
+
+static moray_status run(IpoptProblem problem, struct session *session, moray_iterate *iterate, struct logs *logs,
+                        enum ApplicationReturnStatus *code)
+{
+    MORAY_TRY(set_up(problem, session, logs));
+    *code = IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective, iterate->lambda, iterate->z_lower,
+                       iterate->z_upper, session);
+    session->info->outcome = outcome_of(*code);
     take_best(session, iterate);
     return moray_ok();
 }
@@ -245,21 +295,28 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for %d variables", nlp->n);
     struct session session = {nlp, settings, info, block, block + nlp->n, INFINITY, INFINITY};
+    moray_mumps_lock();
     // Ipopt copies the bounds.
     IpoptProblem problem = CreateIpoptProblem(
         nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
         nlp->nnz_jac, nlp->nnz_hess, 0, on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
-    struct ipopt_timing timing = {0};
+    struct logs logs = {0};
+    enum ApplicationReturnStatus code = Internal_Error;
     moray_status status =
         moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
     if (problem) {
-        status = run(problem, &session, iterate, &timing);
-        FreeIpoptProblem(problem); // writes the rest of the log
+        status = run(problem, &session, iterate, &logs, &code);
+        FreeIpoptProblem(problem); // writes the rest of the logs
+        if (!moray_failed(status))
+            status = judge(code, &session, &logs);
     }
+    moray_mumps_unlock();
     free(block);
     info->seconds = now(CLOCK_MONOTONIC) - start;
     info->cpu_seconds = cpu() - cpu_start;
-    info->linear_seconds = moray_ipopt_timing_close(&timing);
+    info->linear_seconds = moray_ipopt_log_linear_seconds(&logs.timing);
+    moray_ipopt_log_close(&logs.errors);
+    moray_ipopt_log_close(&logs.timing);
     return status;
 }
 

@@ -90,6 +90,8 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
                                 .warm = warm,
                                 .print_level = settings->print_level,
                                 .timing = settings->timing,
+                                .ipopt = settings->ipopt,
+                                .n_ipopt = settings->n_ipopt,
                                 .progress = settings->progress,
                                 .observer = settings->observer};
 }
