@@ -4,9 +4,10 @@
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/number.h"
 
 static bool allowed(const moray_option *row, double value)
 {
@@ -36,9 +37,8 @@ static bool read_int(const moray_option *row, const char *text, int *value)
 // A number in the row's unit, stored scaled.
 static bool read_real(const moray_option *row, const char *text, double *value)
 {
-    char *end;
-    const double number = strtod(text, &end);
-    if (end == text || !only_blanks(end) || !isfinite(number) || !allowed(row, number))
+    double number;
+    if (!moray_number_read(text, &number) || !allowed(row, number))
         return false;
     *value = number * moray_option_scale(row);
     return true;

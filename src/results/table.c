@@ -3,14 +3,18 @@
 
 #include <math.h>
 
+#include "base/number.h"
+
 const char *moray_table_number(double value, char text[32])
 {
+    const locale_t before = moray_c_locale_begin();
     if (isnan(value))
         text[0] = 0;
     else if (value == round(value) && fabs(value) < 1e9)
         snprintf(text, 32, "%.0f", value + 0.0); // -0 becomes 0
     else
         snprintf(text, 32, "%.4g", value);
+    moray_c_locale_end(before);
     return text;
 }
 

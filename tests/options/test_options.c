@@ -263,7 +263,7 @@ static void test_bad_files(void)
     moray_status status = PARSE(&s, "--robot", ini(wide));
     CHECK(status.code == MORAY_INPUT && strstr(status.text, ":1: longer than"), "a line too long: %s", status.text);
     status = PARSE(&s, "--robot", directory);
-    CHECK(status.code == MORAY_IO && strstr(status.text, "is a directory"), "a directory: %s", status.text);
+    CHECK(status.code == MORAY_IO && strstr(status.text, "Is a directory"), "a directory: %s", status.text);
     status = PARSE(&s, "--robot", "/tmp/moray-no-such-file");
     CHECK(status.code == MORAY_IO && strstr(status.text, "No such file"), "no file: %s", status.text);
     memset(wide, 'p', sizeof wide - 1);

@@ -25,7 +25,7 @@ typedef struct moray_path {
     double length;           // [m]
 } moray_path;
 
-// Through waypoints "X,Y X,Y ..." [m], or those of a CSV file whose first line names the columns x_m,y_m: straight legs
+// Through waypoints "X,Y X,Y ..." [m], or those of a CSV file of the columns x_m and y_m: straight legs
 // joined by arcs of that radius [m] in the corners. Free with moray_path_free. Error: MORAY_INPUT, also where a leg is
 // too short for its arcs; MORAY_IO; MORAY_MEMORY.
 moray_status moray_path_read(moray_path *path, const char *text, double radius);
