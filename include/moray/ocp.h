@@ -109,7 +109,7 @@ typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_end_va
 
 // Of continuous, continuous_real and map, exactly one.
 typedef struct moray_phase_spec {
-    const char *name;
+    const char *name; // NULL: "phase", or the number of several
     int nx, nu, nc, nq;
     moray_continuous_fn *continuous; // complex step
     const moray_map *map;            // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
@@ -134,8 +134,10 @@ typedef struct moray_ocp_spec {
 
 typedef struct moray_ocp moray_ocp;
 
-// Copies the spec (not the maps, nor data). Error: MORAY_INPUT naming what is missing, of the wrong length,
-// contradictory or not a number; MORAY_MEMORY.
+// Copies the spec (not the maps, nor data). Names of a kind differ from each other, as do states from controls within a
+// phase; none is empty, longer than 100 bytes, holds a control character or " [", or begins or ends with a blank;
+// states and controls are not named t, nor phase where there are several. Error: MORAY_INPUT naming what is missing, of
+// the wrong length, contradictory, not a number or named like another; MORAY_MEMORY.
 moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
 void moray_ocp_free(moray_ocp *ocp);
 
