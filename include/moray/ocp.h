@@ -215,9 +215,10 @@ typedef struct moray_settings {
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log on standard error
-    bool timing;           // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
-    const moray_ipopt_option *ipopt; // [n_ipopt] further options of Ipopt, which must outlive the solution
-    int n_ipopt;                     // 0
+    moray_linear_solver linear_solver; // our own
+    bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
+    const moray_ipopt_option *ipopt;   // [n_ipopt] further options of Ipopt, which must outlive the solution
+    int n_ipopt;                       // 0
     moray_progress_fn *progress;
     void *observer;
 } moray_settings;

@@ -7,11 +7,10 @@
 
 #include <math.h>
 
+#include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
 #include "reading.h"
-
-#define DEG (M_PI / 180)
 
 enum { PAPER_STUDIES = 32, PAPER_TABLES = 12 };
 

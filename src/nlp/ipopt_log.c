@@ -45,3 +45,30 @@ double moray_ipopt_log_linear_seconds(const struct ipopt_log *log)
         return NAN;
     return user + system;
 }
+
+void moray_ipopt_logs_open(IpoptProblem problem, int print_level, bool timing, struct ipopt_logs *logs)
+{
+    if (print_level > 0)
+        OpenIpoptOutputFile(problem, (char *)"stderr", print_level);
+    if (moray_ipopt_log_open(&logs->errors))
+        OpenIpoptOutputFile(problem, logs->errors.path, ipopt_error_level);
+    if (timing && moray_ipopt_log_open(&logs->timing) &&
+        OpenIpoptOutputFile(problem, logs->timing.path, ipopt_timing_level))
+        AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
+}
+
+void moray_ipopt_logs_close(struct ipopt_logs *logs)
+{
+    moray_ipopt_log_close(&logs->errors);
+    moray_ipopt_log_close(&logs->timing);
+}
+
+bool moray_ipopt_log_lacked_memory(const struct ipopt_log *errors)
+{
+    static const char *const told[] = {"INFO(1) =-13", "INFO(1) = -13", "Error=-7 ", "Error=-13 "};
+    char line[200];
+    for (unsigned i = 0; i < sizeof told / sizeof *told; i++)
+        if (moray_ipopt_log_find(errors, told[i], line, sizeof line))
+            return true;
+    return false;
+}

@@ -4,6 +4,7 @@
 #ifndef SRC_NLP_IPOPT_LOG_H
 #define SRC_NLP_IPOPT_LOG_H
 
+#include <IpStdCInterface.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -25,5 +26,16 @@ bool moray_ipopt_log_find(const struct ipopt_log *log, const char *words, char *
 
 // Seconds in the linear solver; NaN when the log does not tell.
 double moray_ipopt_log_linear_seconds(const struct ipopt_log *log);
+
+// The logs of a solve. They close after the problem is freed; a log that cannot be opened is empty.
+struct ipopt_logs {
+    struct ipopt_log errors, timing;
+};
+void moray_ipopt_logs_open(IpoptProblem problem, int print_level, bool timing, struct ipopt_logs *logs);
+void moray_ipopt_logs_close(struct ipopt_logs *logs);
+
+// Whether MUMPS tells that it could not allocate. Ipopt takes the failed factorisation for one of a singular matrix and
+// tries others; its code in the end is of many kinds.
+bool moray_ipopt_log_lacked_memory(const struct ipopt_log *errors);
 
 #endif

@@ -12,6 +12,7 @@
 
 #include "base/number.h"
 #include "nlp/ipopt_log.h"
+#include "nlp/mumps_lock.h"
 
 enum kind { refused, integer, number, text };
 
@@ -100,6 +101,7 @@ static moray_status check_key(const moray_ipopt_option *option)
 {
     static const char *const kept[][2] = {{"option_file_name", "no option file is read"},
                                           {"sb", "the banner is never printed"},
+                                          {"linear_solver", "it is a setting of moray's own"},
                                           {"output_file", "print_level writes the log to standard error"}};
     for (unsigned i = 0; i < sizeof kept / sizeof *kept; i++)
         if (strcmp(option->key, kept[i][0]) == 0)
@@ -107,7 +109,7 @@ static moray_status check_key(const moray_ipopt_option *option)
     return moray_ok();
 }
 
-static moray_status set_on(IpoptProblem problem, const moray_ipopt_option *option)
+static moray_status set_alone(IpoptProblem problem, const moray_ipopt_option *option)
 {
     struct ipopt_log log;
     IpoptProblem silent = new_silent();
@@ -121,6 +123,15 @@ static moray_status set_on(IpoptProblem problem, const moray_ipopt_option *optio
     if (kind == refused || !set(problem, option, kind))
         status = refusal(option, &log);
     moray_ipopt_log_close(&log);
+    return status;
+}
+
+// Solving the small problem makes an instance of MUMPS.
+static moray_status set_on(IpoptProblem problem, const moray_ipopt_option *option)
+{
+    moray_mumps_lock();
+    const moray_status status = set_alone(problem, option);
+    moray_mumps_unlock();
     return status;
 }
 

@@ -199,7 +199,7 @@ static void test_refusals(void)
     check_refused("sb", "no", "ipopt.sb cannot be set");
     check_refused("print_level", "x", "ipopt.print_level = x: must be an integer from 0 to 12");
     check_refused("print_level", "13", "print level 13: must lie between 0 and 12");
-    check_refused("linear_solver", "ma27", "Ipopt refuses an option when it starts: is its linear solver there?");
+    check_refused("linear_solver", "ma27", "ipopt.linear_solver cannot be set: it is a setting of moray's own");
 }
 
 // ---- Standard output, the working directory ----
@@ -223,10 +223,10 @@ static long written(int stream, void (*calls)(void))
 
 static void refuse_and_log(void)
 {
-    static const char *const given[][2] = {{"tolerance", "1"},        {"tol", "-1"},
-                                           {"print_level", "5"},      {"print_options_documentation", "yes"},
-                                           {"print_level", "99"},     {"print_user_options", "yes"},
-                                           {"linear_solver", "ma27"}, {"derivative_test", "first-order"}};
+    static const char *const given[][2] = {{"tolerance", "1"},       {"tol", "-1"},
+                                           {"print_level", "5"},     {"print_options_documentation", "yes"},
+                                           {"print_level", "99"},    {"print_user_options", "yes"},
+                                           {"mu_strategy", "brave"}, {"derivative_test", "first-order"}};
     for (unsigned i = 0; i < sizeof given / sizeof *given; i++) {
         moray_status status;
         moray_nlp_info info;
@@ -268,6 +268,7 @@ enum { repetitions = 12, threads = 4 };
 
 typedef struct {
     int n;
+    moray_linear_solver solver;
     double found[repetitions];
     bool solved;
 } work;
@@ -278,9 +279,10 @@ static void *repeat(void *self)
     w->solved = true;
     for (int k = 0; k < repetitions; k++) {
         chain c = chain_new(w->n);
-        const moray_nlp_settings settings = moray_nlp_settings_default();
+        moray_nlp_settings settings = moray_nlp_settings_default();
         moray_status status;
         moray_nlp_info info;
+        settings.linear_solver = w->solver;
         w->found[k] = solve(&c, &settings, &status, &info);
         w->solved = w->solved && !moray_failed(status) && info.outcome == MORAY_NLP_SOLVED;
         chain_free(&c);
@@ -288,12 +290,13 @@ static void *repeat(void *self)
     return NULL;
 }
 
-static void test_threads(void)
+static void test_threads(moray_linear_solver solver)
 {
     static work alone[threads], together[threads];
     pthread_t thread[threads];
     for (int i = 0; i < threads; i++) {
         alone[i].n = together[i].n = 60 + 20 * i;
+        alone[i].solver = together[i].solver = solver;
         repeat(&alone[i]);
     }
     for (int i = 0; i < threads; i++)
@@ -303,14 +306,15 @@ static void test_threads(void)
         pthread_join(thread[i], NULL);
         CHECK(alone[i].solved && together[i].solved &&
                   memcmp(alone[i].found, together[i].found, sizeof alone[i].found) == 0,
-              "thread %d of %d, %d variables: as alone, to the last bit", i + 1, (int)threads, alone[i].n);
+              "%s, thread %d of %d, %d variables: as alone, to the last bit", moray_linear_solver_text(solver), i + 1,
+              (int)threads, alone[i].n);
     }
 }
 
 // ---- Memory ----
 
 // The code of a solve that may take so many megabytes more than it has; in a process of its own.
-static int code_within(int megabytes, int variables)
+static int code_within(int megabytes, int variables, moray_linear_solver solver)
 {
     fflush(stdout);
     const pid_t child = fork();
@@ -321,6 +325,7 @@ static int code_within(int megabytes, int variables)
         moray_nlp_info info;
         moray_nlp_settings settings = moray_nlp_settings_default();
         settings.max_iterations = 2;
+        settings.linear_solver = solver;
         FILE *file = need(fopen("/proc/self/statm", "r"));
         if (fscanf(file, "%ld", &pages) != 1)
             exit(1);
@@ -352,11 +357,14 @@ static void test_memory(void)
         CHECK(true, "out of memory # SKIP the sanitizer needs the address space");
         return;
     }
-    for (int megabytes = 1; megabytes <= 16; megabytes *= 2) {
-        const int code = code_within(megabytes, 2500);
-        CHECK(code == MORAY_MEMORY || (megabytes >= 4 && code == MORAY_OK), "within %d MB: %s", megabytes,
-              code >= 0 ? moray_code_text((moray_code)code) : "crashed");
-    }
+    for (int megabytes = 1; megabytes <= 16; megabytes *= 2)
+        for (int own = 0; own < 2; own++) {
+            const moray_linear_solver solver = own ? MORAY_LINEAR_OWN : MORAY_LINEAR_MUMPS;
+            const int code = code_within(megabytes, 2500, solver);
+            CHECK(code == MORAY_MEMORY || (megabytes >= 4 && code == MORAY_OK), "%s within %d MB: %s",
+                  moray_linear_solver_text(solver), megabytes,
+                  code >= 0 ? moray_code_text((moray_code)code) : "crashed");
+        }
 }
 
 int main(void)
@@ -366,6 +374,7 @@ int main(void)
     test_refusals();
     test_streams();
     test_option_file();
-    test_threads();
+    test_threads(MORAY_LINEAR_MUMPS);
+    test_threads(MORAY_LINEAR_OWN);
     return tap_done();
 }

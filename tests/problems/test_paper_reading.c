@@ -2,9 +2,8 @@
 //
 // A swimmer that reads the paper's misprints as they stand, against the paper's formulas as they stand.
 #include "printed_model.h"
+#include "degree.h"
 #include "paper/reading.h"
-
-#define DEG (M_PI / 180)
 
 static moray_swimmer *swimmer_of(const scene *s, moray_model model, paper_reading reading)
 {

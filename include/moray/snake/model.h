@@ -119,11 +119,26 @@ void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, 
 // Joint coordinates and rates (N-1 each) of the state.
 void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
 
-// The six states of the plants with the joints on the gait, see below: of a full state of the model; and the full state
-// whose joints are on the gait at t.
-void moray_state_body(moray_model model, int links, const double *x, double body[6]);
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
-                           double *x);
+// States of the plants with the joints on the gait, and behind them, where it is steered, of the joint offset.
+// Velocity: v_t, v_n along and across the head link in the control-oriented model, v_x, v_y in the other, whose theta
+// is the mean.
+enum {
+    MORAY_STATE_THETA,
+    MORAY_STATE_P_X,
+    MORAY_STATE_P_Y,
+    MORAY_STATE_V_THETA,
+    MORAY_STATE_V_1,
+    MORAY_STATE_V_2,
+    MORAY_BODY_STATES,
+    MORAY_STATE_PHI_0 = MORAY_BODY_STATES,
+    MORAY_STATE_V_PHI_0, // phi_0'
+    MORAY_STEERING_STATES
+};
+
+// Those of the body: of a full state of the model; and the full state whose joints are on the gait at t.
+void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES]);
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
+                           const double body[MORAY_BODY_STATES], double *x);
 
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.

@@ -90,13 +90,13 @@ void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double 
     swimmer->model->joints(swimmer->robot.links, x, phi, v_phi);
 }
 
-void moray_state_body(moray_model model, int links, const double *x, double body[6])
+void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES])
 {
     model_of(model)->body(links, x, body);
 }
 
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
-                           double *x)
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
+                           const double body[MORAY_BODY_STATES], double *x)
 {
     const int n = swimmer->robot.links - 1;
     double *phi = swimmer->reference, *v_phi = phi + n;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "moray/control/path.h"
 #include "moray/snake/orbit.h"
 #include "snake/swim/steady.h"
 
@@ -27,12 +28,12 @@ static moray_status crab_direction(const moray_swim_setup *setup, double course,
                            "the gait's speed through the water U = %.4g m/s cannot hold the course of %.4g deg against "
                            "a cross current of W = %.4g m/s",
                            U, degrees(course), W);
-    if (sqrt(U * U - W * W) + along <= 0)
+    if (moray_course_made_good(U, V, course) <= 0)
         return moray_error(MORAY_NOT_SOLVED,
                            "the gait's speed through the water U = %.4g m/s cannot make way on the course of %.4g deg "
                            "against a current of %.4g m/s along it and W = %.4g m/s across",
                            U, degrees(course), along, W);
-    *direction = course - asin(W / U);
+    *direction = course + moray_crab_angle(U, V, course);
     return moray_ok();
 }
 
