@@ -262,8 +262,7 @@ int main(int argc, char **argv)
                    "intervals and tolerance are each problem's own unless given.",
         .options = options,
         .n_options = sizeof options / sizeof *options,
-        .words = &words,
-        .no_robot = true};
+        .words = &words};
     classics_run run = defaults();
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;

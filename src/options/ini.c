@@ -87,11 +87,11 @@ static moray_status parse(ini_state *state)
     return moray_ok();
 }
 
-moray_status moray_ini_read(const moray_options *options, const char *path, void *settings)
+moray_status moray_ini_read(const moray_options *options, const char *flag, const char *path, void *settings)
 {
     FILE *file = fopen(path, "r");
     if (!file)
-        return moray_error(MORAY_IO, "robot file %s: cannot be opened: %s", tail(path), strerror(errno));
+        return moray_error(MORAY_IO, "%s file %s: cannot be opened: %s", flag, tail(path), strerror(errno));
     struct stat about;
     moray_status status = moray_ok();
     ini_state state = {.file = file, .path = path, .options = options, .settings = settings, .status = status};
@@ -99,7 +99,7 @@ moray_status moray_ini_read(const moray_options *options, const char *path, void
     if (!state.set_in_line)
         status = moray_error(MORAY_MEMORY, "%s: no memory to read it", tail(path));
     else if (fstat(fileno(file), &about) == 0 && S_ISDIR(about.st_mode))
-        status = moray_error(MORAY_IO, "robot file %s: is a directory, not an INI file", tail(path));
+        status = moray_error(MORAY_IO, "%s file %s: is a directory, not an INI file", flag, tail(path));
     else
         status = parse(&state);
     free(state.set_in_line);

@@ -211,8 +211,7 @@ int moray_app_run(const moray_app *app, int argc, char **argv)
     const moray_program program = {.name = run.name,
                                    .summary = app->summary ? app->summary : "Solves an optimal-control problem.",
                                    .options = rows,
-                                   .n_options = own_count + app->n_constants,
-                                   .no_robot = true};
+                                   .n_options = own_count + app->n_constants};
     int exit_code;
     if (app->n_constants > MORAY_APP_CONSTANTS)
         return moray_app_end(

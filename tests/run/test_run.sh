@@ -119,7 +119,7 @@ run --scheme euler --json --out euler
 check "bad scheme: exit 2, nothing printed or written: $(cat err)" \
     eval '[ $code -eq 2 ] && says "scheme = euler: must be" && [ ! -s out ] && [ ! -e euler ]'
 run --help
-check "--help has the constants and no INI files" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -q INI out'
+check "--help has the constants and nothing of robots" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -qiE "robot|model" out'
 run --version
 check "--version: $(cat out)" grep -q '^run_demo (moray) [0-9.]*$' out
 tap_done
