@@ -70,6 +70,8 @@ static moray_status solve(classics_run *run, struct line *line)
     if (!isnan(run->common.tol))
         line->settings.tolerance = run->common.tol;
     line->settings.linear_solver = run->common.linear_solver;
+    line->settings.ipopt = run->common.ipopt.at;
+    line->settings.n_ipopt = run->common.ipopt.n;
     if (run->refinements >= 0)
         line->settings.max_refinements = run->refinements;
     line->settings.progress = show_iteration;
@@ -263,8 +265,7 @@ int main(int argc, char **argv)
                    "intervals and tolerance are each problem's own unless given.",
         .options = options,
         .n_options = sizeof options / sizeof *options,
-        .words = &words,
-        .no_robot = true};
+        .words = &words};
     classics_run run = defaults();
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;

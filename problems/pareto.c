@@ -125,9 +125,9 @@ static moray_status work(gait_job *job)
     pareto *run = (pareto *)job;
     const int kinds = job->taper[0] < job->taper[1] ? PARETO_KINDS : PARETO_KINDS - 1;
     if (isnan(run->eel_taper))
-        run->eel_taper = (2.0 - job->common.robot.links) / job->common.robot.links;
+        run->eel_taper = (2.0 - job->snake.robot.links) / job->snake.robot.links;
     MORAY_TRY(gait_job_prepare(job));
-    for (int model = 0; model <= (int)job->common.model; model++)
+    for (int model = 0; model <= (int)job->snake.model; model++)
         for (int kind = 0; kind < kinds; kind++)
             MORAY_TRY(make_front(run, (moray_model)model, kind));
     return moray_ok();

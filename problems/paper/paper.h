@@ -15,7 +15,8 @@
 enum { PAPER_STUDIES = 32, PAPER_TABLES = 12 };
 
 typedef struct paper_settings {
-    moray_common common;             // robot, current, output
+    moray_common common;
+    moray_snake_options snake;       // robot, current
     double theta_max, omega, delta;  // of the gait that studies take where they do not vary it
     paper_reading reading;           // of the control-oriented model
     bool as_printed;                 // reading = printed

@@ -60,7 +60,7 @@ static moray_status draw_velocity(const simulate *run, const double *t, const do
 
 static moray_status draw_heading(const simulate *run, const double *t, const double *heading, int n)
 {
-    const bool control = run->common.model == MORAY_CONTROL_ORIENTED;
+    const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
     const moray_curve curve = {.label = control ? "theta" : "mean link angle", .x = t, .y = heading, .n = n};
     return draw(run, &(moray_figure){.name = "heading",
                                      .title = "Heading",
@@ -74,7 +74,7 @@ static moray_status draw_heading(const simulate *run, const double *t, const dou
 static moray_status draw_efforts(const simulate *run, const simulate_results *results, const double *t, double *u)
 {
     const moray_swim_track *track = &results->track;
-    const bool control = run->common.model == MORAY_CONTROL_ORIENTED;
+    const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
     const int joint[] = {0, (track->n_joints - 1) / 2, track->n_joints - 1}, shown = track->n_joints < 3 ? 1 : 3;
     int from = 0;
     char label[3][32], title[80];

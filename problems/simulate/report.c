@@ -8,18 +8,18 @@ static const char *const model_names[] = {"control-oriented", "first-principles"
 
 static bool is_control(const simulate *run)
 {
-    return run->common.model == MORAY_CONTROL_ORIENTED;
+    return run->snake.model == MORAY_CONTROL_ORIENTED;
 }
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
 static void describe(const simulate *run, const simulate_results *results, char *text, size_t size)
 {
-    const moray_robot *robot = &run->common.robot;
+    const moray_robot *robot = &run->snake.robot;
     const moray_gait *gait = simulate_last_gait(results);
     const bool control = is_control(run);
     const double theta_max =
-        moray_theta_max_from_amplitude(robot, run->common.model, gait->amplitude, gait->delta) / DEG;
+        moray_theta_max_from_amplitude(robot, run->snake.model, gait->amplitude, gait->delta) / DEG;
     char changes[60] = "", taper[40] = "";
     if (results->n_changes > 1)
         snprintf(changes, sizeof changes, "%d gaits, the last one from t = %g s: ", results->n_changes,
@@ -29,7 +29,7 @@ static void describe(const simulate *run, const simulate_results *results, char 
     snprintf(text, size,
              "%d links, %s model, current (%g, %g) m/s. %stheta_max %.4g deg (%s = %.4g %s), omega %.4g deg/s, delta "
              "%.4g deg, phi_0 %.4g %s%s.",
-             robot->links, model_names[run->common.model], run->common.current[0], run->common.current[1], changes,
+             robot->links, model_names[run->snake.model], run->snake.current[0], run->snake.current[1], changes,
              theta_max, control ? "a" : "alpha", gait->amplitude * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
              gait->omega / DEG, gait->delta / DEG, gait->offset * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
              taper);
@@ -114,10 +114,10 @@ static void print_tables(const simulate *run, const simulate_results *results, s
 
 static void json_gait(moray_json *json, const simulate *run, const moray_gait_change *change)
 {
-    const moray_robot *robot = &run->common.robot;
+    const moray_robot *robot = &run->snake.robot;
     const bool control = is_control(run);
     const moray_gait *gait = &change->gait;
-    const double theta_max = moray_theta_max_from_amplitude(robot, run->common.model, gait->amplitude, gait->delta);
+    const double theta_max = moray_theta_max_from_amplitude(robot, run->snake.model, gait->amplitude, gait->delta);
     moray_json_open(json, NULL);
     moray_json_number(json, "t_s", change->t);
     moray_json_number(json, "theta_max_deg", theta_max / DEG);
@@ -135,10 +135,10 @@ static void json_head(moray_json *json, const simulate *run, const simulate_resu
     moray_json_text(json, "version", moray_version());
     moray_json_text(json, "model", is_control(run) ? "control" : "fp");
     moray_json_open(json, "robot");
-    moray_json_number(json, "links", run->common.robot.links);
+    moray_json_number(json, "links", run->snake.robot.links);
     moray_json_close(json);
-    moray_json_numbers(json, "current_m_s", run->common.current, 2);
-    moray_json_number(json, "course_deg", run->common.course / DEG);
+    moray_json_numbers(json, "current_m_s", run->snake.current, 2);
+    moray_json_number(json, "course_deg", run->snake.course / DEG);
     moray_json_open_list(json, "gaits");
     for (int i = 0; i < results->n_changes; i++)
         json_gait(json, run, &results->schedule[i]);

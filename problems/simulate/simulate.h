@@ -10,6 +10,7 @@ typedef enum { SIMULATE_EXPLICIT, SIMULATE_TR_BDF2, SIMULATE_PAPER } simulate_in
 
 typedef struct simulate {
     moray_common common;
+    moray_snake_options snake;
     moray_gait_input gait;
     char schedule_file[MORAY_PATH_SIZE];
     double duration, output_step, heading, position[2]; // duration NaN: 60 s after the last change of gait

@@ -75,7 +75,7 @@ static moray_status draw_path(const steer_job *job, const steer_trial *const *tr
     if (job->program->path)
         job->program->path(job, x, y);
     return drawn(job, moray_swim_closed_loop_draw_path(job->common.output, closed_loops, labels, STEER_CURVES,
-                                                       job->common.current, job->program->path ? &path : NULL));
+                                                       job->snake.current, job->program->path ? &path : NULL));
 }
 
 static moray_status draw_shown(const steer_job *job, const steer_trial *const *trials,

@@ -59,7 +59,7 @@ static void json_plan(const steer_job *job, moray_json *json, const char *key, m
 void steer_json_gait(const steer_job *job, moray_json *json, int gait)
 {
     const moray_gait gaits[2] = {job->straight[gait][0].gait, job->straight[gait][1].gait};
-    moray_gait_to_json(json, "gait", &job->common.robot, gaits);
+    moray_gait_to_json(json, "gait", &job->snake.robot, gaits);
 }
 
 void steer_json_saturation(const steer_job *job, moray_json *json, moray_model model)
@@ -74,14 +74,14 @@ moray_json *steer_json(const steer_job *job)
     moray_json *json = moray_json_new();
     moray_json_text(json, "problem", job->name);
     moray_json_text(json, "version", moray_version());
-    moray_json_text(json, "model", model_keys[job->common.model]);
+    moray_json_text(json, "model", model_keys[job->snake.model]);
     moray_json_open(json, "robot");
-    moray_json_number(json, "links", job->common.robot.links);
+    moray_json_number(json, "links", job->snake.robot.links);
     moray_json_close(json);
-    moray_json_numbers(json, "current_m_s", job->common.current, 2);
+    moray_json_numbers(json, "current_m_s", job->snake.current, 2);
     job->program->json_head(job, json);
     json_plan(job, json, "control_oriented_plan", MORAY_CONTROL_ORIENTED);
-    if (job->common.model == MORAY_FIRST_PRINCIPLES)
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES)
         json_plan(job, json, "first_principles_plan", MORAY_FIRST_PRINCIPLES);
     moray_json_open_list(json, "steering");
     for (int k = 0; k < job->n_trials; k++)

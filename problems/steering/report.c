@@ -28,11 +28,11 @@ void steer_gait_table(const steer_job *job, steer_tables *tables, int first)
     moray_table_row *rows = tables->rows[tables->n];
     for (int i = 0; i < count; i++)
         rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
-    for (int g = first; g <= 1 + (int)job->common.model; g++) {
+    for (int g = first; g <= 1 + (int)job->snake.model; g++) {
         const moray_straight_motion *control = &job->straight[g][0], *revolute = &job->straight[g][1];
         const moray_gait *gait = &control->gait;
         const double values[count] = {
-            moray_theta_max_from_amplitude(&job->common.robot, MORAY_CONTROL_ORIENTED, gait->amplitude, gait->delta) /
+            moray_theta_max_from_amplitude(&job->snake.robot, MORAY_CONTROL_ORIENTED, gait->amplitude, gait->delta) /
                 DEG,
             gait->omega / DEG,
             gait->delta / DEG,
@@ -46,7 +46,7 @@ void steer_gait_table(const steer_job *job, steer_tables *tables, int first)
     }
     moray_table table = {.title = "Gait",
                          .columns = {"paper's", "control opt.", "first-pr. opt."},
-                         .n_columns = 2 + (int)job->common.model,
+                         .n_columns = 2 + (int)job->snake.model,
                          .n_rows = count};
     if (first > 0) {
         table.columns[0] = "given";
@@ -148,7 +148,7 @@ static void print_all(const steer_job *job, const steer_tables *tables)
 {
     const steer_program *program = job->program;
     char text[STEER_TEXT];
-    printf("%d links, current (%g, %g) m/s, ", job->common.robot.links, job->common.current[0], job->common.current[1]);
+    printf("%d links, current (%g, %g) m/s, ", job->snake.robot.links, job->snake.current[0], job->snake.current[1]);
     program->headline(job, stdout);
     printf("\n\n");
     for (int k = 0; k < tables->n; k++) {
@@ -165,7 +165,7 @@ static void print_all(const steer_job *job, const steer_tables *tables)
         if (job->trial[k].law->kind == STEER_RECEDING)
             print_receding(job, &job->trial[k]);
     print_solver(job, STEER_AVERAGED);
-    for (int model = 0; model <= (int)job->common.model; model++)
+    for (int model = 0; model <= (int)job->snake.model; model++)
         print_solver(job, model);
 }
 

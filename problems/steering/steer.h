@@ -149,7 +149,8 @@ typedef struct steer_plan {
 enum { STEER_AVERAGED = 2 }; // plan beside those of the models
 
 struct steer_job {
-    moray_common common; // model: of the last plan; with fp there is one on the control-oriented model before
+    moray_common common;
+    moray_snake_options snake; // model: of the last plan; with fp there is one on the control-oriented model before
     steer_input input;
     double weight_steering;
     int intervals_per_period, refinements, evaluations;
@@ -176,7 +177,7 @@ int steer_main(const moray_program *app, const steer_program *program, int argc,
 
 static inline const steer_plan *steer_last_plan(const steer_job *job)
 {
-    return &job->plan[job->common.model];
+    return &job->plan[job->snake.model];
 }
 
 // ---- Gaits and limits ----------------------------------------------------------------------------------------------

@@ -11,7 +11,8 @@ typedef struct ini_state {
     moray_text text;
     const moray_options *options;
     void *settings;
-    int *set_in_line; // of each row; 0: not yet
+    int *set_in_line;       // of each row; 0: not yet
+    moray_ipopt_list ipopt; // what this file has set
     moray_status status;
 } ini_state;
 
@@ -32,8 +33,23 @@ static char *next_line(char *line, int size, void *self)
     return strcpy(line, from);
 }
 
+static moray_status set_ipopt(ini_state *state, const char *key, const char *value)
+{
+    char text[2 * MORAY_IPOPT_SIZE];
+    snprintf(text, sizeof text, "ipopt.%s=%s", key, value);
+    const moray_option *row = moray_option_find_ipopt(state->options, text);
+    if (!row)
+        return moray_option_unknown(state->options, key);
+    if (moray_ipopt_list_has(&state->ipopt, key))
+        return moray_error(MORAY_INPUT, "%.60s is given twice", key);
+    MORAY_TRY(moray_ipopt_list_set(&state->ipopt, strchr(text, '.') + 1));
+    return moray_option_read(row, key, strchr(text, '.') + 1, state->settings);
+}
+
 static moray_status set_key(ini_state *state, const char *section, const char *key, const char *value)
 {
+    if (strcmp(section, "ipopt") == 0)
+        return set_ipopt(state, key, value);
     const moray_option *row = moray_option_find(state->options, key);
     if (!row)
         return moray_option_unknown(state->options, key);
@@ -70,12 +86,14 @@ static moray_status parse(ini_state *state)
     return state->status;
 }
 
-moray_status moray_ini_read(const moray_options *options, const char *path, void *settings)
+moray_status moray_ini_read(const moray_options *options, const char *flag, const char *path, void *settings)
 {
+    char what[64];
+    snprintf(what, sizeof what, "%s file", flag);
     ini_state state = {.options = options, .settings = settings, .status = moray_ok()};
     state.set_in_line = calloc((size_t)options->n, sizeof *state.set_in_line);
     moray_status status = state.set_in_line
-                              ? moray_text_read(&state.text, path, "robot file")
+                              ? moray_text_read(&state.text, path, what)
                               : moray_error(MORAY_MEMORY, "%s: no memory to read it", moray_path_tail(path));
     if (!moray_failed(status))
         status = parse(&state);

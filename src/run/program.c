@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "options/options.h"
+#include "moray/app/program.h"
 
 #include <ctype.h>
-#include <stdlib.h>
-
-const char *moray_version(void)
-{
-    return MORAY_VERSION;
-}
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
 
 moray_exit moray_exit_of(moray_code code)
 {
@@ -27,54 +24,6 @@ moray_exit moray_exit_of(moray_code code)
     return MORAY_EXIT_NOT_SOLVED;
 }
 
-static moray_status assign(const moray_options *options, const moray_arguments *arguments, void *settings)
-{
-    for (int i = 0; i < arguments->n; i++) {
-        const moray_assignment *item = &arguments->item[i];
-        char name[64];
-        if (!item->row) {
-            moray_word_mark(options->words, item->value, settings);
-            continue;
-        }
-        snprintf(name, sizeof name, "%s%s", item->by_flag ? "--" : "",
-                 item->by_flag ? item->row->flag : item->row->key);
-        MORAY_TRY(moray_option_read(item->row, name, item->value, settings));
-    }
-    return moray_ok();
-}
-
-// The command line is assigned before the file, to know which file, and after it, to override it.
-static moray_status fill(const moray_options *options, const moray_arguments *arguments, void *settings)
-{
-    moray_common *common = settings;
-    MORAY_TRY(assign(options, arguments, settings));
-    if (options->words)
-        MORAY_TRY(moray_words_check(options->words, settings));
-    if (common->robot_file[0])
-        MORAY_TRY(moray_ini_read(options, common->robot_file, settings));
-    MORAY_TRY(assign(options, arguments, settings));
-    return moray_common_make_robot(common);
-}
-
-moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
-                             moray_request *request)
-{
-    moray_common *common = settings;
-    moray_options options;
-    moray_arguments arguments;
-    MORAY_TRY(moray_options_new(&options, program));
-    moray_status status = moray_arguments_read(&arguments, &options, argc, argv);
-    *request = arguments.request;
-    if (!moray_failed(status) && *request == MORAY_REQUEST_RUN) {
-        common->argc = argc;
-        common->argv = argv;
-        status = fill(&options, &arguments, settings);
-    }
-    free(arguments.item);
-    free(options.row);
-    return status;
-}
-
 static moray_status answer(const moray_program *program, const void *settings, moray_request request)
 {
     if (request == MORAY_REQUEST_HELP)
@@ -84,10 +33,21 @@ static moray_status answer(const moray_program *program, const void *settings, m
     return moray_ok();
 }
 
+// Makes what the parent left behind harmless: a file opened later must not become a standard stream that is closed
+// (what is then printed there fails instead), and children, which draw the figures, are to be waited for.
+static void settle(void)
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_RDWR) != stream)
+            break;
+    signal(SIGCHLD, SIG_DFL);
+}
+
 bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code)
 {
     moray_common *common = settings;
     moray_request request;
+    settle();
     moray_status status = moray_app_parse(program, argc, argv, settings, &request);
     if (!moray_failed(status) && request != MORAY_REQUEST_RUN)
         status = answer(program, settings, request);
@@ -104,6 +64,8 @@ int moray_app_end(const moray_program *program, void *settings, moray_status sta
     moray_common *common = settings;
     moray_output_free(common->output);
     common->output = NULL;
+    if ((fflush(stdout) || ferror(stdout)) && !moray_failed(status))
+        status = moray_error(MORAY_IO, "standard output cannot be written");
     if (moray_failed(status)) {
         for (char *c = status.text; *c; c++)
             if (iscntrl((unsigned char)*c))

@@ -36,7 +36,7 @@ static void fill_row(moray_table_row *row, const char *label, const stage *at, c
 // The paper's gait as if it had been a stage: its prediction is what it makes.
 static stage paper_stage(const free_gait *run)
 {
-    const moray_model model = run->job.common.model;
+    const moray_model model = run->job.snake.model;
     const moray_gait_trial *paper = &run->job.paper;
     stage at = {.model = model, .trial = *paper};
     at.prediction.gait = paper->gait[model];
@@ -87,7 +87,7 @@ static double largest(const moray_series *series, int harmonic)
 static moray_status make_waves(const free_gait *run, struct waves *waves)
 {
     const moray_series *series = &freest(run)->series[MORAY_FIRST_PRINCIPLES];
-    const int n = run->job.common.robot.links - 1;
+    const int n = run->job.snake.robot.links - 1;
     const double nothing = 1e-5;
     *waves = (struct waves){.rows = calloc((size_t)n, sizeof *waves->rows)};
     if (!waves->rows)
@@ -174,9 +174,10 @@ struct findings {
 static void print(const free_gait *run, const struct findings *found)
 {
     const moray_common *common = &run->job.common;
+    const moray_snake_options *snake = &run->job.snake;
     char text[TEXT];
-    printf("%d links, current (%g, %g) m/s, course %g deg, %s model\n\n", common->robot.links, common->current[0],
-           common->current[1], common->course / DEG, model_names[common->model]);
+    printf("%d links, current (%g, %g) m/s, course %g deg, %s model\n\n", snake->robot.links, snake->current[0],
+           snake->current[1], snake->course / DEG, model_names[snake->model]);
     moray_table_print(&found->motions, stdout);
     printf("\n");
     if (found->waves.table.n_columns > 0) {

@@ -70,10 +70,10 @@ struct tables {
 static void make_tables(const gait_job *job, struct tables *t)
 {
     const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
-    const int columns = 2 + (int)job->common.model;
-    const double course = job->common.course;
+    const int columns = 2 + (int)job->snake.model;
+    const double course = job->snake.course;
     const int rows[tables] = {
-        moray_gait_rows(&job->common.robot, trials, columns, t->rows[0]),
+        moray_gait_rows(&job->snake.robot, trials, columns, t->rows[0]),
         moray_steady_rows(MORAY_CONTROL_ORIENTED, trials, columns, course, t->rows[1]),
         moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, course, t->rows[2]),
     };
@@ -91,15 +91,15 @@ static void make_tables(const gait_job *job, struct tables *t)
 static void print_demand(const gait_job *job, const char *what, double control, double revolute, const char *unit)
 {
     printf("; %s %.4g %s (%s model)", what, control, unit, model_names[MORAY_CONTROL_ORIENTED]);
-    if (job->common.model == MORAY_FIRST_PRINCIPLES)
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES)
         printf(" and %.4g %s (%s model)", revolute, unit, model_names[MORAY_FIRST_PRINCIPLES]);
 }
 
 static void print_demands(const gait_job *job)
 {
     const stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
-    printf("%d links, current (%g, %g) m/s, course %g deg", job->common.robot.links, job->common.current[0],
-           job->common.current[1], job->common.course / DEG);
+    printf("%d links, current (%g, %g) m/s, course %g deg", job->snake.robot.links, job->snake.current[0],
+           job->snake.current[1], job->snake.course / DEG);
     if (isfinite(control->power))
         print_demand(job, "mean joint power at most", control->power, revolute->power, "W");
     if (control->speed > 0)
@@ -117,11 +117,11 @@ static void print_tables(const gait_job *job)
         moray_table_print(&t.table[k], stdout);
         printf("\n");
     }
-    for (int model = 0; model <= (int)job->common.model; model++) {
+    for (int model = 0; model <= (int)job->snake.model; model++) {
         verdict(job, &job->stage[model], text);
         printf("%s\n\n", text);
     }
-    for (int model = 0; model <= (int)job->common.model; model++) {
+    for (int model = 0; model <= (int)job->snake.model; model++) {
         const stage *at = &job->stage[model];
         moray_solver_line(at->solution, job->common.scheme, job->common.intervals, text, text_size);
         printf("%s model, %s; %d of %d starts end here, none better\n", model_names[model], text, at->agreeing,
@@ -142,7 +142,7 @@ moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_out
     const char *const names[2][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
                                      {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
     const char *const units[] = {"rad", "m", "m", "rad/s", "m/s", "m/s"};
-    const int joints = job->common.robot.links - 1, full = job->joints == MORAY_JOINTS_ON_GAIT ? 0 : joints;
+    const int joints = job->snake.robot.links - 1, full = job->joints == MORAY_JOINTS_ON_GAIT ? 0 : joints;
     const int width = 1 + 6 + joints, states = 6 + 2 * full;
     FILE *file;
     MORAY_TRY(moray_output_file(output, "trajectory.csv", &file));
@@ -191,7 +191,7 @@ static moray_status draw_start(const gait_job *job, moray_output *output)
         "paper's gait, control-oriented model",      "control optimum, control-oriented model",
         "first-pr. optimum, control-oriented model", "paper's gait, first-principles model",
         "control optimum, first-principles model",   "first-pr. optimum, first-principles model"};
-    const int gaits = 2 + (int)job->common.model;
+    const int gaits = 2 + (int)job->snake.model;
     const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
     double *data = calloc((most + 1) * points, sizeof *data), *time = data + most * points;
     moray_curve curves[most];

@@ -11,12 +11,12 @@ void pareto_values(const pareto *run, const stage *at, double value[PARETO_VALUE
     value[PARETO_POWER] = at->prediction.power;
     value[PARETO_SPEED] = at->prediction.course_speed;
     value[PARETO_THETA_MAX] =
-        moray_theta_max_from_amplitude(&run->job.common.robot, at->model, gait->amplitude, gait->delta) / DEG;
+        moray_theta_max_from_amplitude(&run->job.snake.robot, at->model, gait->amplitude, gait->delta) / DEG;
     value[PARETO_OMEGA] = gait->omega / DEG;
     value[PARETO_DELTA] = gait->delta / DEG;
     value[PARETO_TAPER] = fabs(gait->taper) < 1e-6 ? 0 : gait->taper;
     value[PARETO_PRICE] = at->prediction.power_price;
-    value[PARETO_TRUE_SPEED] = held ? moray_course_speed(swum, run->job.common.course) : NAN;
+    value[PARETO_TRUE_SPEED] = held ? moray_course_speed(swum, run->job.snake.course) : NAN;
     value[PARETO_TRUE_POWER] = swum->power;
 }
 
@@ -26,10 +26,10 @@ static void json_point(moray_json *json, const pareto *run, const stage *at)
 {
     moray_json_open(json, NULL);
     moray_json_number(json, "power_limit_W", at->power);
-    moray_gait_to_json(json, "gait", &run->job.common.robot, at->trial.gait);
+    moray_gait_to_json(json, "gait", &run->job.snake.robot, at->trial.gait);
     gait_job_json_prediction(json, &at->prediction);
     moray_json_number(json, "speed_per_power_m_s_W", at->prediction.power_price);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.common.course);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.snake.course);
     moray_certificate_to_json(json, &at->certificate);
     moray_json_close(json);
 }

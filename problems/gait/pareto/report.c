@@ -103,7 +103,7 @@ static bool repeats(const pareto_front *front)
 
 static void find_words(const pareto *run, char *text)
 {
-    const int kinds = run->fronts / (1 + (int)run->job.common.model);
+    const int kinds = run->fronts / (1 + (int)run->job.snake.model);
     int used = 0;
     for (int f = 0; f < run->fronts; f++)
         if (!repeats(&run->front[f]))
@@ -157,11 +157,11 @@ struct findings {
 
 static void print(const pareto *run, const struct findings *found)
 {
-    const moray_common *common = &run->job.common;
+    const moray_snake_options *snake = &run->job.snake;
     printf("%d links, current (%g, %g) m/s, course %g deg: fastest gaits within ever less mean joint power; columns "
            "f.-p.: "
            "swum on the first-principles model\n\n",
-           common->robot.links, common->current[0], common->current[1], common->course / DEG);
+           snake->robot.links, snake->current[0], snake->current[1], snake->course / DEG);
     for (int f = 0; f < run->fronts; f++)
         if (!repeats(&run->front[f])) {
             moray_table_print(&found->sheet[f].table, stdout);

@@ -88,9 +88,9 @@ static void make_tables(const search_gait *run, struct tables *t)
 
 static void say_demand(const search_gait *run, char *text)
 {
-    const moray_common *common = &run->job.common;
-    int used = snprintf(text, TEXT, "%d links, current (%g, %g) m/s, course %g deg; %s model", common->robot.links,
-                        common->current[0], common->current[1], common->course / DEG, model_names[common->model]);
+    const moray_snake_options *snake = &run->job.snake;
+    int used = snprintf(text, TEXT, "%d links, current (%g, %g) m/s, course %g deg; %s model", snake->robot.links,
+                        snake->current[0], snake->current[1], snake->course / DEG, model_names[snake->model]);
     if (isfinite(run->demand.power))
         used += snprintf(text + used, (size_t)(TEXT - used), ", mean joint power at most %.4g W", run->demand.power);
     if (run->demand.speed > 0)

@@ -209,8 +209,8 @@ static moray_status make_search(search_gait *run)
 {
     gait_job *job = &run->job;
     MORAY_TRY(gait_job_prepare(job));
-    MORAY_TRY(gait_job_demand(job, job->common.model, &run->demand));
-    run->spec = gait_job_spec(job, &run->demand, job->goal, job->common.current);
+    MORAY_TRY(gait_job_demand(job, job->snake.model, &run->demand));
+    run->spec = gait_job_spec(job, &run->demand, job->goal, job->snake.current);
     return moray_gait_search_new(&run->search, &run->spec, job->common.scheme, job->common.intervals);
 }
 

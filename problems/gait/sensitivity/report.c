@@ -116,7 +116,7 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
         swum[k] = &forecast->trial[k].steady[MORAY_FIRST_PRINCIPLES];
         held = held && forecast->trial[k].held[MORAY_FIRST_PRINCIPLES];
     }
-    const double course = run->job.common.course, best = moray_course_speed(swum[2], course);
+    const double course = run->job.snake.course, best = moray_course_speed(swum[2], course);
     if (held)
         say(f,
             " Swum on the first-principles model, it is off by %+.3f %% in speed and %+.3f %% in power; the gait kept "
@@ -135,7 +135,7 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
 static void find_words(const sensitivity *run, sensitivity_findings *f)
 {
     say_confirmation(run, f);
-    if (run->job.common.model == MORAY_CONTROL_ORIENTED)
+    if (run->job.snake.model == MORAY_CONTROL_ORIENTED)
         say_disagreement(run, f);
     say_changes(run, f);
     say_reservations(run, f);
@@ -185,10 +185,10 @@ static void json_forecast(moray_json *json, const sensitivity *run)
     moray_json_text(json, "why_not", forecast->why.code ? forecast->why.text : NULL);
     for (int k = 0; k < SENSITIVITY_GAITS && !forecast->why.code; k++) {
         moray_json_open(json, keys[k]);
-        moray_gait_to_json(json, "gait", &run->job.common.robot, forecast->trial[k].gait);
+        moray_gait_to_json(json, "gait", &run->job.snake.robot, forecast->trial[k].gait);
         moray_json_number(json, "predicted_course_speed_m_s", forecast->prediction[k].course_speed);
         moray_json_number(json, "predicted_power_W", forecast->prediction[k].power);
-        moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &forecast->trial[k], run->job.common.course);
+        moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &forecast->trial[k], run->job.snake.course);
         moray_json_close(json);
     }
     moray_json_close(json);
@@ -231,10 +231,10 @@ static moray_status write_files(const sensitivity *run, const sensitivity_findin
 
 static void print(const sensitivity *run, const sensitivity_findings *found)
 {
-    const moray_common *common = &run->job.common;
+    const moray_snake_options *snake = &run->job.snake;
     char text[500];
-    printf("%d links, current (%g, %g) m/s, course %g deg", common->robot.links, common->current[0], common->current[1],
-           common->course / DEG);
+    printf("%d links, current (%g, %g) m/s, course %g deg", snake->robot.links, snake->current[0], snake->current[1],
+           snake->course / DEG);
     if (isfinite(last_stage(&run->job)->power))
         printf("; mean joint power at most %.4g W whatever changes", last_stage(&run->job)->power);
     printf("\n\n");

@@ -167,7 +167,7 @@ static void conclude(const steer_job *steer, char *text, size_t size)
 
 static void turn_explain(const steer_job *job, char *text, size_t size)
 {
-    const moray_model model = job->common.model;
+    const moray_model model = job->snake.model;
     const moray_steering_limits limits = steer_limits(job, model);
     const steer_saturation share = steer_saturation_of(job, model);
     const double rate = fabs(job->turn_rate[model]), angle = ((const turn_job *)job)->angle;
