@@ -122,4 +122,8 @@ run --help
 check "--help has the constants and nothing of robots" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -qiE "robot|model" out'
 run --version
 check "--version: $(cat out)" grep -q '^run_demo (moray) [0-9.]*$' out
+lost
+lost --json
+lost --help
+lost --check
 tap_done

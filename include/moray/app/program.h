@@ -20,11 +20,13 @@ typedef enum {
 moray_exit moray_exit_of(moray_code code);
 
 // Parses, answers --help and --version on standard output, opens --out. False when the program is to end at once with
-// *exit_code: then nothing is left to free and any error stands on standard error in one line.
+// *exit_code: then nothing is left to free and any error stands on standard error in one line. From here to the end the
+// thread's locale is C: numbers have points whatever the host has set.
 bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code);
 
 // Ends what moray_app_start began: a failed status becomes one line on standard error, an --out without commit leaves
-// nothing. Returns the exit code of the status.
+// nothing. Returns the exit code of the status; where standard output took not all that was printed, MORAY_EXIT_USAGE
+// with a line that says so.
 int moray_app_end(const moray_program *program, void *settings, moray_status status);
 
 // ---- What a program found ------------------------------------------------------------------------------------------
