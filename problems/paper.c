@@ -136,10 +136,7 @@ static moray_status finish(const paper *p, const paper_chapter *chapters, int n)
     int failed = 0;
     for (int i = 0; i < n; i++)
         failed += moray_failed(chapters[i].status);
-    if (p->output)
-        MORAY_TRY(paper_write(p, chapters, n));
-    if (p->settings->common.json)
-        MORAY_TRY(moray_json_write(p->json, stdout));
+    MORAY_TRY(paper_report(p, chapters, n));
     if (failed)
         return moray_error(MORAY_NOT_SOLVED, "%d of %d studies failed", failed, n);
     return moray_ok();

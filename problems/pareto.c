@@ -8,7 +8,6 @@
 #include <string.h>
 
 const char *const pareto_kinds[PARETO_KINDS] = {"lateral", "eel-like", "free taper"};
-const char *const pareto_models[2] = {"control-oriented", "first-principles"};
 
 static const moray_option options[] = {
     {.section = "problem",
@@ -49,7 +48,7 @@ static bool solved(const stage *at)
 
 static void show(pareto *run, const pareto_front *front, int k, const char *what)
 {
-    moray_ticker_show(&run->job.ticker, "pareto: %s model, %s, point %d of %d: %s", pareto_models[front->model],
+    moray_ticker_show(&run->job.ticker, "pareto: %s model, %s, point %d of %d: %s", moray_model_name(front->model),
                       pareto_kinds[front->kind], k + 1, front->n, what);
 }
 

@@ -90,8 +90,6 @@ moray_status paper_orbit_in(paper *p, const double current[2], moray_model model
 
 // ---- Telling -------------------------------------------------------------------------------------------------------
 
-extern const char *const paper_model_names[2]; // "control-oriented", "first-principles"
-
 // Replaces the line of progress.
 void paper_progress(const paper *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

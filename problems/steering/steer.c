@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "steer.h"
 
-#include <stdarg.h>
 #include <string.h>
 
 steer_job steer_defaults(void)
@@ -136,27 +135,18 @@ steer_saturation steer_saturation_of(const steer_job *job, moray_model model)
 
 // ---- Words ---------------------------------------------------------------------------------------------------------
 
-void steer_say(char *text, size_t size, const char *format, ...)
-{
-    const size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
-}
-
 void steer_say_limit(const steer_job *job, char *text, size_t size)
 {
     const moray_steering_limits limits = steer_limits(job, job->snake.model);
     const bool control = job->snake.model == MORAY_CONTROL_ORIENTED;
     *text = 0;
-    steer_say(text, size, "With |phi_0| at its limit of %.3g %s the robot turns",
-              control ? 100 * limits.offset : limits.offset / DEG, control ? "cm" : "deg");
+    moray_text_add(text, size, "With |phi_0| at its limit of %.3g %s the robot turns",
+                   control ? 100 * limits.offset : limits.offset / DEG, control ? "cm" : "deg");
 }
 
 void steer_say_saturation(const steer_job *job, char *text, size_t size)
 {
     const steer_saturation share = steer_saturation_of(job, job->snake.model);
-    steer_say(text, size, "he plan has the offset at its limit for %.0f %% of the time, and its rate for %.0f %%.",
-              100 * share.offset, 100 * share.rate);
+    moray_text_add(text, size, "he plan has the offset at its limit for %.0f %% of the time, and its rate for %.0f %%.",
+                   100 * share.offset, 100 * share.rate);
 }

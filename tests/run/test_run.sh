@@ -91,15 +91,6 @@ for closed in '<&-' '2>&-' '<&- 2>&-'; do
     check "with $closed: as ever" eval '[ $code -eq 0 ] && has objective 3 1e-6 && cmp closed/summary.json out && [ ! -e closed/.part ]'
     rm -rf closed
 done
-for full in '>/dev/full' '>&-'; do
-    for how in '' '--json' '--help' '--version' '--check'; do
-        eval "\"\$program\" $how --out full 2>err $full"
-        code=$?
-        check "$how $full: $(cat err)" eval '[ $code -eq 2 ] && one_line && says "cannot be written"'
-    done
-    [ ! -d full ] || check "what was finished is whole: $full" [ "$(head -c 1 full/summary.json)" = "{" ]
-    rm -rf full
-done
 (unset HOME; TMPDIR=/no/such LC_ALL=xx_XX.UTF-8 POSIXLY_CORRECT=1 OMP_NUM_THREADS=3 "$program" --json >out 2>err)
 check "without HOME, with odd TMPDIR, locale and threads" \
     eval 'grep -v "_s\":\|time\|seconds\|threads" usual >a && grep -v "_s\":\|time\|seconds\|threads" out >b && cmp a b'
@@ -172,4 +163,8 @@ run --help
 check "--help has the constants and nothing of robots" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -qiE "robot|model" out'
 run --version
 check "--version: $(cat out)" grep -q '^run_demo (moray) [0-9.]*$' out
+lost
+lost --json
+lost --help
+lost --check
 tap_done

@@ -20,11 +20,35 @@ typedef enum {
 moray_exit moray_exit_of(moray_code code);
 
 // Parses, answers --help and --version on standard output, opens --out. False when the program is to end at once with
-// *exit_code: then nothing is left to free and any error stands on standard error in one line.
+// *exit_code: then nothing is left to free and any error stands on standard error in one line. From here to the end the
+// thread's locale is C: numbers have points whatever the host has set.
 bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code);
 
 // Ends what moray_app_start began: a failed status becomes one line on standard error, an --out without commit leaves
-// nothing. Returns the exit code of the status.
+// nothing. Returns the exit code of the status; where standard output took not all that was printed, MORAY_EXIT_USAGE
+// with a line that says so.
 int moray_app_end(const moray_program *program, void *settings, moray_status status);
+
+// ---- What a program found ------------------------------------------------------------------------------------------
+
+// All but found may be left out; the functions get `found`.
+typedef struct moray_results {
+    const char *name; // of the program; "problem" and with "version" the first keys of the summary
+    const void *found;
+    void (*summary)(const void *found, moray_json *json);           // the other keys
+    const moray_json *json;                                         // or the whole summary, made along the way
+    void (*print)(const void *found, const moray_report *report);   // tables and words, on standard output
+    moray_status (*write)(const void *found, moray_output *output); // files besides summary.json and report.html
+    moray_status (*draw)(const void *found, moray_output *output);  // figures
+    const moray_report *report;                                     // with or without the command line
+} moray_results;
+
+// With --out the files, committed; then on standard output the summary (--json) or what `print` does. Error: MORAY_IO,
+// MORAY_MEMORY, those of `write`, and what moray_app_drawn leaves of those of `draw`.
+moray_status moray_app_show(const moray_common *common, const moray_results *results);
+
+// What to make of the status of a figure: one that cannot be drawn is a line on standard error, unless --quiet, and no
+// error; only MORAY_MEMORY and MORAY_INTERRUPTED stay.
+moray_status moray_app_drawn(const moray_common *common, const char *name, moray_status drawn);
 
 #endif

@@ -5,6 +5,7 @@
 #define MORAY_SNAKE_OPTIONS_H
 
 #include "moray/app/options.h"
+#include "moray/app/results.h"
 #include "moray/snake/model.h"
 
 typedef struct moray_snake_options {
@@ -21,5 +22,8 @@ moray_snake_options moray_snake_options_default(void);
 // --robot FILE, --links, --model, --current, --course and the keys of [robot]; in the end the robot is made and checked
 // (error: MORAY_INPUT). As a group of a program: {&moray_snake_option_table, offsetof(SETTINGS, FIELD)}.
 extern const moray_option_table moray_snake_option_table;
+
+// "model", "robot" and "current_m_s" of a summary.
+void moray_snake_to_json(moray_json *json, const moray_snake_options *options);
 
 #endif

@@ -43,11 +43,11 @@ static void json_motion(moray_json *json, const free_gait *run, const motion *m)
     moray_certificate_to_json(json, &m->at.certificate);
 }
 
-moray_json *free_gait_json(const free_gait *run)
+void free_gait_summary(const void *found, moray_json *json)
 {
+    const free_gait *run = found;
     const gait_job *job = &run->job;
     const stage *best = last_stage(job);
-    moray_json *json = moray_json_new();
     gait_job_json_head(json, job);
     moray_json_number(json, "power_limit_W", best->power);
     moray_json_number(json, "link_angle_limit_deg", run->limit / DEG);
@@ -66,7 +66,6 @@ moray_json *free_gait_json(const free_gait *run)
     moray_gait_to_json(json, "gait", &job->snake.robot, job->paper.gait);
     moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
     moray_json_close(json);
-    return json;
 }
 
 // ---- Files ---------------------------------------------------------------------------------------------------------
@@ -211,26 +210,34 @@ static moray_status draw_amplitudes(const free_gait *run, double *const value[GA
     return status;
 }
 
-moray_status free_gait_files(const free_gait *run, moray_output *output)
+moray_status free_gait_write(const void *found, moray_output *output)
 {
-    const moray_gait_trial *const trials[GAITS] = {&last_stage(&run->job)->trial, &run->motion[0].at.trial,
-                                                   &freest(run)->at.trial};
-    double *value[GAITS] = {NULL};
+    const free_gait *run = found;
+    double *value = NULL;
     moray_status status = gait_job_trajectory(&run->job, &freest(run)->at, output);
     if (!moray_failed(status))
         status = write_series(run, output);
+    if (!moray_failed(status))
+        status = free_gait_angles(run, &freest(run)->at.trial, &value);
+    if (!moray_failed(status))
+        status = write_angles(run, value, output);
+    free(value);
+    return status;
+}
+
+moray_status free_gait_draw(const void *found, moray_output *output)
+{
+    const free_gait *run = found;
+    const moray_gait_trial *const trials[GAITS] = {&last_stage(&run->job)->trial, &run->motion[0].at.trial,
+                                                   &freest(run)->at.trial};
+    double *value[GAITS] = {NULL};
+    moray_status status = moray_ok();
     for (int g = 0; g < GAITS && !moray_failed(status); g++)
         status = free_gait_angles(run, trials[g], &value[g]);
     if (!moray_failed(status))
-        status = write_angles(run, value[GAITS - 1], output);
-    moray_status drawn = moray_ok();
-    if (!moray_failed(status)) {
-        drawn = draw_joints(run, value, output);
-        if (!moray_failed(drawn))
-            drawn = draw_amplitudes(run, value, output);
-    }
-    if (moray_failed(drawn) && !run->job.common.quiet)
-        fprintf(stderr, "%s: no figures: %s\n", run->job.name, drawn.text);
+        status = draw_joints(run, value, output);
+    if (!moray_failed(status))
+        status = draw_amplitudes(run, value, output);
     for (int g = 0; g < GAITS; g++)
         free(value[g]);
     return status;

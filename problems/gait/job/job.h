@@ -157,8 +157,11 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);
 
-// The summary; moray_json_free it.
-moray_json *gait_job_json(const gait_job *job);
+// What moray_results wants of a job.
+void gait_job_summary(const void *job, moray_json *json);
+
+// "10 links, current (0, 0) m/s, course 0 deg" on standard output.
+void gait_job_print_head(const gait_job *job);
 
 // Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_report(gait_job *job);

@@ -3,13 +3,7 @@
 
 void gait_job_json_head(moray_json *json, const gait_job *job)
 {
-    moray_json_text(json, "problem", job->name);
-    moray_json_text(json, "version", moray_version());
-    moray_json_text(json, "model", job->snake.model == MORAY_CONTROL_ORIENTED ? "control" : "fp");
-    moray_json_open(json, "robot");
-    moray_json_number(json, "links", job->snake.robot.links);
-    moray_json_close(json);
-    moray_json_numbers(json, "current_m_s", job->snake.current, 2);
+    moray_snake_to_json(json, &job->snake);
     moray_json_number(json, "course_deg", job->snake.course / DEG);
     moray_json_text(json, "scheme", job->common.scheme);
     moray_json_number(json, "intervals", job->common.intervals);
@@ -55,9 +49,9 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
     json_solver(json, at);
 }
 
-moray_json *gait_job_json(const gait_job *job)
+void gait_job_summary(const void *found, moray_json *json)
 {
-    moray_json *json = moray_json_new();
+    const gait_job *job = found;
     gait_job_json_head(json, job);
     gait_job_json_stage(json, job, last_stage(job));
     moray_json_open(json, "baseline");
@@ -70,5 +64,4 @@ moray_json *gait_job_json(const gait_job *job)
         gait_job_json_stage(json, job, &job->stage[MORAY_CONTROL_ORIENTED]);
         moray_json_close(json);
     }
-    return json;
 }

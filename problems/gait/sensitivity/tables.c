@@ -3,8 +3,6 @@
 
 #include "sensitivity.h"
 
-static const char *const model_names[] = {"control-oriented", "first-principles"};
-
 // ---- Numbers -------------------------------------------------------------------------------------------------------
 
 static const double rounding = 1e-7, steadiness = 1e-5;
@@ -64,7 +62,8 @@ static void tell_optimum(const sensitivity *run, sensitivity_findings *f)
     const moray_steady *swum = &at->trial.steady[MORAY_FIRST_PRINCIPLES];
     double value[SLOPES];
     moray_table *table = open_table(f, 2);
-    snprintf(f->title[f->tables - 1], sizeof *f->title, "The fastest gait on the %s model", model_names[at->model]);
+    snprintf(f->title[f->tables - 1], sizeof *f->title, "The fastest gait on the %s model",
+             moray_model_name(at->model));
     table->columns[0] = "predicted";
     table->columns[1] = "swum, first-pr.";
     sensitivity_values(&run->job, &at->prediction.gait, at->prediction.course_speed, at->prediction.power, value);

@@ -41,18 +41,20 @@ void heading_explain(const steer_job *steer, char *text, size_t size)
     const double water = hypot(steer->snake.current[0], steer->snake.current[1]);
     const double speed = steer_last_plan(steer)->straight.speed;
     steer_say_limit(steer, text, size);
-    steer_say(text, size, " at %.2f deg/s, which takes %.3g s to build up.", sustained / DEG, build_up);
+    moray_text_add(text, size, " at %.2f deg/s, which takes %.3g s to build up.", sustained / DEG, build_up);
     if (fastest > sustained)
-        steer_say(text, size,
-                  " The reference turns at up to %.2f deg/s, beyond that: there the error grows however the robot is "
-                  "steered.",
-                  fastest / DEG);
+        moray_text_add(
+            text, size,
+            " The reference turns at up to %.2f deg/s, beyond that: there the error grows however the robot is "
+            "steered.",
+            fastest / DEG);
     if (jump > 0)
-        steer_say(text, size, " A jump of %.4g deg takes %.3g s at least.", jump / DEG, jump / sustained + build_up);
-    steer_say(text, size, " T");
+        moray_text_add(text, size, " A jump of %.4g deg takes %.3g s at least.", jump / DEG,
+                       jump / sustained + build_up);
+    moray_text_add(text, size, " T");
     steer_say_saturation(steer, text, size);
     if (water > speed)
-        steer_say(
+        moray_text_add(
             text, size,
             " The current of %.3g m/s is stronger than the robot, which swims %.3g m/s: it holds its heading, but "
             "over ground it is carried away.",

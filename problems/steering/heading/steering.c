@@ -117,7 +117,7 @@ static void fig8_table(const heading_job *job, steer_tables *tables)
                                .n_rows = 1 + (int)job->steer.snake.model};
     for (int model = 0; model < table.n_rows; model++) {
         moray_table_row *row = &tables->rows[tables->n][model];
-        *row = (moray_table_row){.label = steer_model_names[model], .unit = units[model]};
+        *row = (moray_table_row){.label = moray_model_name(model), .unit = units[model]};
         heading_fig8_compare(job, (moray_model)model, row->value);
         for (int k = 0; k < FIG8_VALUES; k++)
             row->value[k] /= model == MORAY_CONTROL_ORIENTED ? 0.01 : DEG;

@@ -71,11 +71,12 @@ void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, 
 
 static void say_corner(const path_job *job, const moray_path_piece *corner, double turn_rate, char *text, size_t size)
 {
-    steer_say(text, size,
-              "the corner behind leg %d turns by %.4g deg on a radius of %.4g m: at the robot's speed over ground that "
-              "is %.3g deg/s, and with its offset at the limit it turns at %.3g deg/s",
-              corner->leg, fabs(corner->curvature) * corner->length / DEG, fabs(1 / corner->curvature),
-              path_turning(job, corner) / DEG, turn_rate / DEG);
+    moray_text_add(
+        text, size,
+        "the corner behind leg %d turns by %.4g deg on a radius of %.4g m: at the robot's speed over ground that "
+        "is %.3g deg/s, and with its offset at the limit it turns at %.3g deg/s",
+        corner->leg, fabs(corner->curvature) * corner->length / DEG, fabs(1 / corner->curvature),
+        path_turning(job, corner) / DEG, turn_rate / DEG);
 }
 
 void path_explain(const steer_job *steer, char *text, size_t size)
@@ -86,17 +87,17 @@ void path_explain(const steer_job *steer, char *text, size_t size)
     const double speed = steer_last_plan(steer)->straight.speed, turn_rate = fabs(steer->turn_rate[model]);
     const moray_path_piece *corner = tightest(job);
     steer_say_limit(steer, text, size);
-    steer_say(text, size, " at %.2f deg/s, in still water on a circle of %.3g m, which takes %.3g s to build up.",
-              turn_rate / DEG, speed / turn_rate, limits.offset / limits.offset_rate);
+    moray_text_add(text, size, " at %.2f deg/s, in still water on a circle of %.3g m, which takes %.3g s to build up.",
+                   turn_rate / DEG, speed / turn_rate, limits.offset / limits.offset_rate);
     if (corner && path_turning(job, corner) > turn_rate) {
-        steer_say(text, size, " That is too slow: ");
+        moray_text_add(text, size, " That is too slow: ");
         say_corner(job, corner, turn_rate, text, size);
-        steer_say(text, size, ".");
+        moray_text_add(text, size, ".");
     } else if (corner)
-        steer_say(text, size, " The corners ask for up to %.2f deg/s.", path_turning(job, corner) / DEG);
-    steer_say(text, size,
-              " Swimming straight along the path, crabbing, would take %.1f s by the triangle of velocities. T",
-              moray_path_duration(&job->path, 0, speed, steer->snake.current));
+        moray_text_add(text, size, " The corners ask for up to %.2f deg/s.", path_turning(job, corner) / DEG);
+    moray_text_add(text, size,
+                   " Swimming straight along the path, crabbing, would take %.1f s by the triangle of velocities. T",
+                   moray_path_duration(&job->path, 0, speed, steer->snake.current));
     steer_say_saturation(steer, text, size);
 }
 

@@ -175,14 +175,16 @@ static void turn_explain(const steer_job *job, char *text, size_t size)
                           : share.rate > 2 * share.offset ? "The rate of the offset decides"
                                                           : "Offset and rate decide together";
     steer_say_limit(job, text, size);
-    steer_say(text, size,
-              " steadily at %.2f deg/s, %.4g deg in %.2f s; to bring the offset there and back takes %.3g s each. %s: "
-              "t",
-              rate / DEG, angle / DEG, fabs(angle) / rate, limits.offset / limits.offset_rate, limited);
+    moray_text_add(
+        text, size,
+        " steadily at %.2f deg/s, %.4g deg in %.2f s; to bring the offset there and back takes %.3g s each. %s: "
+        "t",
+        rate / DEG, angle / DEG, fabs(angle) / rate, limits.offset / limits.offset_rate, limited);
     steer_say_saturation(job, text, size);
-    steer_say(text, size,
-              " The heading swings with every stroke: it counts without the undulation of straight swimming, and the "
-              "turn may end in any part of a stroke.");
+    moray_text_add(
+        text, size,
+        " The heading swings with every stroke: it counts without the undulation of straight swimming, and the "
+        "turn may end in any part of a stroke.");
 }
 
 // ---- JSON, figures -------------------------------------------------------------------------------------------------
