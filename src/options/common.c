@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "options/options.h"
 
+static const char *const linear_solvers[] = {"moray", "mumps", "ma57", NULL};
+
 static const moray_option shell_rows[] = {
     {.section = "solver",
      .key = "scheme",
@@ -27,6 +29,12 @@ static const moray_option shell_rows[] = {
      .max = 1,
      .open = true,
      .help = "tolerance of the solver"},
+    {.section = "solver",
+     .key = "linear_solver",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(moray_common, linear_solver),
+     .choices = linear_solvers,
+     .help = "factorisation inside Ipopt: our own, MUMPS, or an MA57 in libhsl.so"},
     {.flag = "json",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(moray_common, json),

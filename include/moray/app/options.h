@@ -48,6 +48,7 @@ typedef struct moray_common {
     char scheme[MORAY_SCHEME_SIZE];
     int intervals;
     double tol;
+    int linear_solver; // a moray_linear_solver
     bool json, quiet;
     char out[MORAY_PATH_SIZE];   // empty: none
     struct moray_output *output; // of --out, from moray_app_start; NULL without
