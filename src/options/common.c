@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "options/options.h"
 
-static const char *const linear_solvers[] = {
-    [MORAY_LINEAR_MUMPS] = "mumps", [MORAY_LINEAR_OWN] = "moray", [MORAY_LINEAR_MA57] = "ma57", NULL};
-_Static_assert(sizeof(moray_linear_solver) == sizeof(int), "choices are stored as int");
+static const char *const linear_solvers[] = {"mumps", "moray", "ma57", NULL}; // by moray_linear_solver
 
 static const moray_option shell_rows[] = {
     {.section = "solver",

@@ -57,7 +57,7 @@ typedef struct moray_common {
     char scheme[MORAY_SCHEME_SIZE];
     int intervals;
     double tol;
-    moray_linear_solver linear_solver;
+    int linear_solver;      // a moray_linear_solver
     moray_ipopt_list ipopt; // copies of the settings refer to the texts in these
     bool json, quiet;
     char out[MORAY_PATH_SIZE];   // empty: none

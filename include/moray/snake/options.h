@@ -11,8 +11,8 @@
 enum { MORAY_PAPER, MORAY_CONSISTENT }; // the word of --hydrodynamics
 
 typedef struct moray_snake_options {
-    moray_robot robot; // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry, the choices
-                       // of its hydro -1: from hydrodynamics
+    moray_robot robot; // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry,
+                       // the choices of its hydro -1: from hydrodynamics
     int hydrodynamics;
     moray_link_geometry geometry; // gives the coefficients of the robot that are not given directly
     moray_model model;

@@ -6,8 +6,6 @@
 
 static const char *const models[] = {
     [MORAY_CONTROL_ORIENTED] = "control", [MORAY_FIRST_PRINCIPLES] = "fp|complex", NULL};
-_Static_assert(sizeof(moray_model) == sizeof(int), "choices are stored as int");
-
 static const char *const hydrodynamics[] = {[MORAY_PAPER] = "paper", [MORAY_CONSISTENT] = "consistent", NULL};
 static const char *const rotations[] = {[MORAY_ROTATION_PAPER] = "paper", [MORAY_ROTATION_STRIP] = "strip", NULL};
 static const char *const drags[] = {
@@ -16,6 +14,7 @@ static const char *const added_masses[] = {
     [MORAY_ADDED_MASS_PAPER] = "paper", [MORAY_ADDED_MASS_INVARIANT] = "invariant", NULL};
 static const char *const frames[] = {[MORAY_FRAME_PAPER] = "paper", [MORAY_FRAME_INVARIANT] = "invariant", NULL};
 _Static_assert(sizeof(moray_hydrodynamics) == 5 * sizeof(int), "choices are stored as int");
+_Static_assert(sizeof(moray_model) == sizeof(int), "choices are stored as int");
 
 #define SPAN(low, high) .min = (low), .max = (high)
 #define ABOVE(low) .min = (low), .max = INFINITY, .open = true
