@@ -76,7 +76,7 @@ static moray_status read_ini(double *sum)
     settings s = {.common = moray_common_defaults()};
     moray_request request;
     moray_status status =
-        moray_app_parse(&program, 3, (char *[]){"readers", "--robot", (char *)file_name, NULL}, &s, &request);
+        moray_app_parse(&program, 3, (char *[]){"readers", "--config", (char *)file_name, NULL}, &s, &request);
     *sum = 3 * s.a + s.b;
     return status;
 }
