@@ -8,6 +8,7 @@
 #include "moray/app/results.h"
 #include "moray/app/run.h"
 #include "moray/dense.h"
+#include "moray/export.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"

@@ -4,7 +4,10 @@
 #ifndef MORAY_NLP_H
 #define MORAY_NLP_H
 
+#include "moray/export.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 #define MORAY_INFINITY 1e20 // bounds at or beyond this do not exist
 
@@ -51,7 +54,7 @@ typedef struct moray_nlp_settings {
     void *observer;
 } moray_nlp_settings;
 
-moray_nlp_settings moray_nlp_settings_default(void);
+MORAY_API moray_nlp_settings moray_nlp_settings_default(void);
 
 typedef enum {
     MORAY_NLP_SOLVED,
@@ -62,7 +65,7 @@ typedef enum {
     MORAY_NLP_STALLED, // restoration failed, search direction too small, diverging, or a linear solve failed
     MORAY_NLP_INVALID  // not a number, or too few degrees of freedom
 } moray_nlp_outcome;
-const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
+MORAY_API const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
 
 typedef struct moray_nlp_info {
     moray_nlp_outcome outcome;
@@ -79,8 +82,8 @@ typedef struct moray_nlp_info {
 // interrupted, reached a limit or stalled, the x, g and objective of the least violated iterate after the start, of
 // those violated by less than 1e-6 the one of least objective. Returns MORAY_OK
 // whenever Ipopt ran (read info->outcome), MORAY_MEMORY, or MORAY_INPUT when the problem cannot be set up.
-moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
-                               moray_nlp_info *info);
+MORAY_API moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings,
+                                         moray_iterate *iterate, moray_nlp_info *info);
 
 // Optimality of an iterate, computed from the callbacks alone, in the user's units (nothing scaled).
 typedef struct moray_kkt {
@@ -95,7 +98,7 @@ typedef struct moray_kkt {
 } moray_kkt;
 
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at the iterate.
-moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt);
+MORAY_API moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt);
 
 // ---- Sensitivities -------------------------------------------------------------------------------------------------
 //
@@ -123,22 +126,25 @@ typedef struct moray_nlp_sensitivity moray_nlp_sensitivity;
 
 // Of a solution; both must outlive the result. Error: MORAY_NUMERIC where a function is not finite or the minimum not
 // strict, MORAY_MEMORY.
-moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const moray_nlp *nlp,
-                                       const moray_iterate *solution);
-void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
+MORAY_API moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const moray_nlp *nlp,
+                                                 const moray_iterate *solution);
+MORAY_API void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
 
 // The constraints whose multiplier and slack are so small and so alike, in the scale of the solver, that it is not
 // certain whether they are active (a solution to a tighter tolerance may tell); numbered as in moray_nlp_change.
 // Returns how many; the first `most` stand in constraint[].
-int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *sensitivity, int *constraint, int most);
+MORAY_API int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *sensitivity, int *constraint, int most);
 
 // slope: the derivative by p of every entry of the solution, objective included; multipliers of constraints that depend
 // on each other share evenly. Error: MORAY_NUMERIC where those cannot all follow, so that one lets go at once.
-moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
-                                         moray_iterate *slope);
+MORAY_API moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
+                                                   moray_iterate *slope);
 
 // The first change as p rises (direction 1) or falls (-1).
-moray_nlp_change moray_nlp_sensitivity_change(const moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
-                                              const moray_iterate *slope, int direction);
+MORAY_API moray_nlp_change moray_nlp_sensitivity_change(const moray_nlp_sensitivity *sensitivity,
+                                                        const moray_nlp_shift *shift, const moray_iterate *slope,
+                                                        int direction);
+
+MORAY_END
 
 #endif

@@ -14,6 +14,10 @@
 #include <complex.h>
 #include <math.h>
 
+#include "moray/export.h"
+
+MORAY_BEGIN
+
 typedef double complex moray_num;
 
 static inline moray_num moray_abs(moray_num z)
@@ -66,5 +70,7 @@ static inline moray_num moray_atan2(moray_num y, moray_num x)
     const double a = creal(x), b = creal(y);
     return CMPLX(atan2(b, a), (a * cimag(y) - b * cimag(x)) / (a * a + b * b));
 }
+
+MORAY_END
 
 #endif

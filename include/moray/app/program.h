@@ -8,8 +8,11 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "moray/export.h"
 #include "moray/app/results.h"
 #include "moray/snake/model.h"
+
+MORAY_BEGIN
 
 // ---- Options -------------------------------------------------------------------------------------------------------
 
@@ -60,7 +63,7 @@ typedef struct moray_common {
 } moray_common;
 
 // The paper's robot in still water, control-oriented model, Hermite-Simpson on 40 intervals to 1e-8.
-moray_common moray_common_defaults(void);
+MORAY_API moray_common moray_common_defaults(void);
 
 // Arguments without a flag, each a word of this list; at least one is to be given.
 typedef struct moray_word {
@@ -89,11 +92,11 @@ typedef enum { MORAY_REQUEST_RUN, MORAY_REQUEST_HELP, MORAY_REQUEST_VERSION } mo
 // and makes the robot. Writes nothing anywhere. With a request other than run the settings are as before.
 // Error: MORAY_INPUT or MORAY_IO, naming the key (in a file: file and line), its value and what is allowed;
 // MORAY_MEMORY.
-moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
-                             moray_request *request);
+MORAY_API moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
+                                       moray_request *request);
 
 // Writes the --help text, with the settings' present values as defaults. Error: MORAY_MEMORY, MORAY_IO.
-moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file);
+MORAY_API moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file);
 
 // A key of an INI file and what to write after its "=".
 typedef struct moray_ini_entry {
@@ -104,7 +107,7 @@ typedef struct moray_ini_entry {
 // key that has none follows the section's last, a section that is not there ends the file, a file that is not there is
 // made. A new file takes the old one's place at once, by renaming. Error: MORAY_IO naming the file, MORAY_MEMORY; the
 // file is then as before.
-moray_status moray_ini_set(const char *path, const char *section, const moray_ini_entry *entries, int n);
+MORAY_API moray_status moray_ini_set(const char *path, const char *section, const moray_ini_entry *entries, int n);
 
 // ---- Start and end of a program ------------------------------------------------------------------------------------
 
@@ -116,16 +119,18 @@ typedef enum {
     MORAY_EXIT_INTERRUPTED = 130
 } moray_exit;
 
-moray_exit moray_exit_of(moray_code code);
+MORAY_API moray_exit moray_exit_of(moray_code code);
 
 // Parses, answers --help and --version on standard output, opens --out. False when the program is to end at once with
 // *exit_code: then nothing is left to free and any error stands on standard error in one line.
-bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code);
+MORAY_API bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code);
 
 // Ends what moray_app_start began: a failed status becomes one line on standard error, an --out without commit leaves
 // nothing. Returns the exit code of the status.
-int moray_app_end(const moray_program *program, void *settings, moray_status status);
+MORAY_API int moray_app_end(const moray_program *program, void *settings, moray_status status);
 
-const char *moray_version(void);
+MORAY_API const char *moray_version(void);
+
+MORAY_END
 
 #endif

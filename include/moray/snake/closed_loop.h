@@ -4,9 +4,12 @@
 #ifndef MORAY_SNAKE_CLOSED_LOOP_H
 #define MORAY_SNAKE_CLOSED_LOOP_H
 
+#include "moray/export.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/path.h"
+
+MORAY_BEGIN
 
 typedef struct moray_closed_loop_spec {
     const moray_robot *robot;
@@ -29,17 +32,17 @@ typedef struct moray_closed_loop {
 } moray_closed_loop;
 
 // Error: those of moray_swim_run. Free with moray_closed_loop_free.
-moray_status moray_closed_loop_run(moray_closed_loop *closed_loop, const moray_closed_loop_spec *plan);
-void moray_closed_loop_free(moray_closed_loop *closed_loop); // safe on a zeroed closed_loop, and twice
+MORAY_API moray_status moray_closed_loop_run(moray_closed_loop *closed_loop, const moray_closed_loop_spec *plan);
+MORAY_API void moray_closed_loop_free(moray_closed_loop *closed_loop); // safe on a zeroed closed_loop, and twice
 
 // Of the heading without its undulation, from the reference, which may jump at samples: root of the mean square, the
 // last, the largest [rad]; and the mean joint power [W].
 typedef struct moray_heading_score {
     double rms, final, largest, power;
 } moray_heading_score;
-moray_heading_score moray_closed_loop_heading_score(const moray_closed_loop *closed_loop,
-                                                    const moray_straight_motion *straight,
-                                                    const moray_reference *reference);
+MORAY_API moray_heading_score moray_closed_loop_heading_score(const moray_closed_loop *closed_loop,
+                                                              const moray_straight_motion *straight,
+                                                              const moray_reference *reference);
 
 // Of the distance to the path [m]: root of the mean square; the same, and the largest, from where the robot has come
 // further along the path than `reach` from its start; when it passed the end of the path (NaN: it did not) [s]; the
@@ -47,7 +50,9 @@ moray_heading_score moray_closed_loop_heading_score(const moray_closed_loop *clo
 typedef struct moray_path_score {
     double rms, settled_rms, settled_largest, time, power;
 } moray_path_score;
-moray_path_score moray_closed_loop_path_score(const moray_closed_loop *closed_loop, const moray_path *path,
-                                              double reach);
+MORAY_API moray_path_score moray_closed_loop_path_score(const moray_closed_loop *closed_loop, const moray_path *path,
+                                                        double reach);
+
+MORAY_END
 
 #endif

@@ -6,8 +6,11 @@
 #ifndef MORAY_SNAKE_MODEL_H
 #define MORAY_SNAKE_MODEL_H
 
+#include "moray/export.h"
 #include "moray/map.h"
 #include "moray/ode.h"
+
+MORAY_BEGIN
 
 // The robot. Every field is set; moray_robot_check says whether they make sense.
 typedef struct moray_robot {
@@ -30,14 +33,14 @@ typedef struct moray_link_geometry {
 } moray_link_geometry;
 
 // The robot of Sec. V-A (a_e = 0.05, b_e = 0.03, 2l = 0.14, N = 10) and its links.
-moray_robot moray_robot_paper(void);
-moray_link_geometry moray_link_geometry_paper(void);
+MORAY_API moray_robot moray_robot_paper(void);
+MORAY_API moray_link_geometry moray_link_geometry_paper(void);
 
 // Sets l, m, J, c_t, c_n, mu_n and lambda_1..3 of the robot; leaves the rest. J is that of the solid elliptic cylinder.
-void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *geometry);
+MORAY_API void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *geometry);
 
 // Error: MORAY_INPUT naming the first field that is not usable, its value and what is allowed.
-moray_status moray_robot_check(const moray_robot *robot);
+MORAY_API moray_status moray_robot_check(const moray_robot *robot);
 
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
@@ -61,7 +64,8 @@ typedef struct moray_gait {
 } moray_gait;
 
 // phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
-void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi);
+MORAY_API void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi,
+                                    double *ddphi);
 
 // Amplitude from the link-angle amplitude theta_max of (24), and back: (27) alpha = 2 sin(delta/2) theta_max;
 // (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body. The wave of link angles
@@ -70,25 +74,27 @@ void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double
 // and that which gives one by (29), phi_i = l sin theta_i + l sin theta_{i+1},
 //     sin theta_max,i = a/(2l cos(delta/2)) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2),
 // where s is s_i halfway between its two joints: -+ (N-1)/(N-2) for the first and the last link.
-double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta);
-double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude, double delta);
+MORAY_API double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max,
+                                                double delta);
+MORAY_API double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude,
+                                                double delta);
 
 // That of link i = 1..N of a gait with a taper; the largest is that of link N, the head, or link 1, the tail.
-double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
+MORAY_API double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
 
 // The same gait for the other model: equal theta_max, omega, delta, taper; offset and its derivatives in the same ratio
 // to the amplitude, with the opposite sign (erratum E3). A series is not mapped but left out.
-moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
+MORAY_API moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
 
 // The gait with its constant offset and its series as one series of so many harmonics (those of its own beyond them are
 // left out): at[joints (1 + 2 harmonics)].
-void moray_series_of_gait(const moray_gait *gait, int joints, int harmonics, double *at);
+MORAY_API void moray_series_of_gait(const moray_gait *gait, int joints, int harmonics, double *at);
 
 // A series of the control-oriented model for the first-principles model, into at as long as series->at: every joint's
 // share in every harmonic keeps the wave of link angles that it has in its surroundings, of a phase shift delta taken
 // from its neighbours, with (27) and (33) for that delta. Of a gait (25) it is moray_gait_map; offsets go by the ratio
 // of the first harmonics.
-void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at);
+MORAY_API void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at);
 
 // ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------
 //
@@ -98,14 +104,14 @@ void moray_series_to_first_principles(const moray_robot *robot, const moray_seri
 typedef struct moray_swimmer moray_swimmer; // one robot, one model, its scratch space; not for two threads at once
 
 // Makes a swimmer of a copy of the robot. Error: MORAY_INPUT (moray_robot_check), MORAY_MEMORY.
-moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model);
-void moray_swimmer_free(moray_swimmer *swimmer);
+MORAY_API moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model);
+MORAY_API void moray_swimmer_free(moray_swimmer *swimmer);
 
-const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer);
-moray_model moray_swimmer_model(const moray_swimmer *swimmer);
-int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
+MORAY_API const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer);
+MORAY_API moray_model moray_swimmer_model(const moray_swimmer *swimmer);
+MORAY_API int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
 
-void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
+MORAY_API void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
 
 // How a swimmer of the control-oriented model reads the paper. Misprints can be swum as printed, to see what they do;
 // the plants below have no such choice.
@@ -117,38 +123,41 @@ typedef enum {
 } moray_reading;
 
 // Corrected unless set; without effect on the first-principles model.
-void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
+MORAY_API void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
 
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].
-void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
+MORAY_API void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
 
 // Joint coordinates and rates (N-1 each) of the state.
-void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
+MORAY_API void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
 
 // The six states of the plants with the joints on the gait, see below: of a full state of the model; and the full state
 // whose joints are on the gait at t.
-void moray_state_body(moray_model model, int links, const double *x, double body[6]);
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
-                           double *x);
+MORAY_API void moray_state_body(moray_model model, int links, const double *x, double body[6]);
+MORAY_API void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
+                                     const double body[6], double *x);
 
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
-bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
+MORAY_API bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
 
 // (34): ubar[N-1] that steers the state to the gait at time t.
-void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
-                           double *ubar);
+MORAY_API void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
+                                     double *ubar);
 
 // Outputs of a state: heading (theta, or mean link angle), position, ground velocity, largest |link angle - heading|
 // ((12) for the control-oriented model).
 typedef struct moray_pose {
     double heading, p_x, p_y, v_x, v_y, link_angle;
 } moray_pose;
-moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
+MORAY_API moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
 
 // Centres and orientations of the N links in the plane, for drawing: x_i[N], y_i[N], angle_i[N]. For the
 // control-oriented model the centres of (8) and theta + (12).
-void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i);
+MORAY_API void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i,
+                                   double *angle_i);
+
+MORAY_END
 
 #endif

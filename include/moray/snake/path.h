@@ -4,10 +4,13 @@
 #ifndef MORAY_SNAKE_PATH_H
 #define MORAY_SNAKE_PATH_H
 
+#include "moray/export.h"
 #include "moray/snake/controllers.h"
 #include "moray/num.h"
 #include "moray/snake/receding_horizon.h"
 #include "moray/snake/steering.h"
+
+MORAY_BEGIN
 
 // ---- Paths ---------------------------------------------------------------------------------------------------------
 
@@ -28,33 +31,34 @@ typedef struct moray_path {
 // Through waypoints "X,Y X,Y ..." [m], or those of a CSV file whose first line names the columns x_m,y_m: straight legs
 // joined by arcs of that radius [m] in the corners. Free with moray_path_free. Error: MORAY_INPUT, also where a leg is
 // too short for its arcs; MORAY_IO; MORAY_MEMORY.
-moray_status moray_path_read(moray_path *path, const char *text, double radius);
-void moray_path_free(moray_path *path);
+MORAY_API moray_status moray_path_read(moray_path *path, const char *text, double radius);
+MORAY_API void moray_path_free(moray_path *path);
 
 // The point at a distance along the path, which goes on straight before its start and behind its end.
 typedef struct moray_path_point {
     moray_num x, y, course;
     double curvature;
 } moray_path_point;
-moray_path_point moray_path_at(const moray_path *path, moray_num along);
+MORAY_API moray_path_point moray_path_at(const moray_path *path, moray_num along);
 
 // The point of the path nearest to (x, y) of those near the distance `along`: its distance, and how far to the left of
 // the path (x, y) lies.
-void moray_path_project(const moray_path *path, double x, double y, double *along, double *across);
+MORAY_API void moray_path_project(const moray_path *path, double x, double y, double *along, double *across);
 
 // Who keeps in mind where on the path the swimmer is; begin with where it starts.
 typedef struct moray_path_seeker {
     const moray_path *path;
     double along;
 } moray_path_seeker;
-bool moray_path_seek(const moray_swim_sample *sample, void *seeker); // an observer: false at the end of the path
+MORAY_API bool moray_path_seek(const moray_swim_sample *sample,
+                               void *seeker); // an observer: false at the end of the path
 
 // Whether a swimmer of this speed through the water makes way along the whole path in the current. Error:
 // MORAY_NOT_SOLVED naming the leg and the numbers where it does not.
-moray_status moray_path_passable(const moray_path *path, double speed, const double current[2]);
+MORAY_API moray_status moray_path_passable(const moray_path *path, double speed, const double current[2]);
 
 // How long such a swimmer takes from a distance along the path to its end, crabbing; NaN where it makes no way [s].
-double moray_path_duration(const moray_path *path, double along, double speed, const double current[2]);
+MORAY_API double moray_path_duration(const moray_path *path, double along, double speed, const double current[2]);
 
 // ---- Following -----------------------------------------------------------------------------------------------------
 
@@ -89,8 +93,8 @@ typedef struct moray_path_problem {
 } moray_path_problem;
 
 // Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_path_problem_free.
-moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
-void moray_path_problem_free(moray_path_problem *problem);
+MORAY_API moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
+MORAY_API void moray_path_problem_free(moray_path_problem *problem);
 
 // A plan from t = 0 on that begins in the straight straight of its gait; see moray_heading_plan.
 typedef struct moray_path_plan {
@@ -101,10 +105,10 @@ typedef struct moray_path_plan {
 
 // Begins at the position, with this mean heading; `start`, `along`, `t0`, `duration` and `speed` of the spec are set by
 // this; the rest as moray_heading_plan_make. Error: MORAY_NOT_SOLVED too, where the path is not passable.
-moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *spec, const moray_settings *settings,
-                                  const moray_gait *gait, const double position[2], double heading,
-                                  const moray_path_plan *from);
-void moray_path_plan_free(moray_path_plan *plan);
+MORAY_API moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *spec,
+                                            const moray_settings *settings, const moray_gait *gait,
+                                            const double position[2], double heading, const moray_path_plan *from);
+MORAY_API void moray_path_plan_free(moray_path_plan *plan);
 
 // Plans of a given length from any state on, in receding horizon.
 typedef struct moray_path_replanner {
@@ -113,7 +117,7 @@ typedef struct moray_path_replanner {
 } moray_path_replanner;
 
 // Uses it, so that it must outlive the plans.
-moray_replanner moray_path_replan(moray_path_replanner *replanner);
+MORAY_API moray_replanner moray_path_replan(moray_path_replanner *replanner);
 
 // ---- Guidance ------------------------------------------------------------------------------------------------------
 
@@ -131,7 +135,9 @@ typedef struct moray_guidance {
     double along, integral;      // now; integral y [m]
 } moray_guidance;
 
-double moray_guidance_target(const moray_swim_sample *sample, void *guidance);         // of a moray_feedback
-double moray_guidance_feed(const moray_swim_sample *sample, double t, void *guidance); // with a plan
+MORAY_API double moray_guidance_target(const moray_swim_sample *sample, void *guidance);         // of a moray_feedback
+MORAY_API double moray_guidance_feed(const moray_swim_sample *sample, double t, void *guidance); // with a plan
+
+MORAY_END
 
 #endif

@@ -4,8 +4,11 @@
 #ifndef MORAY_SNAKE_RECEDING_HORIZON_H
 #define MORAY_SNAKE_RECEDING_HORIZON_H
 
+#include "moray/export.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/controllers.h"
+
+MORAY_BEGIN
 
 // What is planned: problems of one phase with the states and first control of a steering problem, from a state at t on.
 typedef struct moray_replanner {
@@ -35,12 +38,13 @@ typedef struct moray_receding_horizon_spec {
 typedef struct moray_receding_horizon moray_receding_horizon;
 
 // Copies the spec, not what it points to. Error: MORAY_INPUT, MORAY_MEMORY. Free with moray_receding_horizon_free.
-moray_status moray_receding_horizon_new(moray_receding_horizon **receding, const moray_receding_horizon_spec *spec);
-void moray_receding_horizon_free(moray_receding_horizon *receding);
+MORAY_API moray_status moray_receding_horizon_new(moray_receding_horizon **receding,
+                                                  const moray_receding_horizon_spec *spec);
+MORAY_API void moray_receding_horizon_free(moray_receding_horizon *receding);
 
 // Plans when one is due, and at a look that finds a change. Where a solve fails the swimmer goes on with the plan it
 // has.
-moray_controller moray_receding_horizon_controller(moray_receding_horizon *receding);
+MORAY_API moray_controller moray_receding_horizon_controller(moray_receding_horizon *receding);
 
 // Plans made so far, and what they cost of the processor, set-up included.
 typedef struct moray_receding_horizon_record {
@@ -48,7 +52,7 @@ typedef struct moray_receding_horizon_record {
     double seconds, longest; // of all plans, of the longest after the first
     char first_failure[200];
 } moray_receding_horizon_record;
-const moray_receding_horizon_record *moray_receding_horizon_record_of(const moray_receding_horizon *receding);
+MORAY_API const moray_receding_horizon_record *moray_receding_horizon_record_of(const moray_receding_horizon *receding);
 
 // ---- Heading tracking -----------------------------------------------------------------------------------------------
 
@@ -62,6 +66,8 @@ typedef struct moray_heading_replanner {
 } moray_heading_replanner;
 
 // Uses it, so that it must outlive the plans.
-moray_replanner moray_heading_replan(moray_heading_replanner *replanner);
+MORAY_API moray_replanner moray_heading_replan(moray_heading_replanner *replanner);
+
+MORAY_END
 
 #endif
