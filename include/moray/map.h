@@ -4,9 +4,8 @@
 #ifndef MORAY_MAP_H
 #define MORAY_MAP_H
 
-#include <complex.h>
-
 #include "moray/export.h"
+#include "moray/num.h"
 #include "moray/status.h"
 
 MORAY_BEGIN
@@ -37,8 +36,8 @@ typedef struct moray_map {
 // Frees what the map owns and zeroes it; safe on a zeroed map, and twice.
 MORAY_API void moray_map_release(moray_map *map);
 
-// The same function written for complex arguments (C99 <tgmath.h>).
-typedef void moray_complex_fn(void *self, const double complex *in, double complex *out);
+// The same function written for complex arguments (num.h).
+typedef void moray_complex_fn(void *self, const moray_num *in, moray_num *out);
 
 // Makes a map of a complex-valued function: exact Jacobians by complex step, Hessians by central differences of them,
 // patterns by NaN propagation at `probe`[n_in] and at random points near it, directions merged by column colouring.

@@ -27,26 +27,33 @@ typedef struct moray_bounds {
 
 static inline moray_bounds moray_fixed(double value)
 {
-    return (moray_bounds){value, value};
+    const moray_bounds bounds = {value, value};
+    return bounds;
 }
 static inline moray_bounds moray_between(double lower, double upper)
 {
-    return (moray_bounds){lower, upper};
+    const moray_bounds bounds = {lower, upper};
+    return bounds;
 }
 static inline moray_bounds moray_at_least(double lower)
 {
-    return (moray_bounds){lower, MORAY_INFINITY};
+    const moray_bounds bounds = {lower, MORAY_INFINITY};
+    return bounds;
 }
 static inline moray_bounds moray_at_most(double upper)
 {
-    return (moray_bounds){-MORAY_INFINITY, upper};
+    const moray_bounds bounds = {-MORAY_INFINITY, upper};
+    return bounds;
 }
 static inline moray_bounds moray_free(void)
 {
-    return (moray_bounds){-MORAY_INFINITY, MORAY_INFINITY};
+    const moray_bounds bounds = {-MORAY_INFINITY, MORAY_INFINITY};
+    return bounds;
 }
 
-// Bounds of a vector; none (n = 0) leaves every entry free (path constraints and events must be bounded).
+// Bounds of a vector; none (n = 0) leaves every entry free (path constraints and events must be bounded). In C
+// initialise it with MORAY_BOUNDS(moray_fixed(0), moray_free()); in C and C++ take it from an array that lives on:
+//   const moray_bounds x[] = {moray_fixed(0), moray_free()};  phase.x = MORAY_BOUNDS_OF(x);
 typedef struct moray_bounds_list {
     const moray_bounds *at;
     int n;
@@ -55,6 +62,12 @@ typedef struct moray_bounds_list {
     {                                                                                                                  \
         (const moray_bounds[]){__VA_ARGS__}, (int)(sizeof((const moray_bounds[]){__VA_ARGS__}) / sizeof(moray_bounds)) \
     }
+static inline moray_bounds_list moray_bounds_of(const moray_bounds *at, int n)
+{
+    const moray_bounds_list list = {at, n};
+    return list;
+}
+#define MORAY_BOUNDS_OF(array) moray_bounds_of(array, (int)(sizeof(array) / sizeof(moray_bounds)))
 
 // ---- Problem form --------------------------------------------------------------------------------------------------
 

@@ -40,7 +40,7 @@ typedef struct moray_option {
     const char *help;
 } moray_option;
 
-// .offset and .size of a row: {.key = "tol", MORAY_AT(moray_common, tol), ...}
+// .offset and .size of a row: {.key = "tol", MORAY_AT(moray_common, tol), ...}; in C++ from C++20 on.
 #define MORAY_AT(settings, field) .offset = offsetof(settings, field), .size = sizeof(((settings *)0)->field)
 
 enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };

@@ -5,9 +5,8 @@
 #ifndef MORAY_SNAKE_ORBIT_H
 #define MORAY_SNAKE_ORBIT_H
 
-#include <complex.h>
-
 #include "moray/export.h"
+#include "moray/num.h"
 #include "moray/snake/swim.h"
 
 MORAY_BEGIN
@@ -64,7 +63,7 @@ MORAY_API moray_status moray_orbit_gradients(moray_orbit *orbit, moray_orbit_gra
 typedef enum { MORAY_MODE_TRANSLATION, MORAY_MODE_ROTATION, MORAY_MODE_OTHER } moray_mode;
 typedef struct moray_floquet {
     double monodromy[6][6]; // d x(T) / d x(0), x as in moray_control_plant or moray_fp_plant
-    double complex multiplier[6];
+    moray_num multiplier[6];
     moray_mode mode[6]; // translations, rotation, then the others, the largest in modulus first
     double largest;     // modulus among the others
     bool stable;        // it is below 1 by more than 1e-9, about what rounding and mesh leave

@@ -39,7 +39,9 @@ typedef struct moray_path_point {
     moray_num x, y, course;
     double curvature;
 } moray_path_point;
+#ifndef __cplusplus // complex numbers by value are passed as C does
 MORAY_API moray_path_point moray_path_at(const moray_path *path, moray_num along);
+#endif
 
 // The point of the path nearest to (x, y) of those near the distance `along`: its distance, and how far to the left of
 // the path (x, y) lies.
