@@ -112,6 +112,8 @@ bool moray_option_default(const moray_option *row, const void *settings, char te
         memcpy(&whole, at, sizeof whole);
         if (row->type == MORAY_OPTION_INT)
             snprintf(text, MORAY_SHOWN_SIZE, "%d", whole);
+        else if (whole < 0)
+            return false;
         else
             snprintf(text, MORAY_SHOWN_SIZE, "%s", row->choices[whole]);
         return true;

@@ -10,6 +10,7 @@
 
 #include "moray/export.h"
 #include "moray/app/results.h"
+#include "moray/nlp.h"
 #include "moray/snake/model.h"
 
 MORAY_BEGIN
@@ -45,9 +46,13 @@ typedef struct moray_option {
 
 enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };
 
+enum { MORAY_PAPER, MORAY_CONSISTENT }; // the word of --hydrodynamics
+
 // Settings every program has: the first member of its own settings.
 typedef struct moray_common {
-    moray_robot robot;            // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry
+    moray_robot robot; // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry,
+                       // the choices of its hydro -1: from hydrodynamics
+    int hydrodynamics;
     moray_link_geometry geometry; // gives the coefficients of the robot that are not given directly
     moray_model model;
     double current[2]; // V_x, V_y [m/s]
@@ -55,6 +60,7 @@ typedef struct moray_common {
     char scheme[MORAY_SCHEME_SIZE];
     int intervals;
     double tol;
+    moray_linear_solver linear_solver;
     bool json, quiet;
     char robot_file[MORAY_PATH_SIZE], out[MORAY_PATH_SIZE]; // empty: none
     moray_output *output;                                   // of --out, from moray_app_start; NULL without
