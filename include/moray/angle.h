@@ -2,6 +2,12 @@
 #ifndef MORAY_ANGLE_H
 #define MORAY_ANGLE_H
 
+#include "moray/export.h"
+
+MORAY_BEGIN
+
 #define MORAY_DEGREE (3.14159265358979323846 / 180) // [rad]
+
+MORAY_END
 
 #endif

@@ -2,17 +2,22 @@
 #ifndef MORAY_DENSE_H
 #define MORAY_DENSE_H
 
-#include <complex.h>
 #include <stdbool.h>
 
+#include "moray/export.h"
+#include "moray/num.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 // Solves A X = B for small dense systems by elimination with row pivoting: A[n][n] and B[n][m] row-major, both
 // overwritten, B with X. False when A is singular.
-bool moray_dense_solve(int n, double *A, int m, double *B);
+MORAY_API bool moray_dense_solve(int n, double *A, int m, double *B);
 
 // Eigenvalues lambda[n] of the real matrix A[n][n], the largest in modulus first, conjugates side by side. Error:
 // MORAY_NUMERIC when A is not finite or LAPACK fails; MORAY_MEMORY.
-moray_status moray_eigenvalues(int n, const double *A, double complex *lambda);
+MORAY_API moray_status moray_eigenvalues(int n, const double *A, moray_num *lambda);
+
+MORAY_END
 
 #endif

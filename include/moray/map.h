@@ -4,9 +4,11 @@
 #ifndef MORAY_MAP_H
 #define MORAY_MAP_H
 
-#include <complex.h>
-
+#include "moray/export.h"
+#include "moray/num.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 // Positions of the entries that may be non-zero; row and col have nnz entries. Values travel in the same order.
 typedef struct moray_pattern {
@@ -32,28 +34,28 @@ typedef struct moray_map {
 } moray_map;
 
 // Frees what the map owns and zeroes it; safe on a zeroed map, and twice.
-void moray_map_release(moray_map *map);
+MORAY_API void moray_map_release(moray_map *map);
 
-// The same function written for complex arguments (C99 <tgmath.h>).
-typedef void moray_complex_fn(void *self, const double complex *in, double complex *out);
+// The same function written for complex arguments (num.h).
+typedef void moray_complex_fn(void *self, const moray_num *in, moray_num *out);
 
 // Makes a map of a complex-valued function: exact Jacobians by complex step, Hessians by central differences of them,
 // patterns by NaN propagation at `probe`[n_in] and at random points near it, directions merged by column colouring.
 // `release`, unless NULL, frees `self` with the map (or on error). Error: MORAY_MEMORY; MORAY_INPUT when the function
 // is not finite at the probe.
-moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function, void *self,
-                                    void (*release)(void *self), const double *probe);
+MORAY_API moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function,
+                                              void *self, void (*release)(void *self), const double *probe);
 
 // Joins two maps into one with the inputs of `extra`, of which place[k], ascending in k, is input k of `base`, and with
 // the outputs of `base`, those of `extra` inserted before output `at`. Takes over both, and leaves them zeroed, whether
 // it succeeds or not. Error: MORAY_MEMORY.
-moray_status moray_map_join(moray_map *map, moray_map *base, const int *place, moray_map *extra, int at);
+MORAY_API moray_status moray_map_join(moray_map *map, moray_map *base, const int *place, moray_map *extra, int at);
 // The same for a function that knows only real numbers (tables, other people's code): Jacobians by central differences
 // of fourth order (about 1e-10 where the function is smooth), Hessians by second differences (about 1e-7). A second
 // derivative that is zero at and around the probe is taken to be zero everywhere.
 typedef void moray_real_fn(void *self, const double *in, double *out);
-moray_status moray_map_from_real(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *self,
-                                 void (*release)(void *self), const double *probe);
+MORAY_API moray_status moray_map_from_real(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *self,
+                                           void (*release)(void *self), const double *probe);
 
 // The worst disagreement between a map's derivatives and an independent route, relative to 1 + |reference| and to
 // 1e4 times what the reference itself is in doubt, so that steep functions and large values accuse nobody.
@@ -66,11 +68,13 @@ typedef struct moray_derivative_report {
 // Checks at in[n_in]: the Jacobian against Richardson-extrapolated differences of the value (about 1e-10 where the
 // function is smooth), the Hessian with weight[n_out] against the same of the Jacobian; entries missing from a
 // pattern are found too. Allocates its own scratch. Error: MORAY_MEMORY.
-moray_status moray_check_derivatives(const moray_map *map, const double *in, const double *weight,
-                                     moray_derivative_report *report);
+MORAY_API moray_status moray_check_derivatives(const moray_map *map, const double *in, const double *weight,
+                                               moray_derivative_report *report);
 
 // Ownership of patterns: zeroed arrays of nnz entries; free with moray_pattern_free. Error: MORAY_MEMORY.
-moray_status moray_pattern_new(moray_pattern *pattern, int nnz);
-void moray_pattern_free(moray_pattern *pattern);
+MORAY_API moray_status moray_pattern_new(moray_pattern *pattern, int nnz);
+MORAY_API void moray_pattern_free(moray_pattern *pattern);
+
+MORAY_END
 
 #endif

@@ -14,6 +14,7 @@
 #include "moray/control/periodic_orbit.h"
 #include "moray/control/receding_horizon.h"
 #include "moray/dense.h"
+#include "moray/export.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"

@@ -4,7 +4,10 @@
 #ifndef MORAY_NLP_H
 #define MORAY_NLP_H
 
+#include "moray/export.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 #define MORAY_INFINITY 1e20 // bounds at or beyond this do not exist
 
@@ -43,7 +46,7 @@ typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
 // Which factorisation Ipopt works with: our own, MUMPS, or an MA57 that it finds in libhsl.so (then no other thread may
 // be solving with our own).
 typedef enum { MORAY_LINEAR_MUMPS, MORAY_LINEAR_OWN, MORAY_LINEAR_MA57 } moray_linear_solver;
-const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
+MORAY_API const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
 
 // An option of Ipopt by its name, after all that moray sets; not option_file_name, output_file, sb and linear_solver:
 // no option file is ever read, and Ipopt never writes on standard output.
@@ -65,7 +68,7 @@ typedef struct moray_nlp_settings {
     void *observer;
 } moray_nlp_settings;
 
-moray_nlp_settings moray_nlp_settings_default(void);
+MORAY_API moray_nlp_settings moray_nlp_settings_default(void);
 
 typedef enum {
     MORAY_NLP_SOLVED,
@@ -76,7 +79,7 @@ typedef enum {
     MORAY_NLP_STALLED, // restoration failed, search direction too small, diverging, or a linear solve failed
     MORAY_NLP_INVALID  // not a number, or too few degrees of freedom
 } moray_nlp_outcome;
-const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
+MORAY_API const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
 
 typedef struct moray_nlp_info {
     moray_nlp_outcome outcome;
@@ -98,8 +101,8 @@ typedef struct moray_nlp_info {
 // MORAY_INPUT when the problem cannot be set up, naming the option that Ipopt refuses. Threads may solve problems of
 // their own at the same time: MUMPS can serve only one of them, so that the others wait. A callback may solve another
 // problem.
-moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
-                               moray_nlp_info *info);
+MORAY_API moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings,
+                                         moray_iterate *iterate, moray_nlp_info *info);
 
 // Optimality of an iterate, computed from the callbacks alone, in the user's units (nothing scaled).
 typedef struct moray_kkt {
@@ -114,7 +117,7 @@ typedef struct moray_kkt {
 } moray_kkt;
 
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at the iterate.
-moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt);
+MORAY_API moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt);
 
 // ---- Sensitivities -------------------------------------------------------------------------------------------------
 //
@@ -142,22 +145,25 @@ typedef struct moray_nlp_sensitivity moray_nlp_sensitivity;
 
 // Of a solution; both must outlive the result. Error: MORAY_NUMERIC where a function is not finite or the minimum not
 // strict, MORAY_MEMORY.
-moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const moray_nlp *nlp,
-                                       const moray_iterate *solution);
-void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
+MORAY_API moray_status moray_nlp_sensitivity_new(moray_nlp_sensitivity **result, const moray_nlp *nlp,
+                                                 const moray_iterate *solution);
+MORAY_API void moray_nlp_sensitivity_free(moray_nlp_sensitivity *sensitivity);
 
 // The constraints whose multiplier and slack are so small and so alike, in the scale of the solver, that it is not
 // certain whether they are active (a solution to a tighter tolerance may tell); numbered as in moray_nlp_change.
 // Returns how many; the first `most` stand in constraint[].
-int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *sensitivity, int *constraint, int most);
+MORAY_API int moray_nlp_sensitivity_weak(const moray_nlp_sensitivity *sensitivity, int *constraint, int most);
 
 // slope: the derivative by p of every entry of the solution, objective included; multipliers of constraints that depend
 // on each other share evenly. Error: MORAY_NUMERIC where those cannot all follow, so that one lets go at once.
-moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
-                                         moray_iterate *slope);
+MORAY_API moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
+                                                   moray_iterate *slope);
 
 // The first change as p rises (direction 1) or falls (-1).
-moray_nlp_change moray_nlp_sensitivity_change(const moray_nlp_sensitivity *sensitivity, const moray_nlp_shift *shift,
-                                              const moray_iterate *slope, int direction);
+MORAY_API moray_nlp_change moray_nlp_sensitivity_change(const moray_nlp_sensitivity *sensitivity,
+                                                        const moray_nlp_shift *shift, const moray_iterate *slope,
+                                                        int direction);
+
+MORAY_END
 
 #endif

@@ -8,33 +8,95 @@
 // differentiated. The functions below continue their real namesakes: they choose by the real part, so that value and
 // derivative are those of the real function. Where they have a kink (moray_abs at 0) Newton's method may stall: a
 // smooth form, such as sqrt(x * x + e * e), converges better.
+//
+// In C++ moray_num is std::complex<double>, of the same form in memory; user functions then call the functions of
+// <complex>.
 #ifndef MORAY_NUM_H
 #define MORAY_NUM_H
+
+#ifdef __cplusplus
+
+#include <cmath>
+#include <complex>
+
+typedef std::complex<double> moray_num;
+
+static inline double moray_real(const moray_num &z)
+{
+    return z.real();
+}
+static inline double moray_imag(const moray_num &z)
+{
+    return z.imag();
+}
+static inline moray_num moray_complex(double real, double imaginary)
+{
+    return moray_num(real, imaginary);
+}
+static inline moray_num moray_complex_pow(const moray_num &z, double power)
+{
+    return std::pow(z, power);
+}
+static inline moray_num moray_complex_sqrt(const moray_num &z)
+{
+    return std::sqrt(z);
+}
+
+#else
 
 #include <complex.h>
 #include <math.h>
 
 typedef double complex moray_num;
 
+static inline double moray_real(moray_num z)
+{
+    return creal(z);
+}
+static inline double moray_imag(moray_num z)
+{
+    return cimag(z);
+}
+// As CMPLX, which C99 and clang lack: real + imaginary * I would spoil infinities.
+static inline moray_num moray_complex(double real, double imaginary)
+{
+    const union {
+        double part[2];
+        moray_num z;
+    } number = {{real, imaginary}};
+    return number.z;
+}
+static inline moray_num moray_complex_pow(moray_num z, double power)
+{
+    return cpow(z, power);
+}
+static inline moray_num moray_complex_sqrt(moray_num z)
+{
+    return csqrt(z);
+}
+
+#endif
+
 static inline moray_num moray_abs(moray_num z)
 {
-    return creal(z) < 0 ? -z : z;
+    return moray_real(z) < 0 ? -z : z;
 }
 
 // -1, 0 or 1; derivative 0.
 static inline moray_num moray_sign(moray_num z)
 {
-    return isnan(creal(z)) ? z : (creal(z) > 0) - (creal(z) < 0);
+    const double x = moray_real(z);
+    return x != x ? z : moray_complex((x > 0) - (x < 0), 0);
 }
 
 // A NaN wins, so that dependences are seen.
 static inline moray_num moray_max(moray_num a, moray_num b)
 {
-    return isnan(creal(a)) || creal(a) >= creal(b) ? a : b;
+    return moray_real(a) != moray_real(a) || moray_real(a) >= moray_real(b) ? a : b;
 }
 static inline moray_num moray_min(moray_num a, moray_num b)
 {
-    return isnan(creal(a)) || creal(a) <= creal(b) ? a : b;
+    return moray_real(a) != moray_real(a) || moray_real(a) <= moray_real(b) ? a : b;
 }
 
 static inline moray_num moray_clamp(moray_num z, moray_num lower, moray_num upper)
@@ -45,26 +107,27 @@ static inline moray_num moray_clamp(moray_num z, moray_num lower, moray_num uppe
 // z to a real power; of a negative z to a whole one only.
 static inline moray_num moray_pow(moray_num z, double power)
 {
-    if (creal(z) > 0)
-        return cpow(z, power);
-    if (creal(z) == 0)
-        return CMPLX(pow(0, power), power == 1 ? cimag(z) : power > 1 ? 0 : NAN);
+    const double x = moray_real(z);
+    if (x > 0 || power == 0)
+        return power == 0 ? moray_complex(1, 0) : moray_complex_pow(z, power);
+    if (x == 0)
+        return moray_complex(pow(0, power), power == 1 ? moray_imag(z) : power > 1 ? 0 : NAN);
     if (power != rint(power))
-        return NAN;
-    return fmod(power, 2) == 0 ? cpow(-z, power) : -cpow(-z, power);
+        return moray_complex(NAN, NAN);
+    return fmod(power, 2) == 0 ? moray_complex_pow(-z, power) : -moray_complex_pow(-z, power);
 }
 
 // sqrt(x^2 + y^2); <tgmath.h> has it for real numbers only, as it has atan2.
 static inline moray_num moray_hypot(moray_num x, moray_num y)
 {
-    return csqrt(x * x + y * y);
+    return moray_complex_sqrt(x * x + y * y);
 }
 
 // Angle of the vector (x, y) in (-pi, pi]; the imaginary part to first order, which is all the complex step reads.
 static inline moray_num moray_atan2(moray_num y, moray_num x)
 {
-    const double a = creal(x), b = creal(y);
-    return CMPLX(atan2(b, a), (a * cimag(y) - b * cimag(x)) / (a * a + b * b));
+    const double a = moray_real(x), b = moray_real(y);
+    return moray_complex(atan2(b, a), (a * moray_imag(y) - b * moray_imag(x)) / (a * a + b * b));
 }
 
 #endif

@@ -13,11 +13,14 @@
 
 #include <stdio.h>
 
+#include "moray/export.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"
 #include "moray/ode.h"
 #include "moray/scheme.h"
+
+MORAY_BEGIN
 
 // ---- Bounds --------------------------------------------------------------------------------------------------------
 
@@ -27,26 +30,33 @@ typedef struct moray_bounds {
 
 static inline moray_bounds moray_fixed(double value)
 {
-    return (moray_bounds){value, value};
+    const moray_bounds bounds = {value, value};
+    return bounds;
 }
 static inline moray_bounds moray_between(double lower, double upper)
 {
-    return (moray_bounds){lower, upper};
+    const moray_bounds bounds = {lower, upper};
+    return bounds;
 }
 static inline moray_bounds moray_at_least(double lower)
 {
-    return (moray_bounds){lower, MORAY_INFINITY};
+    const moray_bounds bounds = {lower, MORAY_INFINITY};
+    return bounds;
 }
 static inline moray_bounds moray_at_most(double upper)
 {
-    return (moray_bounds){-MORAY_INFINITY, upper};
+    const moray_bounds bounds = {-MORAY_INFINITY, upper};
+    return bounds;
 }
 static inline moray_bounds moray_free(void)
 {
-    return (moray_bounds){-MORAY_INFINITY, MORAY_INFINITY};
+    const moray_bounds bounds = {-MORAY_INFINITY, MORAY_INFINITY};
+    return bounds;
 }
 
-// Bounds of a vector; none (n = 0) leaves every entry free (path constraints and events must be bounded).
+// Bounds of a vector; none (n = 0) leaves every entry free (path constraints and events must be bounded). In C
+// initialise it with MORAY_BOUNDS(moray_fixed(0), moray_free()); in C and C++ take it from an array that lives on:
+//   const moray_bounds x[] = {moray_fixed(0), moray_free()};  phase.x = MORAY_BOUNDS_OF(x);
 typedef struct moray_bounds_list {
     const moray_bounds *at;
     int n;
@@ -55,6 +65,12 @@ typedef struct moray_bounds_list {
     {                                                                                                                  \
         (const moray_bounds[]){__VA_ARGS__}, (int)(sizeof((const moray_bounds[]){__VA_ARGS__}) / sizeof(moray_bounds)) \
     }
+static inline moray_bounds_list moray_bounds_of(const moray_bounds *at, int n)
+{
+    const moray_bounds_list list = {at, n};
+    return list;
+}
+#define MORAY_BOUNDS_OF(array) moray_bounds_of(array, (int)(sizeof(array) / sizeof(moray_bounds)))
 
 // ---- Problem form --------------------------------------------------------------------------------------------------
 
@@ -138,8 +154,8 @@ typedef struct moray_ocp moray_ocp;
 // phase; none is empty, longer than 100 bytes, holds a control character or " [", or begins or ends with a blank;
 // states and controls are not named t, nor phase where there are several. Error: MORAY_INPUT naming what is missing, of
 // the wrong length, contradictory, not a number or named like another; MORAY_MEMORY.
-moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
-void moray_ocp_free(moray_ocp *ocp);
+MORAY_API moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
+MORAY_API void moray_ocp_free(moray_ocp *ocp);
 
 // The worst disagreement, relative as in moray_derivative_report, between the derivatives in use and differences of the
 // functions at several points within the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
@@ -150,11 +166,11 @@ typedef struct moray_ocp_derivative_report {
 } moray_ocp_derivative_report;
 
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at any of the points.
-moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report);
+MORAY_API moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report);
 
 // Number of phases; states and controls of one of them.
-int moray_ocp_phases(const moray_ocp *ocp);
-void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
+MORAY_API int moray_ocp_phases(const moray_ocp *ocp);
+MORAY_API void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
 
 // ---- Trajectories, guesses -----------------------------------------------------------------------------------------
 
@@ -177,16 +193,16 @@ typedef struct moray_guess {
     void *owned;                // what moray_guess_free frees
 } moray_guess;
 
-void moray_guess_free(moray_guess *guess); // of read and simulated guesses; harmless to others
+MORAY_API void moray_guess_free(moray_guess *guess); // of read and simulated guesses; harmless to others
 
-moray_guess moray_guess_from_solution(const moray_solution *solution); // borrows
+MORAY_API moray_guess moray_guess_from_solution(const moray_solution *solution); // borrows
 
 // Reads comma-separated values as in a trajectory.csv: first a line of names, "t" and those of the states and controls
 // ("x[0]", "u[0]" where the problem has none), units in brackets after a name and other columns ignored; with several
 // phases a column "phase", counted from 1. Times ascend; numbers are finite, with a decimal point in any locale. The
 // parameters are guessed from their bounds: set guess->s for others. Error: MORAY_IO; MORAY_INPUT naming the line, or
 // the column that is missing; MORAY_MEMORY.
-moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const char *path);
+MORAY_API moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const char *path);
 
 // u[nu] of phase p at time t and state x[nx].
 typedef void moray_control_fn(int phase, double t, const double *x, double *u, void *self);
@@ -200,8 +216,9 @@ typedef struct moray_drive {
 
 // Integrates the dynamics of every phase with parameters s[ns] and a control, NULL for the middle of its bounds.
 // Error: MORAY_INPUT, MORAY_MEMORY, or what the integrator returned, with the name of the phase.
-moray_status moray_guess_simulate(moray_guess *guess, const moray_ocp *ocp, const moray_drive *phase, const double *s,
-                                  moray_control_fn *control, void *self, const moray_integrator *integrator);
+MORAY_API moray_status moray_guess_simulate(moray_guess *guess, const moray_ocp *ocp, const moray_drive *phase,
+                                            const double *s, moray_control_fn *control, void *self,
+                                            const moray_integrator *integrator);
 
 // ---- Solving -------------------------------------------------------------------------------------------------------
 
@@ -223,7 +240,7 @@ typedef struct moray_settings {
     void *observer;
 } moray_settings;
 
-moray_settings moray_settings_default(void);
+MORAY_API moray_settings moray_settings_default(void);
 
 // Transcribes and solves from `guess` (NULL: from the bounds). Stopped early, the solution is the best iterate, see
 // moray_ipopt_solve. The solution keeps what it needs of the problem but must
@@ -232,53 +249,53 @@ moray_settings moray_settings_default(void);
 // Returns MORAY_OK with *solution set whenever the solver ran, converged or not: read moray_solution_info(...)->outcome
 // and, when it is not MORAY_NLP_SOLVED, moray_solution_diagnosis. Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY,
 // MORAY_NUMERIC (functions not finite at the guess).
-moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
-                         moray_solution **solution);
-void moray_solution_free(moray_solution *solution);
+MORAY_API moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
+                                   moray_solution **solution);
+MORAY_API void moray_solution_free(moray_solution *solution);
 
 // Keeps a solution, solved or not, in a text file, with its meshes and in full precision; the file is complete or not
 // there. Error: MORAY_IO, MORAY_INPUT (path too long).
-moray_status moray_solution_save(const moray_solution *solution, const char *path);
-void moray_solution_write(const moray_solution *solution, FILE *file); // the same into an open file
+MORAY_API moray_status moray_solution_save(const moray_solution *solution, const char *path);
+MORAY_API void moray_solution_write(const moray_solution *solution, FILE *file); // the same into an open file
 
 // The solution of the same problem in such a file, as it was but for the history, of which the last mesh is left. To go
 // on from it, solve with the guess moray_guess_from_solution, and intervals = 0 for its meshes. settings: what the
 // certificate asks; NULL for the usual ones. Error: MORAY_IO, MORAY_MEMORY; MORAY_INPUT when the file is damaged or of
 // another problem, naming the line; MORAY_NUMERIC.
-moray_status moray_solution_load(moray_solution **solution, const moray_ocp *ocp, const moray_settings *settings,
-                                 const char *path);
+MORAY_API moray_status moray_solution_load(moray_solution **solution, const moray_ocp *ocp,
+                                           const moray_settings *settings, const char *path);
 
-const moray_nlp_info *moray_solution_info(const moray_solution *solution);
-double moray_solution_objective(const moray_solution *solution);
-const double *moray_solution_parameters(const moray_solution *solution);           // s[ns]
-const double *moray_solution_integrals(const moray_solution *solution, int phase); // q[nq]
-void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf);
+MORAY_API const moray_nlp_info *moray_solution_info(const moray_solution *solution);
+MORAY_API double moray_solution_objective(const moray_solution *solution);
+MORAY_API const double *moray_solution_parameters(const moray_solution *solution);           // s[ns]
+MORAY_API const double *moray_solution_integrals(const moray_solution *solution, int phase); // q[nq]
+MORAY_API void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf);
 
 // State x[nx] and control u[nu] at time t (clamped to the phase) from the collocation polynomials, the control kept
 // within its bounds, which a polynomial leaves beside a jump; where the control jumps between intervals, its value
 // before the jump. Either may be NULL.
-void moray_solution_at(const moray_solution *solution, int phase, double t, double *x, double *u);
+MORAY_API void moray_solution_at(const moray_solution *solution, int phase, double t, double *x, double *u);
 
 // The points where the state is a variable: how many, their times [count], and costates lambda[count][nx] such that the
 // Hamiltonian is g + lambda f for a minimised integral, and dJ/dx(t) = lambda(t). Either array may be NULL. Where the
 // dynamics are collocated they are stage values, of lower order than the optimum: 2 with trapezoid (1 at the ends of
 // the phase) and hermite-simpson, s with radau, s + 1 with gauss, whose ends of intervals have the full 2s.
-int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
+MORAY_API int moray_solution_nodes(const moray_solution *solution, int phase, double *time, double *costate);
 
 // The Hamiltonian g + lambda f, with the integrands weighted by what they cost, at the nodes: hamiltonian[count], NaN
 // where the dynamics are not collocated (start of a phase with Radau, ends of the intervals with Gauss). Returns the
 // count. It is constant where the functions of the phase do not depend on time, 0 at a free final time that nothing
 // else depends on.
-int moray_solution_hamiltonian(const moray_solution *solution, int phase, double *hamiltonian);
+MORAY_API int moray_solution_hamiltonian(const moray_solution *solution, int phase, double *hamiltonian);
 
 // Multipliers [ne] of the events: minus dJ / d(bound) of those at a bound, positive at the upper, else 0.
-const double *moray_solution_event_multipliers(const moray_solution *solution);
+MORAY_API const double *moray_solution_event_multipliers(const moray_solution *solution);
 
 // Sizes of the programme that was solved.
 typedef struct moray_nlp_size {
     int variables, constraints, nnz_jac, nnz_hess;
 } moray_nlp_size;
-moray_nlp_size moray_solution_size(const moray_solution *solution);
+MORAY_API moray_nlp_size moray_solution_size(const moray_solution *solution);
 
 // One mesh that was tried.
 typedef struct moray_mesh_record {
@@ -291,11 +308,11 @@ typedef struct moray_mesh_record {
 } moray_mesh_record;
 
 // The meshes that were tried, first to last; [*meshes], owned by the solution.
-const moray_mesh_record *moray_solution_history(const moray_solution *solution, int *meshes);
+MORAY_API const moray_mesh_record *moray_solution_history(const moray_solution *solution, int *meshes);
 
 // One text of several lines that says what hurts: the largest scaled violation by name, phase and time, and the active
 // bounds. Owned by the solution.
-const char *moray_solution_diagnosis(const moray_solution *solution);
+MORAY_API const char *moray_solution_diagnosis(const moray_solution *solution);
 
 // ---- Certificate ---------------------------------------------------------------------------------------------------
 
@@ -315,7 +332,9 @@ typedef struct moray_certificate {
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.
-moray_status moray_certify(const moray_solution *solution, const moray_integrator *integrator,
-                           moray_certificate *certificate);
+MORAY_API moray_status moray_certify(const moray_solution *solution, const moray_integrator *integrator,
+                                     moray_certificate *certificate);
+
+MORAY_END
 
 #endif

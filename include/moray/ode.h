@@ -4,7 +4,10 @@
 #ifndef MORAY_ODE_H
 #define MORAY_ODE_H
 
+#include "moray/export.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 // x' = rhs(t, x), x and dx of n entries. rhs returns false outside its domain.
 typedef struct moray_ode {
@@ -23,5 +26,7 @@ typedef struct moray_integrator {
                         const double *times, int n_times, moray_ode_observer *observe, void *observer);
     void *self;
 } moray_integrator;
+
+MORAY_END
 
 #endif

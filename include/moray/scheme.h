@@ -5,7 +5,10 @@
 #ifndef MORAY_SCHEME_H
 #define MORAY_SCHEME_H
 
+#include "moray/export.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 typedef enum { MORAY_LOBATTO, MORAY_RADAU, MORAY_GAUSS } moray_family;
 
@@ -29,13 +32,15 @@ typedef struct moray_scheme {
 
 // Builds the table of a family with s stages (Lobatto 2..64, Radau and Gauss 1..64). Lobatto with 2 and 3 stages are
 // the trapezoid and Hermite-Simpson. Error: MORAY_INPUT, MORAY_MEMORY. Free with moray_scheme_free.
-moray_status moray_scheme_new(moray_scheme *scheme, moray_family family, int stages);
-void moray_scheme_free(moray_scheme *scheme);
+MORAY_API moray_status moray_scheme_new(moray_scheme *scheme, moray_family family, int stages);
+MORAY_API void moray_scheme_free(moray_scheme *scheme);
 
 // Reads "trapezoid", "hermite-simpson", "lobatto4", "radau3", "gauss2", ... Error: MORAY_INPUT saying what is allowed.
-moray_status moray_scheme_parse(const char *name, moray_family *family, int *stages);
+MORAY_API moray_status moray_scheme_parse(const char *name, moray_family *family, int *stages);
 
 // At tau in [0, 1]: ell[points] values of the stage polynomials (x~' and u~), integral[points] their integrals from 0.
-void moray_scheme_basis(const moray_scheme *scheme, double tau, double *ell, double *integral);
+MORAY_API void moray_scheme_basis(const moray_scheme *scheme, double tau, double *ell, double *integral);
+
+MORAY_END
 
 #endif

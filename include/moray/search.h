@@ -5,7 +5,10 @@
 #ifndef MORAY_SEARCH_H
 #define MORAY_SEARCH_H
 
+#include "moray/export.h"
 #include "moray/nlp.h"
+
+MORAY_BEGIN
 
 typedef enum {
     MORAY_SEARCH_SLSQP,  // local, by gradients: sequential quadratic programming
@@ -17,7 +20,7 @@ typedef enum {
     MORAY_SEARCH_ISRES,  // global: evolution strategy with stochastic ranking
     MORAY_SEARCH_DIRECT  // global: dividing rectangles
 } moray_search_method;
-const char *moray_search_method_name(moray_search_method method); // "slsqp", ...
+MORAY_API const char *moray_search_method_name(moray_search_method method); // "slsqp", ...
 
 typedef struct moray_search_problem {
     int n, m;                    // variables; constraints c
@@ -49,7 +52,7 @@ typedef struct moray_search_settings {
     void *observer;
 } moray_search_settings;
 
-moray_search_settings moray_search_settings_default(void); // the values in the comments above
+MORAY_API moray_search_settings moray_search_settings_default(void); // the values in the comments above
 
 typedef enum {
     MORAY_SEARCH_CONVERGED, // to a tolerance, or as far as rounding lets it
@@ -58,7 +61,7 @@ typedef enum {
     MORAY_SEARCH_INTERRUPTED,
     MORAY_SEARCH_FAILED
 } moray_search_outcome;
-const char *moray_search_outcome_text(moray_search_outcome outcome);
+MORAY_API const char *moray_search_outcome_text(moray_search_outcome outcome);
 
 typedef struct moray_search_info {
     moray_search_outcome outcome;
@@ -71,7 +74,9 @@ typedef struct moray_search_info {
 // tolerance the one with the least f, else the one nearest to it. Returns MORAY_OK whenever NLopt ran and found a point
 // where the functions are defined (read info->outcome). Error: MORAY_INPUT naming what is wrong with the problem or the
 // settings, MORAY_NUMERIC when the functions were not defined anywhere, MORAY_MEMORY.
-moray_status moray_search(const moray_search_problem *problem, const moray_search_settings *settings, double *x,
-                          moray_search_info *info);
+MORAY_API moray_status moray_search(const moray_search_problem *problem, const moray_search_settings *settings,
+                                    double *x, moray_search_info *info);
+
+MORAY_END
 
 #endif

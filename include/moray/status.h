@@ -4,6 +4,10 @@
 
 #include <stdbool.h>
 
+#include "moray/export.h"
+
+MORAY_BEGIN
+
 // One list makes the enum and the texts.
 #define MORAY_CODES(X)                                                                                                 \
     X(OK, "ok")                                                                                                        \
@@ -27,9 +31,9 @@ typedef struct moray_status {
     char text[300];
 } moray_status;
 
-moray_status moray_ok(void);
-moray_status moray_error(moray_code code, const char *format, ...) __attribute__((format(printf, 2, 3)));
-const char *moray_code_text(moray_code code);
+MORAY_API moray_status moray_ok(void);
+MORAY_API moray_status moray_error(moray_code code, const char *format, ...) MORAY_PRINTF(2, 3);
+MORAY_API const char *moray_code_text(moray_code code);
 
 static inline bool moray_failed(moray_status status)
 {
@@ -43,5 +47,7 @@ static inline bool moray_failed(moray_status status)
         if (moray_failed(moray_try_))                                                                                  \
             return moray_try_;                                                                                         \
     } while (0)
+
+MORAY_END
 
 #endif

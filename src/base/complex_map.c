@@ -32,7 +32,7 @@ static void complex_along(struct numeric_map *map, const double *in, const doubl
     (void)rough;
     struct complex_self *self = (struct complex_self *)map;
     for (int j = 0; j < map->n_in; j++)
-        self->in[j] = CMPLX(in[j], complex_step * direction[j]);
+        self->in[j] = moray_complex(in[j], complex_step * direction[j]);
     self->function(map->user, self->in, self->out);
     for (int i = 0; i < map->n_out; i++)
         slope[i] = cimag(self->out[i]) / complex_step;
@@ -45,7 +45,7 @@ static void mark_jacobian(struct complex_self *self, const double *at, bool *dep
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < n; i++)
             self->in[i] = at[i];
-        self->in[j] = CMPLX(NAN, NAN);
+        self->in[j] = moray_complex(NAN, NAN);
         self->function(self->map.user, self->in, self->out);
         for (int i = 0; i < self->map.n_out; i++)
             depends[i * n + j] |= isnan(creal(self->out[i])) || isnan(cimag(self->out[i]));
@@ -62,7 +62,7 @@ static void mark_hessian(struct complex_self *self, const double *at, bool *depe
             for (int i = 0; i < n; i++)
                 self->in[i] = at[i];
             self->in[c] = NAN;
-            self->in[r] += CMPLX(0, complex_step);
+            self->in[r] += moray_complex(0, complex_step);
             self->function(self->map.user, self->in, self->out);
             for (int i = 0; i < self->map.n_out; i++)
                 depends[r * n + c] |= isnan(cimag(self->out[i]));

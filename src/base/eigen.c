@@ -35,7 +35,7 @@ moray_status moray_eigenvalues(int n, const double *A, double complex *lambda)
     memcpy(copy, A, (size_t)entries * sizeof *copy); // read by columns it is the transpose: the same eigenvalues
     dgeev_("N", "N", &n, copy, &n, real, imaginary, NULL, &one, NULL, &one, work, &lwork, &info, 1, 1);
     for (int k = 0; k < n; k++)
-        lambda[k] = CMPLX(real[k], imaginary[k]);
+        lambda[k] = moray_complex(real[k], imaginary[k]);
     free(copy);
     if (info != 0)
         return moray_error(MORAY_NUMERIC, "eigenvalues: LAPACK's dgeev returns %d for a matrix of %d rows", info, n);

@@ -148,8 +148,8 @@ static void check_num(moray_num (*f)(moray_num, moray_num), double a, double b, 
 {
     const double h = 1e-50;
     CHECK_NEAR(creal(f(a, b)), value, 2e-15, what);
-    CHECK_NEAR(cimag(f(CMPLX(a, h), b)) / h, da, 2e-15, what);
-    CHECK_NEAR(cimag(f(a, CMPLX(b, h))) / h, db, 2e-15, what);
+    CHECK_NEAR(cimag(f(moray_complex(a, h), b)) / h, da, 2e-15, what);
+    CHECK_NEAR(cimag(f(a, moray_complex(b, h))) / h, db, 2e-15, what);
     CHECK(isnan(creal(f(NAN, b))) && isnan(creal(f(a, NAN))), "%s: a NaN passes through", what);
 }
 

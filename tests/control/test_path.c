@@ -67,7 +67,7 @@ static void test_continuity(void)
         }
         for (int k = 0; k < 40; k++) { // complex step along the path
             const double at = tap_random(&seed, -1, path.length + 1), step = 1e-30;
-            const moray_path_point here = moray_path_at(&path, CMPLX(at, step));
+            const moray_path_point here = moray_path_at(&path, moray_complex(at, step));
             worst_step = fmax(worst_step, fabs(cimag(here.x) / step - cos(creal(here.course))));
             worst_step = fmax(worst_step, fabs(cimag(here.y) / step - sin(creal(here.course))));
             worst_step = fmax(worst_step, fabs(cimag(here.course) / step - here.curvature));

@@ -14,7 +14,7 @@
 static double value_at(const spline *s, const double *y, moray_num x, double *slope)
 {
     moray_num weight[SPLINE_MOST_KNOTS], value = 0;
-    spline_weights(s, x + CMPLX(0, 1e-30), weight);
+    spline_weights(s, x + moray_complex(0, 1e-30), weight);
     for (int i = 0; i < s->n; i++)
         value += weight[i] * y[i];
     *slope = cimag(value) / 1e-30;
@@ -95,7 +95,7 @@ static void acceleration(const double *x, const double *thrust, double *a)
     const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     for (int i = 0; i < 3; i++) {
         moray_num r[] = {x[0], x[1], x[2]};
-        r[i] += CMPLX(0, 1e-20);
+        r[i] += moray_complex(0, 1e-20);
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const double across = (n[j] * x[k] - n[k] * x[j]) / (length * d); // transverse
         a[i] = cimag(potential(r)) / 1e-20 + thrust[0] * x[i] / d + thrust[1] * across + thrust[2] * n[i] / length;

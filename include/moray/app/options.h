@@ -8,7 +8,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "moray/export.h"
 #include "moray/nlp.h"
+
+MORAY_BEGIN
 
 // ---- Options -------------------------------------------------------------------------------------------------------
 
@@ -67,7 +70,7 @@ typedef struct moray_common {
 } moray_common;
 
 // Hermite-Simpson on 40 intervals to 1e-8.
-moray_common moray_common_defaults(void);
+MORAY_API moray_common moray_common_defaults(void);
 
 // A group of rows that several programs share, its offsets from the start of settings of its own, and what is done with
 // those when all is read (or NULL); an error of finish is the program's.
@@ -111,11 +114,11 @@ typedef enum { MORAY_REQUEST_RUN, MORAY_REQUEST_HELP, MORAY_REQUEST_VERSION } mo
 // every group. Writes nothing anywhere. With a request other than run the settings are as before.
 // Error: MORAY_INPUT or MORAY_IO, naming the key (in a file: file and line), its value and what is allowed;
 // MORAY_MEMORY; that of a finish.
-moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
-                             moray_request *request);
+MORAY_API moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
+                                       moray_request *request);
 
 // Writes the --help text, with the settings' present values as defaults. Error: MORAY_MEMORY, MORAY_IO.
-moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file);
+MORAY_API moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file);
 
 // A key of an INI file and what to write after its "=".
 typedef struct moray_ini_entry {
@@ -126,8 +129,10 @@ typedef struct moray_ini_entry {
 // key that has none follows the section's last, a section that is not there ends the file, a file that is not there is
 // made. A new file takes the old one's place at once, by renaming. Error: MORAY_IO naming the file, MORAY_MEMORY; the
 // file is then as before.
-moray_status moray_ini_set(const char *path, const char *section, const moray_ini_entry *entries, int n);
+MORAY_API moray_status moray_ini_set(const char *path, const char *section, const moray_ini_entry *entries, int n);
 
-const char *moray_version(void);
+MORAY_API const char *moray_version(void);
+
+MORAY_END
 
 #endif

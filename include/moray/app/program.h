@@ -4,8 +4,11 @@
 #ifndef MORAY_APP_PROGRAM_H
 #define MORAY_APP_PROGRAM_H
 
+#include "moray/export.h"
 #include "moray/app/options.h"
 #include "moray/app/results.h"
+
+MORAY_BEGIN
 
 // ---- Start and end of a program ------------------------------------------------------------------------------------
 
@@ -17,17 +20,17 @@ typedef enum {
     MORAY_EXIT_INTERRUPTED = 130
 } moray_exit;
 
-moray_exit moray_exit_of(moray_code code);
+MORAY_API moray_exit moray_exit_of(moray_code code);
 
 // Parses, answers --help and --version on standard output, opens --out. False when the program is to end at once with
 // *exit_code: then nothing is left to free and any error stands on standard error in one line. From here to the end the
 // thread's locale is C: numbers have points whatever the host has set.
-bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code);
+MORAY_API bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code);
 
 // Ends what moray_app_start began: a failed status becomes one line on standard error, an --out without commit leaves
 // nothing. Returns the exit code of the status; where standard output took not all that was printed, MORAY_EXIT_USAGE
 // with a line that says so.
-int moray_app_end(const moray_program *program, void *settings, moray_status status);
+MORAY_API int moray_app_end(const moray_program *program, void *settings, moray_status status);
 
 // ---- What a program found ------------------------------------------------------------------------------------------
 
@@ -45,10 +48,12 @@ typedef struct moray_results {
 
 // With --out the files, committed; then on standard output the summary (--json) or what `print` does. Error: MORAY_IO,
 // MORAY_MEMORY, those of `write`, and what moray_app_drawn leaves of those of `draw`.
-moray_status moray_app_show(const moray_common *common, const moray_results *results);
+MORAY_API moray_status moray_app_show(const moray_common *common, const moray_results *results);
 
 // What to make of the status of a figure: one that cannot be drawn is a line on standard error, unless --quiet, and no
 // error; only MORAY_MEMORY and MORAY_INTERRUPTED stay.
-moray_status moray_app_drawn(const moray_common *common, const char *name, moray_status drawn);
+MORAY_API moray_status moray_app_drawn(const moray_common *common, const char *name, moray_status drawn);
+
+MORAY_END
 
 #endif

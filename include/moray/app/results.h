@@ -7,11 +7,14 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "moray/export.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 // Shortest of %.15g, %.16g, %.17g that reads back as the same double, written into text; returns text. Non-finite
 // values give "nan", "inf", "-inf".
-const char *moray_number_text(double value, char text[32]);
+MORAY_API const char *moray_number_text(double value, char text[32]);
 
 // ---- Output directory ----------------------------------------------------------------------------------------------
 
@@ -20,18 +23,18 @@ typedef struct moray_output moray_output;
 
 // Checks that the directory can be made and written to, and leaves nothing behind: a long solve should not start in
 // vain. Error: MORAY_IO naming the directory; MORAY_MEMORY.
-moray_status moray_output_open(moray_output **output, const char *directory);
+MORAY_API moray_status moray_output_open(moray_output **output, const char *directory);
 
 // Starts the file `name` (no slash in it); write to *file with fprintf and the like and leave closing to the output.
 // Error: MORAY_INPUT (name unusable or taken), MORAY_IO, MORAY_MEMORY.
-moray_status moray_output_file(moray_output *output, const char *name, FILE **file);
+MORAY_API moray_status moray_output_file(moray_output *output, const char *name, FILE **file);
 
 // Closes the files and moves them to their names. After an error the directory is as it was before. Error: MORAY_IO
 // naming the file.
-moray_status moray_output_commit(moray_output *output);
+MORAY_API moray_status moray_output_commit(moray_output *output);
 
 // Frees the output; what is not committed is deleted, and so is the directory if the output made it. NULL is allowed.
-void moray_output_free(moray_output *output);
+MORAY_API void moray_output_free(moray_output *output);
 
 // ---- JSON ----------------------------------------------------------------------------------------------------------
 
@@ -40,19 +43,20 @@ void moray_output_free(moray_output *output);
 // `key` is NULL inside a list.
 typedef struct moray_json moray_json;
 
-moray_json *moray_json_new(void);
-void moray_json_open(moray_json *json, const char *key);                 // an object inside the current one
-void moray_json_open_list(moray_json *json, const char *key);            // a list inside the current one
-void moray_json_close(moray_json *json);                                 // back to the enclosing one
-int moray_json_depth(const moray_json *json);                            // how many are open inside the first
-void moray_json_number(moray_json *json, const char *key, double value); // round-trips; NaN and infinity become null
-void moray_json_numbers(moray_json *json, const char *key, const double *values, int n);
-void moray_json_text(moray_json *json, const char *key, const char *text); // NULL becomes null
-void moray_json_bool(moray_json *json, const char *key, bool value);
+MORAY_API moray_json *moray_json_new(void);
+MORAY_API void moray_json_open(moray_json *json, const char *key);      // an object inside the current one
+MORAY_API void moray_json_open_list(moray_json *json, const char *key); // a list inside the current one
+MORAY_API void moray_json_close(moray_json *json);                      // back to the enclosing one
+MORAY_API int moray_json_depth(const moray_json *json);                 // how many are open inside the first
+// A number round-trips; NaN and infinity become null.
+MORAY_API void moray_json_number(moray_json *json, const char *key, double value);
+MORAY_API void moray_json_numbers(moray_json *json, const char *key, const double *values, int n);
+MORAY_API void moray_json_text(moray_json *json, const char *key, const char *text); // NULL becomes null
+MORAY_API void moray_json_bool(moray_json *json, const char *key, bool value);
 
 // Writes the whole object and a newline, and flushes. Error: MORAY_MEMORY (now or while building), MORAY_IO.
-moray_status moray_json_write(const moray_json *json, FILE *file);
-void moray_json_free(moray_json *json);
+MORAY_API moray_status moray_json_write(const moray_json *json, FILE *file);
+MORAY_API void moray_json_free(moray_json *json);
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
@@ -76,14 +80,14 @@ typedef struct moray_table {
 } moray_table;
 
 // A value as tables show it: whole numbers in full, others with four significant digits, NaN as "".
-const char *moray_table_number(double value, char text[32]);
+MORAY_API const char *moray_table_number(double value, char text[32]);
 
 // Plain text with aligned columns; widths count UTF-8 characters. Of several, each with a blank line behind it.
-void moray_table_print(const moray_table *table, FILE *file);
-void moray_tables_print(const moray_table *tables, int n, FILE *file);
+MORAY_API void moray_table_print(const moray_table *table, FILE *file);
+MORAY_API void moray_tables_print(const moray_table *tables, int n, FILE *file);
 
 // Adds to what stands in text[size]; what has no room is left out.
-void moray_text_add(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+MORAY_API void moray_text_add(char *text, size_t size, const char *format, ...) MORAY_PRINTF(3, 4);
 
 // Comma-separated values: a line of names "name [unit]", then n_rows lines of full-precision numbers. Row i of a column
 // is values[i * stride] (stride 0 stands for 1). Errors of the file stay in the file for the commit to find.
@@ -92,7 +96,7 @@ typedef struct moray_column {
     const double *values;
     int stride;
 } moray_column;
-void moray_csv_write(FILE *file, const moray_column *columns, int n_columns, int n_rows);
+MORAY_API void moray_csv_write(FILE *file, const moray_column *columns, int n_columns, int n_rows);
 
 // ---- Figures and report --------------------------------------------------------------------------------------------
 
@@ -118,7 +122,7 @@ typedef struct moray_figure {
 
 // Draws NAME.svg with gnuplot. Where gnuplot is missing or fails the output is as before the call and can be used on.
 // Error: MORAY_IO saying what gnuplot said; MORAY_INPUT, MORAY_MEMORY as for moray_output_file.
-moray_status moray_output_figure(moray_output *output, const moray_figure *figure);
+MORAY_API moray_status moray_output_figure(moray_output *output, const moray_figure *figure);
 
 // A part of a report under its own heading: paragraphs (one a line) or NULL, tables, figures whose names begin with
 // `figures`.
@@ -140,7 +144,7 @@ typedef struct moray_report {
 
 // report.html: one self-contained page with the tables and every figure drawn so far; those of no section come first.
 // Error: as moray_output_file.
-moray_status moray_output_report(moray_output *output, const moray_report *report);
+MORAY_API moray_status moray_output_report(moray_output *output, const moray_report *report);
 
 // ---- Progress ------------------------------------------------------------------------------------------------------
 
@@ -150,10 +154,12 @@ typedef struct moray_ticker {
     bool live;
 } moray_ticker;
 
-moray_ticker moray_ticker_start(FILE *stream, bool quiet);
-void moray_ticker_show(const moray_ticker *ticker, const char *format, ...) __attribute__((format(printf, 2, 3)));
+MORAY_API moray_ticker moray_ticker_start(FILE *stream, bool quiet);
+MORAY_API void moray_ticker_show(const moray_ticker *ticker, const char *format, ...) MORAY_PRINTF(2, 3);
 // A line that stays, above the one rewritten.
-void moray_ticker_note(const moray_ticker *ticker, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void moray_ticker_end(const moray_ticker *ticker); // erases the line
+MORAY_API void moray_ticker_note(const moray_ticker *ticker, const char *format, ...) MORAY_PRINTF(2, 3);
+MORAY_API void moray_ticker_end(const moray_ticker *ticker); // erases the line
+
+MORAY_END
 
 #endif

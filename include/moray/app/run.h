@@ -4,8 +4,11 @@
 #ifndef MORAY_APP_RUN_H
 #define MORAY_APP_RUN_H
 
+#include "moray/export.h"
 #include "moray/app/program.h"
 #include "moray/ocp.h"
+
+MORAY_BEGIN
 
 // A number of the problem that --set KEY=VALUE changes before the functions are called; both limits 0: any.
 typedef struct moray_app_constant {
@@ -40,27 +43,28 @@ enum { MORAY_APP_CONSTANTS = 32 };
 // on the mesh it has unless --scheme or --intervals name another; a second Ctrl-C ends at once. What the solver left is
 // shown and written in any case: solved (exit code 0, or 3 where the certificate failed), not solved (1) or interrupted
 // (130); the codes are those of moray_exit. A problem that cannot be stated ends with a line on standard error and 2.
-int moray_app_run(const moray_app *app, int argc, char **argv);
+MORAY_API int moray_app_run(const moray_app *app, int argc, char **argv);
 
 // ---- Pieces of results ---------------------------------------------------------------------------------------------
 
 // The blocks "solver" (to be closed by the caller, who may add to it) and "certificate" of a summary. A NULL
 // certificate was not made: it did not pass, and its numbers are null.
-void moray_solver_to_json(moray_json *json, const moray_solution *solution);
-void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate);
+MORAY_API void moray_solver_to_json(moray_json *json, const moray_solution *solution);
+MORAY_API void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate);
 
 // One line each, into text[size]: "hermite-simpson, 20 intervals: solved in 11 iterations, 0.05 s (...)" and
 // "Certificate: pass (KKT 1e-10, ...)".
-void moray_solver_line(const moray_solution *solution, const char *scheme, int intervals, char *text, size_t size);
-void moray_certificate_line(const moray_certificate *certificate, char *text, size_t size);
+MORAY_API void moray_solver_line(const moray_solution *solution, const char *scheme, int intervals, char *text,
+                                 size_t size);
+MORAY_API void moray_certificate_line(const moray_certificate *certificate, char *text, size_t size);
 
 // ---- Interruption --------------------------------------------------------------------------------------------------
 
 // From now on the first SIGINT only makes moray_interrupted true; the second one acts as it did before. Nothing changes
 // where SIGINT is ignored. The end brings back the earlier handler.
-void moray_interrupt_begin(void);
-void moray_interrupt_end(void);
-bool moray_interrupted(void);
+MORAY_API void moray_interrupt_begin(void);
+MORAY_API void moray_interrupt_end(void);
+MORAY_API bool moray_interrupted(void);
 
 // The row of --continue FILE; field: char[MORAY_PATH_SIZE] of the settings.
 #define MORAY_CONTINUE(settings, field)                                                                                \
@@ -71,10 +75,12 @@ bool moray_interrupted(void);
 
 // Writes what an interrupted solver left to NAME.iterate, beside the other files of --out (which the caller commits) or
 // else in the working directory, and its path to path. Error: MORAY_IO, MORAY_INPUT (path too long).
-moray_status moray_iterate_keep(const moray_common *common, const char *name, const moray_solution *solution,
-                                char path[MORAY_PATH_SIZE]);
+MORAY_API moray_status moray_iterate_keep(const moray_common *common, const char *name, const moray_solution *solution,
+                                          char path[MORAY_PATH_SIZE]);
 
 // "interrupted after 12 iterations; to go on: --continue NAME.iterate" as an error, MORAY_INTERRUPTED.
-moray_status moray_interruption(const moray_solution *solution, const char *path);
+MORAY_API moray_status moray_interruption(const moray_solution *solution, const char *path);
+
+MORAY_END
 
 #endif

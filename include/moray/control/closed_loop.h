@@ -4,7 +4,10 @@
 #ifndef MORAY_CONTROL_CLOSED_LOOP_H
 #define MORAY_CONTROL_CLOSED_LOOP_H
 
+#include "moray/export.h"
 #include "moray/sim.h"
+
+MORAY_BEGIN
 
 // The plant: dx[nx] at time t, state x[nx] and control u[nu]. False outside its domain, as of a moray_ode.
 // Disturbances, and whatever the controller knows nothing of, belong in here.
@@ -57,7 +60,7 @@ typedef struct moray_closed_loop_spec {
 // integrator starts anew at every jump and measurement. When the observer stops the run, the status is ok and x the
 // state last observed; after an error x is the state last reached. Error: MORAY_INPUT (sizes, times, period, settings),
 // MORAY_MEMORY, MORAY_NUMERIC, that of `measure`.
-moray_status moray_closed_loop_run(const moray_closed_loop_spec *spec, double *x);
+MORAY_API moray_status moray_closed_loop_run(const moray_closed_loop_spec *spec, double *x);
 
 // A recorded motion of n samples; row k of x and u belongs to t[k].
 typedef struct moray_closed_loop_record {
@@ -67,11 +70,13 @@ typedef struct moray_closed_loop_record {
 
 // An empty record with room for `capacity` samples; free with moray_closed_loop_record_free. Error: MORAY_INPUT for
 // sizes below 0, MORAY_MEMORY.
-moray_status moray_closed_loop_record_new(moray_closed_loop_record *record, int nx, int nu, int capacity);
-void moray_closed_loop_record_free(moray_closed_loop_record *record); // safe on a zeroed record, and twice
+MORAY_API moray_status moray_closed_loop_record_new(moray_closed_loop_record *record, int nx, int nu, int capacity);
+MORAY_API void moray_closed_loop_record_free(moray_closed_loop_record *record); // safe on a zeroed record, and twice
 
 // An observer with a moray_closed_loop_record as `observer`, of the plant's sizes: adds the sample; false when the
 // record is full.
-bool moray_closed_loop_record_add(const moray_closed_loop_sample *sample, void *record);
+MORAY_API bool moray_closed_loop_record_add(const moray_closed_loop_sample *sample, void *record);
+
+MORAY_END
 
 #endif

@@ -5,8 +5,11 @@
 #ifndef MORAY_CONTROL_PATH_H
 #define MORAY_CONTROL_PATH_H
 
+#include "moray/export.h"
 #include "moray/num.h"
 #include "moray/status.h"
+
+MORAY_BEGIN
 
 // A straight leg (curvature 0) or an arc.
 typedef struct moray_path_piece {
@@ -25,12 +28,12 @@ typedef struct moray_path {
 
 // Through n >= 2 waypoints x, y [m]: straight legs joined by arcs of that radius [m] in the corners. Free with
 // moray_path_free. Error: MORAY_INPUT, also where a leg is too short for its arcs; MORAY_MEMORY.
-moray_status moray_path_through(moray_path *path, const double (*waypoint)[2], int n, double radius);
+MORAY_API moray_status moray_path_through(moray_path *path, const double (*waypoint)[2], int n, double radius);
 
 // The same through waypoints "X,Y X,Y ..." [m], or those of a CSV file of the columns x_m and y_m.
 // Error: those, and MORAY_IO.
-moray_status moray_path_read(moray_path *path, const char *text, double radius);
-void moray_path_free(moray_path *path); // safe on a zeroed path, and twice
+MORAY_API moray_status moray_path_read(moray_path *path, const char *text, double radius);
+MORAY_API void moray_path_free(moray_path *path); // safe on a zeroed path, and twice
 
 // The point at a distance along the path, which goes on straight before its start and behind its end. Analytic in
 // `along` on every piece, so that problems may call it.
@@ -38,26 +41,30 @@ typedef struct moray_path_point {
     moray_num x, y, course; // [m], [m], [rad]
     double curvature;       // [1/m]
 } moray_path_point;
-moray_path_point moray_path_at(const moray_path *path, moray_num along);
+#ifndef __cplusplus // which passes complex numbers by value in another way
+MORAY_API moray_path_point moray_path_at(const moray_path *path, moray_num along);
+#endif
 
 // The point of the path nearest to (x, y) of those near the distance `along`: its distance, and how far to the left of
 // the path (x, y) lies [m].
-void moray_path_project(const moray_path *path, double x, double y, double *along, double *across);
+MORAY_API void moray_path_project(const moray_path *path, double x, double y, double *along, double *across);
 
 // ---- In a current --------------------------------------------------------------------------------------------------
 
 // The angle, from the course to the left, at which a vehicle of this speed through the water must head to keep the
 // course in the current (all [m/s]); NaN where the current across is no less than its speed [rad].
-double moray_crab_angle(double speed, const double current[2], double course);
+MORAY_API double moray_crab_angle(double speed, const double current[2], double course);
 
 // The speed over ground that it then makes along the course, below 0 where it is driven astern; NaN as above [m/s].
-double moray_course_made_good(double speed, const double current[2], double course);
+MORAY_API double moray_course_made_good(double speed, const double current[2], double course);
 
 // Whether such a vehicle makes way along the whole path. Error: MORAY_NOT_SOLVED naming the leg and the numbers where
 // it does not.
-moray_status moray_path_passable(const moray_path *path, double speed, const double current[2]);
+MORAY_API moray_status moray_path_passable(const moray_path *path, double speed, const double current[2]);
 
 // How long it takes from a distance along the path to its end; NaN where it makes no way [s].
-double moray_path_duration(const moray_path *path, double along, double speed, const double current[2]);
+MORAY_API double moray_path_duration(const moray_path *path, double along, double speed, const double current[2]);
+
+MORAY_END
 
 #endif

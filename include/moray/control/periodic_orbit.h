@@ -5,9 +5,11 @@
 #ifndef MORAY_CONTROL_PERIODIC_ORBIT_H
 #define MORAY_CONTROL_PERIODIC_ORBIT_H
 
-#include <complex.h>
-
+#include "moray/export.h"
+#include "moray/num.h"
 #include "moray/map.h"
+
+MORAY_BEGIN
 
 // Parameters p = [s, T] of an orbit: those of the plant, ns, and behind them the period T. Some of them may be unknown,
 // and so may be further quantities w, nw, that only the closing conditions know (an angle by which the orbit turns):
@@ -38,14 +40,15 @@ typedef struct moray_closing_condition {
 
 // The map of n such conditions for nx states, ns parameters and no w; release with moray_map_release. Error:
 // MORAY_INPUT for a state out of range, MORAY_MEMORY.
-moray_status moray_closing_map(moray_map *map, int nx, int ns, const moray_closing_condition *condition, int n);
+MORAY_API moray_status moray_closing_map(moray_map *map, int nx, int ns, const moray_closing_condition *condition,
+                                         int n);
 
 typedef struct moray_periodic_orbit moray_periodic_orbit; // the last orbit found; not for two threads at once
 
 // Copies the spec, not the maps. Error: MORAY_INPUT for sizes that do not agree, a scheme or mesh that is not allowed,
 // conditions that no values could make determine the orbit; MORAY_MEMORY. Free with moray_periodic_orbit_free.
-moray_status moray_periodic_orbit_new(moray_periodic_orbit **orbit, const moray_periodic_orbit_spec *spec);
-void moray_periodic_orbit_free(moray_periodic_orbit *orbit);
+MORAY_API moray_status moray_periodic_orbit_new(moray_periodic_orbit **orbit, const moray_periodic_orbit_spec *spec);
+MORAY_API void moray_periodic_orbit_free(moray_periodic_orbit *orbit);
 
 // Where a search begins: the state x[nx] at times 0 <= t <= T, and w.
 typedef struct moray_periodic_orbit_guess {
@@ -63,36 +66,40 @@ typedef struct moray_periodic_orbit_info {
 // from the last orbit found, unknowns included. Defects and conditions are brought below 1e-11. *info is filled in
 // every case. Error: MORAY_INPUT (p, no orbit to begin from), MORAY_MEMORY, MORAY_NUMERIC; MORAY_NOT_SOLVED when no
 // orbit is found: there is then no last orbit.
-moray_status moray_periodic_orbit_solve(moray_periodic_orbit *orbit, const double *p,
-                                        const moray_periodic_orbit_guess *guess, moray_periodic_orbit_info *info);
+MORAY_API moray_status moray_periodic_orbit_solve(moray_periodic_orbit *orbit, const double *p,
+                                                  const moray_periodic_orbit_guess *guess,
+                                                  moray_periodic_orbit_info *info);
 
 // ---- The last orbit found ------------------------------------------------------------------------------------------
 //
 // Without one these give NULL or NaN, and status MORAY_INPUT.
 
-const double *moray_periodic_orbit_parameters(const moray_periodic_orbit *orbit); // p[ns + 1], with what was found
-const double *moray_periodic_orbit_unknowns(const moray_periodic_orbit *orbit);   // w[nw]
+// p[ns + 1], with what was found.
+MORAY_API const double *moray_periodic_orbit_parameters(const moray_periodic_orbit *orbit);
+MORAY_API const double *moray_periodic_orbit_unknowns(const moray_periodic_orbit *orbit); // w[nw]
 
 // State x[nx] at 0 <= t <= T, and the integral of output `row` of the plant from 0 to t, from the collocation
 // polynomials.
-void moray_periodic_orbit_state(moray_periodic_orbit *orbit, double t, double *x);
-double moray_periodic_orbit_integral(moray_periodic_orbit *orbit, int row, double t);
+MORAY_API void moray_periodic_orbit_state(moray_periodic_orbit *orbit, double t, double *x);
+MORAY_API double moray_periodic_orbit_integral(moray_periodic_orbit *orbit, int row, double t);
 
 // Derivatives dq/dp[ns + 1] of a quantity by the parameters, at constant phase t/T, by the implicit function theorem:
 // one solve with the transposed factors each. Those by what is found are 0. Error: MORAY_INPUT also for a row or time
 // out of range; MORAY_MEMORY, MORAY_NUMERIC.
 //
 // q(x(0), x(T), p, w), given its own derivatives `slope` by these, in this order.
-moray_status moray_periodic_orbit_ends_gradient(moray_periodic_orbit *orbit, const double *slope, double *by);
+MORAY_API moray_status moray_periodic_orbit_ends_gradient(moray_periodic_orbit *orbit, const double *slope, double *by);
 // Mean over the period of output `row` of the plant.
-moray_status moray_periodic_orbit_mean_gradient(moray_periodic_orbit *orbit, int row, double *by);
+MORAY_API moray_status moray_periodic_orbit_mean_gradient(moray_periodic_orbit *orbit, int row, double *by);
 // Output `row` at the phase of 0 <= t <= T.
-moray_status moray_periodic_orbit_output_gradient(moray_periodic_orbit *orbit, int row, double t, double *by);
+MORAY_API moray_status moray_periodic_orbit_output_gradient(moray_periodic_orbit *orbit, int row, double t, double *by);
 
 // The monodromy matrix M[nx][nx] = d x(T) / d x(0), and its eigenvalues, the Floquet multipliers lambda[nx], the
 // largest in modulus first: how a small deviation has grown after a period. An autonomous plant has one that is 1.
 // Error: MORAY_MEMORY, MORAY_NUMERIC.
-moray_status moray_periodic_orbit_monodromy(moray_periodic_orbit *orbit, double *M);
-moray_status moray_periodic_orbit_multipliers(moray_periodic_orbit *orbit, double complex *lambda);
+MORAY_API moray_status moray_periodic_orbit_monodromy(moray_periodic_orbit *orbit, double *M);
+MORAY_API moray_status moray_periodic_orbit_multipliers(moray_periodic_orbit *orbit, moray_num *lambda);
+
+MORAY_END
 
 #endif

@@ -6,8 +6,11 @@
 #ifndef MORAY_SNAKE_CONTROLLERS_H
 #define MORAY_SNAKE_CONTROLLERS_H
 
+#include "moray/export.h"
 #include "moray/snake/steering.h"
 #include "moray/snake/swim.h"
+
+MORAY_BEGIN
 
 // ---- Straight swimming ---------------------------------------------------------------------------------------------
 
@@ -21,18 +24,19 @@ typedef struct moray_straight_motion {
 } moray_straight_motion;
 
 // Error: those of moray_orbit_new and moray_orbit_solve.
-moray_status moray_straight_motion_find(moray_straight_motion *straight, const moray_robot *robot, moray_model model,
-                                        const moray_gait *gait);
+MORAY_API moray_status moray_straight_motion_find(moray_straight_motion *straight, const moray_robot *robot,
+                                                  moray_model model, const moray_gait *gait);
 
 // By how much a gait turns whose offset stays what it is, in still water [rad/s]. Error: as above.
-moray_status moray_turn_rate(const moray_robot *robot, moray_model model, const moray_gait *gait, double *rate);
+MORAY_API moray_status moray_turn_rate(const moray_robot *robot, moray_model model, const moray_gait *gait,
+                                       double *rate);
 
 // The state of a steering problem that swims so at t = 0, with this mean heading, in the current, from p = 0.
-void moray_straight_motion_start(const moray_straight_motion *straight, double heading, const double current[2],
-                                 double state[MORAY_STEERING_STATES]);
+MORAY_API void moray_straight_motion_start(const moray_straight_motion *straight, double heading,
+                                           const double current[2], double state[MORAY_STEERING_STATES]);
 
 // Heading at t without the undulation.
-double moray_straight_motion_heading(const moray_straight_motion *straight, double t, double heading);
+MORAY_API double moray_straight_motion_heading(const moray_straight_motion *straight, double t, double heading);
 
 // ---- Plans carried out ---------------------------------------------------------------------------------------------
 
@@ -42,10 +46,10 @@ typedef struct moray_plan {
     double scale;
 } moray_plan;
 
-moray_offset moray_plan_offset(const moray_plan *plan, double t);
+MORAY_API moray_offset moray_plan_offset(const moray_plan *plan, double t);
 
 // Blindly. The plan must outlive the controller.
-moray_swim_controller moray_plan_controller(const moray_plan *plan);
+MORAY_API moray_swim_controller moray_plan_controller(const moray_plan *plan);
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------
 
@@ -63,6 +67,8 @@ typedef struct moray_feedback {
 } moray_feedback;
 
 // The feedback must outlive the controller.
-moray_swim_controller moray_feedback_controller(moray_feedback *feedback);
+MORAY_API moray_swim_controller moray_feedback_controller(moray_feedback *feedback);
+
+MORAY_END
 
 #endif

@@ -6,8 +6,11 @@
 
 #include <math.h>
 
+#include "moray/export.h"
 #include "moray/app/options.h"
 #include "moray/snake/swim.h"
+
+MORAY_BEGIN
 
 // A gait by whichever parameters were given; NaN stands for one that was not. SI units, angles in rad.
 typedef struct moray_gait_input {
@@ -19,7 +22,7 @@ typedef struct moray_gait_input {
 } moray_gait_input;
 
 // omega 120 deg/s, delta 40 deg (Sec. V), no taper; amplitude and offset not given.
-moray_gait_input moray_gait_input_default(void);
+MORAY_API moray_gait_input moray_gait_input_default(void);
 
 // Rows of a table of options for the moray_gait_input at `field` of the settings.
 #define MORAY_GAIT_OPTION(settings, place, name, low, high, in, text)                                                  \
@@ -49,14 +52,17 @@ moray_gait_input moray_gait_input_default(void);
 // The gait for the model, theta_max 20 deg and no offset where nothing else is given; what is given for the other model
 // is mapped. Error: MORAY_INPUT when two amplitudes or two offsets contradict each other (by more than 1e-6), or when
 // one has no counterpart in the model.
-moray_status moray_gait_input_make(const moray_gait_input *input, const moray_robot *robot, moray_model model,
-                                   moray_gait *gait);
+MORAY_API moray_status moray_gait_input_make(const moray_gait_input *input, const moray_robot *robot, moray_model model,
+                                             moray_gait *gait);
 
 // Reads a schedule for the model: `first` from t = 0 on, then one gait a line of a file of comma-separated values. The
 // file's first line names the columns: t_s and any of the keys above, in any order. A gait keeps from the one before
 // what its line leaves open: columns that are not there, and empty cells. Blank lines and lines that begin with # do
 // not count. free(*changes). Error: MORAY_IO; MORAY_INPUT naming file, line and what is wrong; MORAY_MEMORY.
-moray_status moray_gait_schedule_read(const char *path, const moray_gait_input *first, const moray_robot *robot,
-                                      moray_model model, moray_gait_change **changes, int *n);
+MORAY_API moray_status moray_gait_schedule_read(const char *path, const moray_gait_input *first,
+                                                const moray_robot *robot, moray_model model,
+                                                moray_gait_change **changes, int *n);
+
+MORAY_END
 
 #endif

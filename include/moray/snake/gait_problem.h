@@ -5,10 +5,13 @@
 #ifndef MORAY_SNAKE_GAIT_PROBLEM_H
 #define MORAY_SNAKE_GAIT_PROBLEM_H
 
+#include "moray/export.h"
 #include "moray/ocp.h"
 #include "moray/sensitivity.h"
 #include "moray/snake/plant.h"
 #include "moray/snake/swim.h"
+
+MORAY_BEGIN
 
 // Bounds of the gait parameters and of what the gait may ask of the joints; moray_free() and MORAY_INFINITY: no limit.
 typedef struct moray_gait_limits {
@@ -51,25 +54,27 @@ typedef struct moray_gait_problem moray_gait_problem;
 // Builds the problem: one phase over one period, from p = 0; states periodic but for the position; no net motion across
 // the course; the goal. All derivatives analytic. Error: MORAY_INPUT naming what is wrong,
 // MORAY_MEMORY.
-moray_status moray_gait_problem_new(moray_gait_problem **problem, const moray_gait_problem_spec *spec);
-void moray_gait_problem_free(moray_gait_problem *problem);
-const moray_ocp *moray_gait_problem_ocp(const moray_gait_problem *problem);
+MORAY_API moray_status moray_gait_problem_new(moray_gait_problem **problem, const moray_gait_problem_spec *spec);
+MORAY_API void moray_gait_problem_free(moray_gait_problem *problem);
+MORAY_API const moray_ocp *moray_gait_problem_ocp(const moray_gait_problem *problem);
 
 // The gait as parameters s = (a, omega, delta, phi_0, taper), and back.
 enum { MORAY_GAIT_PARAMETERS = 5 };
-moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAMETERS]);
-void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAMETERS]);
+MORAY_API moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAMETERS]);
+MORAY_API void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAMETERS]);
 
 // Solves from the orbit of `gait` (parameters of the problem's model): a track over one period, from t = 0, p = 0, as
 // moray_swim_steady leaves it. Errors and result: those of moray_solve.
-moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
-                                      const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution);
+MORAY_API moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
+                                                const moray_gait *gait, const moray_swim_track *orbit,
+                                                moray_solution **solution);
 
 // Solves from another solution over one period on the same model, of a problem with six states as this one's, at
 // parameters s; those of a series are (omega, coefficients as in moray_series). Errors and result: those of
 // moray_solve.
-moray_status moray_gait_problem_continue(const moray_gait_problem *problem, const moray_settings *settings,
-                                         const moray_solution *from, const double *s, moray_solution **solution);
+MORAY_API moray_status moray_gait_problem_continue(const moray_gait_problem *problem, const moray_settings *settings,
+                                                   const moray_solution *from, const double *s,
+                                                   moray_solution **solution);
 
 // What a solution predicts, over one period: velocity over ground, speed through the water, speed along the course,
 // mean power.
@@ -78,14 +83,17 @@ typedef struct moray_gait_prediction {
     double v_x, v_y, speed, course_speed, power;
     double power_price; // by how much the goal improves per watt more that is allowed [m/s or J/m, per W]
 } moray_gait_prediction;
-moray_gait_prediction moray_gait_problem_prediction(const moray_gait_problem *problem, const moray_solution *solution);
+MORAY_API moray_gait_prediction moray_gait_problem_prediction(const moray_gait_problem *problem,
+                                                              const moray_solution *solution);
 
 // Derivatives of a prediction by the parameter that was last taken of a sensitivity of the solution.
 typedef struct moray_gait_slope {
     moray_gait gait;
     double course_speed, power;
 } moray_gait_slope;
-moray_gait_slope moray_gait_problem_slope(const moray_gait_problem *problem, const moray_solution *solution,
-                                          const moray_sensitivity *sensitivity);
+MORAY_API moray_gait_slope moray_gait_problem_slope(const moray_gait_problem *problem, const moray_solution *solution,
+                                                    const moray_sensitivity *sensitivity);
+
+MORAY_END
 
 #endif

@@ -4,8 +4,11 @@
 #ifndef MORAY_SNAKE_HEADING_H
 #define MORAY_SNAKE_HEADING_H
 
+#include "moray/export.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/steering.h"
+
+MORAY_BEGIN
 
 // A reference heading over time: straight lines between points, constant outside them; two points at one time make a
 // jump, which counts as made after that time. Or a sine around zero.
@@ -18,19 +21,19 @@ typedef struct moray_reference {
 // From "steps:T=H,T=H,..." (0 before the first), "ramps:T=H,...", "sine:AMPLITUDE,PERIOD", with times in s and headings
 // in deg, or the path of a CSV file of the columns t_s and heading_deg. Free with
 // moray_reference_free. Error: MORAY_INPUT, MORAY_IO naming the text or the line; MORAY_MEMORY.
-moray_status moray_reference_read(moray_reference *reference, const char *text);
-void moray_reference_free(moray_reference *reference);
+MORAY_API moray_status moray_reference_read(moray_reference *reference, const char *text);
+MORAY_API void moray_reference_free(moray_reference *reference);
 
 // Heading [rad] and its rate at t.
-double moray_reference_at(const moray_reference *reference, double t, double *rate);
+MORAY_API double moray_reference_at(const moray_reference *reference, double t, double *rate);
 
 // Largest rate within [t0, t1], jumps aside [rad/s].
-double moray_reference_fastest(const moray_reference *reference, double t0, double t1);
+MORAY_API double moray_reference_fastest(const moray_reference *reference, double t0, double t1);
 
 // The intervals of equal length on [t0, t1], at least `least` and at most 1.3 times as many, whose ends lie nearest to
 // the jumps, and to the corners unless they are many: a collocation scheme that uses no point twice (radau, gauss) then
 // integrates the error exactly.
-int moray_reference_intervals(const moray_reference *reference, double t0, double t1, int least);
+MORAY_API int moray_reference_intervals(const moray_reference *reference, double t0, double t1, int least);
 
 typedef struct moray_heading_weights {
     double heading;  // of the squared error [1/rad^2]
@@ -62,8 +65,8 @@ typedef struct moray_heading {
 } moray_heading;
 
 // Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_heading_free.
-moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec);
-void moray_heading_free(moray_heading *problem);
+MORAY_API moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec);
+MORAY_API void moray_heading_free(moray_heading *problem);
 
 // A plan from t = 0 on that begins in the straight straight of its gait.
 typedef struct moray_heading_plan {
@@ -79,9 +82,11 @@ typedef struct moray_heading_plan {
 // (of any model, averaged or not), or with NULL from the reference as though it were followed. Errors: those of
 // moray_heading_new, moray_straight_motion_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or
 // not. Free with moray_heading_plan_free.
-moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
-                                     const moray_settings *settings, const moray_gait *gait,
-                                     const moray_heading_plan *from);
-void moray_heading_plan_free(moray_heading_plan *plan); // safe on a zeroed plan, and twice
+MORAY_API moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
+                                               const moray_settings *settings, const moray_gait *gait,
+                                               const moray_heading_plan *from);
+MORAY_API void moray_heading_plan_free(moray_heading_plan *plan); // safe on a zeroed plan, and twice
+
+MORAY_END
 
 #endif

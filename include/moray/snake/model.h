@@ -6,8 +6,11 @@
 #ifndef MORAY_SNAKE_MODEL_H
 #define MORAY_SNAKE_MODEL_H
 
+#include "moray/export.h"
 #include "moray/map.h"
 #include "moray/ode.h"
+
+MORAY_BEGIN
 
 // Which hydrodynamics: all zero is the paper's. Those of the first-principles model but for the last;
 // src/snake/README.md has the equations, and which erratum each one answers. The control-oriented model knows linear
@@ -26,7 +29,7 @@ typedef struct moray_hydrodynamics {
 } moray_hydrodynamics;
 
 // Strip, both drags, invariant added mass and frame.
-moray_hydrodynamics moray_hydrodynamics_consistent(void);
+MORAY_API moray_hydrodynamics moray_hydrodynamics_consistent(void);
 
 // The robot. Every field is set; moray_robot_check says whether they make sense.
 typedef struct moray_robot {
@@ -50,19 +53,19 @@ typedef struct moray_link_geometry {
 } moray_link_geometry;
 
 // The robot of Sec. V-A (a_e = 0.05, b_e = 0.03, 2l = 0.14, N = 10) and its links.
-moray_robot moray_robot_paper(void);
-moray_link_geometry moray_link_geometry_paper(void);
+MORAY_API moray_robot moray_robot_paper(void);
+MORAY_API moray_link_geometry moray_link_geometry_paper(void);
 
 // Sets l, m, J, c_t, c_n, mu_n and lambda_1..3 of the robot; leaves the rest. J is that of the solid elliptic cylinder.
-void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *geometry);
+MORAY_API void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *geometry);
 
 // Error: MORAY_INPUT naming the first field that is not usable, its value and what is allowed.
-moray_status moray_robot_check(const moray_robot *robot);
+MORAY_API moray_status moray_robot_check(const moray_robot *robot);
 
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
-const char *moray_model_name(moray_model model); // "control-oriented", "first-principles"
-const char *moray_model_key(moray_model model);  // "control", "fp", as options and summaries have it
+MORAY_API const char *moray_model_name(moray_model model); // "control-oriented", "first-principles"
+MORAY_API const char *moray_model_key(moray_model model);  // "control", "fp", as options and summaries have it
 
 // A free periodic motion of the joints, beyond the paper: a truncated Fourier series in each of them,
 //     phi_i(t) = c_i + sum_k p_ik sin(k omega t) + q_ik cos(k omega t),   k = 1..harmonics.
@@ -84,7 +87,8 @@ typedef struct moray_gait {
 } moray_gait;
 
 // phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
-void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi);
+MORAY_API void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi,
+                                    double *ddphi);
 
 // Amplitude from the link-angle amplitude theta_max of (24), and back: (27) alpha = 2 sin(delta/2) theta_max;
 // (33) a = 2l cos(delta/2) sin theta_max. With a taper they hold for the middle of the body. The wave of link angles
@@ -93,25 +97,27 @@ void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double
 // and that which gives one by (29), phi_i = l sin theta_i + l sin theta_{i+1},
 //     sin theta_max,i = a/(2l cos(delta/2)) sqrt((1 + taper s)^2 + (taper tan(delta/2)/(N-2))^2),
 // where s is s_i halfway between its two joints: -+ (N-1)/(N-2) for the first and the last link.
-double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max, double delta);
-double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude, double delta);
+MORAY_API double moray_amplitude_from_theta_max(const moray_robot *robot, moray_model model, double theta_max,
+                                                double delta);
+MORAY_API double moray_theta_max_from_amplitude(const moray_robot *robot, moray_model model, double amplitude,
+                                                double delta);
 
 // That of link i = 1..N of a gait with a taper; the largest is that of link N, the head, or link 1, the tail.
-double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
+MORAY_API double moray_theta_max_of_link(const moray_robot *robot, moray_model model, const moray_gait *gait, int link);
 
 // The same gait for the other model: equal theta_max, omega, delta, taper; offset and its derivatives in the same ratio
 // to the amplitude, with the opposite sign (erratum E3). A series is not mapped but left out.
-moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
+MORAY_API moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to);
 
 // The gait with its constant offset and its series as one series of so many harmonics (those of its own beyond them are
 // left out): at[joints (1 + 2 harmonics)].
-void moray_series_of_gait(const moray_gait *gait, int joints, int harmonics, double *at);
+MORAY_API void moray_series_of_gait(const moray_gait *gait, int joints, int harmonics, double *at);
 
 // A series of the control-oriented model for the first-principles model, into at as long as series->at: every joint's
 // share in every harmonic keeps the wave of link angles that it has in its surroundings, of a phase shift delta taken
 // from its neighbours, with (27) and (33) for that delta. Of a gait (25) it is moray_gait_map; offsets go by the ratio
 // of the first harmonics.
-void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at);
+MORAY_API void moray_series_to_first_principles(const moray_robot *robot, const moray_series *series, double *at);
 
 // ---- Models as ordinary differential equations: joints steered to a motion ubar = phi'' --------------------------
 //
@@ -121,26 +127,26 @@ void moray_series_to_first_principles(const moray_robot *robot, const moray_seri
 typedef struct moray_swimmer moray_swimmer; // one robot, one model, its scratch space; not for two threads at once
 
 // Makes a swimmer of a copy of the robot. Error: MORAY_INPUT (moray_robot_check), MORAY_MEMORY.
-moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model);
-void moray_swimmer_free(moray_swimmer *swimmer);
+MORAY_API moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model);
+MORAY_API void moray_swimmer_free(moray_swimmer *swimmer);
 
-const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer);
-moray_model moray_swimmer_model(const moray_swimmer *swimmer);
-int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
+MORAY_API const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer);
+MORAY_API moray_model moray_swimmer_model(const moray_swimmer *swimmer);
+MORAY_API int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
 
-void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
-void moray_swimmer_current(const moray_swimmer *swimmer, double V[2]);
+MORAY_API void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
+MORAY_API void moray_swimmer_current(const moray_swimmer *swimmer, double V[2]);
 
 // Something that the model leaves out: adds to the state derivative dx[2N+4] in the state x[2N+4]. NULL: nothing.
 typedef void moray_swimmer_extra_fn(const moray_swimmer *swimmer, const double *x, double *dx);
-void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *extra);
+MORAY_API void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *extra);
 
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].
-void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
+MORAY_API void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
 
 // Joint coordinates and rates (N-1 each) of the state.
-void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
+MORAY_API void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
 
 // States of the plants with the joints on the gait, and behind them, where it is steered, of the joint offset.
 // Velocity: v_t, v_n along and across the head link in the control-oriented model, v_x, v_y in the other, whose theta
@@ -159,27 +165,30 @@ enum {
 };
 
 // Those of the body: of a full state of the model; and the full state whose joints are on the gait at t.
-void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES]);
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
-                           const double body[MORAY_BODY_STATES], double *x);
+MORAY_API void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES]);
+MORAY_API void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
+                                     const double body[MORAY_BODY_STATES], double *x);
 
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
-bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
+MORAY_API bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
 
 // (34): ubar[N-1] that steers the state to the gait at time t.
-void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
-                           double *ubar);
+MORAY_API void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
+                                     double *ubar);
 
 // Outputs of a state: heading (theta, or mean link angle), position, ground velocity, largest |link angle - heading|
 // ((12) for the control-oriented model).
 typedef struct moray_pose {
     double heading, p_x, p_y, v_x, v_y, link_angle;
 } moray_pose;
-moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
+MORAY_API moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
 
 // Centres and orientations of the N links in the plane, for drawing: x_i[N], y_i[N], angle_i[N]. For the
 // control-oriented model the centres of (8) and theta + (12).
-void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i);
+MORAY_API void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i,
+                                   double *angle_i);
+
+MORAY_END
 
 #endif

@@ -4,9 +4,12 @@
 #ifndef MORAY_SNAKE_OPTIONS_H
 #define MORAY_SNAKE_OPTIONS_H
 
+#include "moray/export.h"
 #include "moray/app/options.h"
 #include "moray/app/results.h"
 #include "moray/snake/model.h"
+
+MORAY_BEGIN
 
 enum { MORAY_PAPER, MORAY_CONSISTENT }; // the word of --hydrodynamics
 
@@ -21,13 +24,15 @@ typedef struct moray_snake_options {
 } moray_snake_options;
 
 // The paper's robot in still water, control-oriented model.
-moray_snake_options moray_snake_options_default(void);
+MORAY_API moray_snake_options moray_snake_options_default(void);
 
 // --robot FILE, --links, --model, --current, --course and the keys of [robot]; in the end the robot is made and checked
 // (error: MORAY_INPUT). As a group of a program: {&moray_snake_option_table, offsetof(SETTINGS, FIELD)}.
-extern const moray_option_table moray_snake_option_table;
+MORAY_API extern const moray_option_table moray_snake_option_table;
 
 // "model", "robot" and "current_m_s" of a summary.
-void moray_snake_to_json(moray_json *json, const moray_snake_options *options);
+MORAY_API void moray_snake_to_json(moray_json *json, const moray_snake_options *options);
+
+MORAY_END
 
 #endif

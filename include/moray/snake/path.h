@@ -4,17 +4,21 @@
 #ifndef MORAY_SNAKE_PATH_H
 #define MORAY_SNAKE_PATH_H
 
+#include "moray/export.h"
 #include "moray/control/path.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/receding_horizon.h"
 #include "moray/snake/steering.h"
+
+MORAY_BEGIN
 
 // Who keeps in mind where on the path the swimmer is; begin with where it starts.
 typedef struct moray_path_seeker {
     const moray_path *path;
     double along;
 } moray_path_seeker;
-bool moray_path_seek(const moray_swim_sample *sample, void *seeker); // an observer: false at the end of the path
+MORAY_API bool moray_path_seek(const moray_swim_sample *sample,
+                               void *seeker); // an observer: false at the end of the path
 
 // ---- Following -----------------------------------------------------------------------------------------------------
 
@@ -49,8 +53,8 @@ typedef struct moray_path_problem {
 } moray_path_problem;
 
 // Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_path_problem_free.
-moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
-void moray_path_problem_free(moray_path_problem *problem);
+MORAY_API moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
+MORAY_API void moray_path_problem_free(moray_path_problem *problem);
 
 // A plan from t = 0 on that begins in the straight straight of its gait; see moray_heading_plan.
 typedef struct moray_path_plan {
@@ -61,10 +65,10 @@ typedef struct moray_path_plan {
 
 // Begins at the position, with this mean heading; `start`, `along`, `t0`, `duration` and `speed` of the spec are set by
 // this; the rest as moray_heading_plan_make. Error: MORAY_NOT_SOLVED too, where the path is not passable.
-moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *spec, const moray_settings *settings,
-                                  const moray_gait *gait, const double position[2], double heading,
-                                  const moray_path_plan *from);
-void moray_path_plan_free(moray_path_plan *plan);
+MORAY_API moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *spec,
+                                            const moray_settings *settings, const moray_gait *gait,
+                                            const double position[2], double heading, const moray_path_plan *from);
+MORAY_API void moray_path_plan_free(moray_path_plan *plan);
 
 // Plans of a given length from any state on, in receding horizon.
 typedef struct moray_path_replanner {
@@ -73,7 +77,7 @@ typedef struct moray_path_replanner {
 } moray_path_replanner;
 
 // Uses it, so that it must outlive the plans.
-moray_replanner moray_path_replan(moray_path_replanner *replanner);
+MORAY_API moray_replanner moray_path_replan(moray_path_replanner *replanner);
 
 // ---- Guidance ------------------------------------------------------------------------------------------------------
 
@@ -91,7 +95,9 @@ typedef struct moray_guidance {
     double along, integral;      // now; integral y [m]
 } moray_guidance;
 
-double moray_guidance_target(const moray_swim_sample *sample, void *guidance);         // of a moray_feedback
-double moray_guidance_feed(const moray_swim_sample *sample, double t, void *guidance); // with a plan
+MORAY_API double moray_guidance_target(const moray_swim_sample *sample, void *guidance);         // of a moray_feedback
+MORAY_API double moray_guidance_feed(const moray_swim_sample *sample, double t, void *guidance); // with a plan
+
+MORAY_END
 
 #endif

@@ -4,8 +4,11 @@
 #ifndef MORAY_SNAKE_PLANT_H
 #define MORAY_SNAKE_PLANT_H
 
+#include "moray/export.h"
 #include "moray/map.h"
 #include "moray/snake/model.h"
+
+MORAY_BEGIN
 
 // ---- Control-oriented model as maps with analytic derivatives (for the transcription) ------------------------------
 //
@@ -36,20 +39,22 @@ typedef struct moray_plant_spec {
 typedef struct moray_plant_size {
     int nx, nu, ns, nc, nq;
 } moray_plant_size;
-moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
+MORAY_API moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
 
 // Error: MORAY_INPUT (robot), MORAY_MEMORY. The map owns all it needs; release with moray_map_release.
-moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
+MORAY_API moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 
 // The first-principles model in the same form, for all but MORAY_JOINTS_CLOSED_LOOP, with alpha in place of a:
 // x = (mean link angle, p_x, p_y, and their rates), steered phi_0 and phi_0' too, free phi before each of the two
 // threes as in (21); c: joint torques [N m], then theta_i minus their mean. Exact Jacobians and Hessians by complex
 // step or, free and of a series, by the adjoint. Errors and ownership as above.
-moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec);
+MORAY_API moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec);
 
 // The control-oriented model averaged over a period of the gait, to second order in a, in the form of
 // MORAY_JOINTS_STEERED without path outputs: the undulation is gone, so that a mesh need only resolve the turning.
 // Derivatives, errors and ownership as of moray_fp_plant.
-moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec);
+MORAY_API moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec);
+
+MORAY_END
 
 #endif

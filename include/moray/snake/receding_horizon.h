@@ -4,9 +4,12 @@
 #ifndef MORAY_SNAKE_RECEDING_HORIZON_H
 #define MORAY_SNAKE_RECEDING_HORIZON_H
 
+#include "moray/export.h"
 #include "moray/control/receding_horizon.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/controllers.h"
+
+MORAY_BEGIN
 
 // Plans of a steering problem's states and parameters, the second derivative of the offset the first of the controls.
 typedef struct moray_swim_receding_horizon_spec {
@@ -27,14 +30,14 @@ typedef struct moray_swim_receding_horizon moray_swim_receding_horizon;
 // A moray_receding_horizon behind a swimmer's eyes: it plans from what the swimmer's state is to the plans' model.
 // Copies the spec, not what it points to. Error: those of moray_receding_horizon_new, and MORAY_INPUT for a replanner
 // of other sizes. Free with moray_swim_receding_horizon_free.
-moray_status moray_swim_receding_horizon_new(moray_swim_receding_horizon **receding,
-                                             const moray_swim_receding_horizon_spec *spec);
-void moray_swim_receding_horizon_free(moray_swim_receding_horizon *receding);
+MORAY_API moray_status moray_swim_receding_horizon_new(moray_swim_receding_horizon **receding,
+                                                       const moray_swim_receding_horizon_spec *spec);
+MORAY_API void moray_swim_receding_horizon_free(moray_swim_receding_horizon *receding);
 
 // Where a solve fails the swimmer goes on with the plan it has.
-moray_swim_controller moray_swim_receding_horizon_controller(moray_swim_receding_horizon *receding);
+MORAY_API moray_swim_controller moray_swim_receding_horizon_controller(moray_swim_receding_horizon *receding);
 
-const moray_receding_horizon *moray_swim_receding_horizon_engine(const moray_swim_receding_horizon *receding);
+MORAY_API const moray_receding_horizon *moray_swim_receding_horizon_engine(const moray_swim_receding_horizon *receding);
 
 // ---- Heading tracking -----------------------------------------------------------------------------------------------
 
@@ -48,6 +51,8 @@ typedef struct moray_heading_replanner {
 } moray_heading_replanner;
 
 // Uses it, so that it must outlive the plans.
-moray_replanner moray_heading_replan(moray_heading_replanner *replanner);
+MORAY_API moray_replanner moray_heading_replan(moray_heading_replanner *replanner);
+
+MORAY_END
 
 #endif

@@ -6,9 +6,12 @@
 #ifndef MORAY_SNAKE_STEERING_H
 #define MORAY_SNAKE_STEERING_H
 
+#include "moray/export.h"
 #include "moray/ocp.h"
 #include "moray/snake/plant.h"
 #include "moray/snake/swim.h"
+
+MORAY_BEGIN
 
 enum { MORAY_STEERING_AMPLITUDE, MORAY_STEERING_OMEGA, MORAY_STEERING_DELTA, MORAY_STEERING_PARAMETERS };
 enum { MORAY_STEERING_CONTROLS = 16 }; // at most: phi_0'' and the task's
@@ -22,8 +25,8 @@ typedef struct moray_steering_limits {
 } moray_steering_limits;
 
 // The limits of the offset that mean the same to the other model, with the gait of `from`.
-moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const moray_steering_limits *limits,
-                                                const moray_gait *gait, moray_model from, moray_model to);
+MORAY_API moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const moray_steering_limits *limits,
+                                                          const moray_gait *gait, moray_model from, moray_model to);
 
 // What a task adds to the steered robot.
 typedef struct moray_steering_task {
@@ -55,19 +58,21 @@ typedef struct moray_steering moray_steering;
 
 // Builds the problem: minimise sum weight_m q_m + weight_power x work + weight_time (tf - t0) + the task's own.
 // Error: MORAY_INPUT naming what is wrong, MORAY_MEMORY.
-moray_status moray_steering_new(moray_steering **problem, const moray_steering_spec *spec);
-void moray_steering_free(moray_steering *problem);
-const moray_ocp *moray_steering_ocp(const moray_steering *problem);
-const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem);
+MORAY_API moray_status moray_steering_new(moray_steering **problem, const moray_steering_spec *spec);
+MORAY_API void moray_steering_free(moray_steering *problem);
+MORAY_API const moray_ocp *moray_steering_ocp(const moray_steering *problem);
+MORAY_API const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem);
 
 // The gait of a solution's or guess's parameters, offset 0, and back.
-moray_gait moray_steering_gait(const double s[MORAY_STEERING_PARAMETERS]);
-void moray_steering_parameters(const moray_gait *gait, double s[MORAY_STEERING_PARAMETERS]);
+MORAY_API moray_gait moray_steering_gait(const double s[MORAY_STEERING_PARAMETERS]);
+MORAY_API void moray_steering_parameters(const moray_gait *gait, double s[MORAY_STEERING_PARAMETERS]);
 
 // Joint work over the phase [J]; the task's integrals are the first of moray_solution_integrals.
-double moray_steering_work(const moray_steering *problem, const moray_solution *solution);
+MORAY_API double moray_steering_work(const moray_steering *problem, const moray_solution *solution);
 
 // phi_0 at t, clamped to the phase; beyond its end the offset rests at its last value.
-moray_offset moray_steering_offset(const moray_solution *solution, double t);
+MORAY_API moray_offset moray_steering_offset(const moray_solution *solution, double t);
+
+MORAY_END
 
 #endif

@@ -6,9 +6,12 @@
 #ifndef MORAY_SNAKE_SWIM_H
 #define MORAY_SNAKE_SWIM_H
 
+#include "moray/export.h"
 #include "moray/control/closed_loop.h"
 #include "moray/sim.h"
 #include "moray/snake/model.h"
+
+MORAY_BEGIN
 
 // ---- Simulation -----------------------------------------------------------------------------------------------------
 
@@ -58,8 +61,8 @@ typedef struct moray_swim_plan {
 // NULL). Changes of gait, measurements of the controller and samples are exact stops; the integrator starts anew at
 // every change and measurement. When the observer stops the run, the status is ok and x the state last observed; after
 // an error x is the state last reached. Error: those of moray_closed_loop_run.
-moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings, const moray_swim_plan *plan,
-                            double *x, double *energy);
+MORAY_API moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings,
+                                      const moray_swim_plan *plan, double *x, double *energy);
 
 // A recorded motion of n samples; row k of x and u belongs to t[k].
 typedef struct moray_swim_track {
@@ -69,16 +72,16 @@ typedef struct moray_swim_track {
 } moray_swim_track;
 
 // An empty track with room for `capacity` samples; free with moray_swim_track_free. Error: MORAY_MEMORY.
-moray_status moray_swim_track_new(moray_swim_track *track, const moray_swimmer *swimmer, int capacity);
-void moray_swim_track_free(moray_swim_track *track); // safe on a zeroed track, and twice
+MORAY_API moray_status moray_swim_track_new(moray_swim_track *track, const moray_swimmer *swimmer, int capacity);
+MORAY_API void moray_swim_track_free(moray_swim_track *track); // safe on a zeroed track, and twice
 
 // A moray_swim_observer with a moray_swim_track as `self`: adds the sample; false when the track is full.
-bool moray_swim_track_add(const moray_swim_sample *sample, void *track);
+MORAY_API bool moray_swim_track_add(const moray_swim_sample *sample, void *track);
 
 // The robot drawn along a track of at least two samples, at equal intervals of time, as often as there is room: points
 // x[n], y[n] of strokes along the links, each stroke followed by a NaN. y is part of x; free(*x). Error: MORAY_MEMORY.
-moray_status moray_swim_outline(const moray_swim_track *track, const moray_swimmer *swimmer, double **x, double **y,
-                                int *n);
+MORAY_API moray_status moray_swim_outline(const moray_swim_track *track, const moray_swimmer *swimmer, double **x,
+                                          double **y, int *n);
 
 // ---- Steady swimming ------------------------------------------------------------------------------------------------
 
@@ -88,7 +91,7 @@ typedef struct moray_swim_settings {
     int max_periods;        // 200; limit of the run from rest, at least 3
 } moray_swim_settings;
 
-moray_swim_settings moray_swim_settings_default(void); // the values in the comments above
+MORAY_API moray_swim_settings moray_swim_settings_default(void); // the values in the comments above
 
 // Who swims, and in what water.
 typedef struct moray_swim_setup {
@@ -120,24 +123,26 @@ typedef struct moray_steady {
 // tells, and speed and power are steady all the same. Error: MORAY_INPUT (gait, settings), MORAY_MEMORY, MORAY_NUMERIC;
 // MORAY_NOT_SOLVED saying what still changes, and how fast the heading does, after max_periods: a turning gait in a
 // current never is steady.
-moray_status moray_swim_steady(const moray_swim_setup *setup, const moray_gait *gait, double start_heading,
-                               moray_steady *steady, moray_swim_track *orbit, int points);
+MORAY_API moray_status moray_swim_steady(const moray_swim_setup *setup, const moray_gait *gait, double start_heading,
+                                         moray_steady *steady, moray_swim_track *orbit, int points);
 
 // Velocity over ground along a course [m/s].
-double moray_course_speed(const moray_steady *steady, double course);
+MORAY_API double moray_course_speed(const moray_steady *steady, double course);
 
 // Finds the start heading from which the mean ground velocity points along the course (within 1e-6 rad).
 // Error: those of moray_swim_steady; MORAY_NOT_SOLVED when the current across is stronger than the gait's speed through
 // the water (naming both), when the current along drives the robot astern, or when the gait turns.
-moray_status moray_swim_hold_course(const moray_swim_setup *setup, const moray_gait *gait, double course,
-                                    moray_steady *steady);
+MORAY_API moray_status moray_swim_hold_course(const moray_swim_setup *setup, const moray_gait *gait, double course,
+                                              moray_steady *steady);
 
 // Rescales gait->omega until, holding the course, the mean power is `power` [W], or the speed through the water `speed`
 // [m/s], to 1e-6 of it. Error: those of moray_swim_hold_course; MORAY_INPUT for a target that is not above 0;
 // MORAY_NOT_SOLVED when no omega is found.
-moray_status moray_swim_match_power(const moray_swim_setup *setup, moray_gait *gait, double course, double power,
-                                    moray_steady *steady);
-moray_status moray_swim_match_speed(const moray_swim_setup *setup, moray_gait *gait, double course, double speed,
-                                    moray_steady *steady);
+MORAY_API moray_status moray_swim_match_power(const moray_swim_setup *setup, moray_gait *gait, double course,
+                                              double power, moray_steady *steady);
+MORAY_API moray_status moray_swim_match_speed(const moray_swim_setup *setup, moray_gait *gait, double course,
+                                              double speed, moray_steady *steady);
+
+MORAY_END
 
 #endif

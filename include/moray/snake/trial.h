@@ -4,9 +4,12 @@
 #ifndef MORAY_SNAKE_TRIAL_H
 #define MORAY_SNAKE_TRIAL_H
 
+#include "moray/export.h"
 #include "moray/snake/gait_problem.h"
 #include "moray/app/results.h"
 #include "moray/snake/swim.h"
+
+MORAY_BEGIN
 
 // Where and with what gaits are tried; the swimmers are owned, one of each model.
 typedef struct moray_test_rig {
@@ -17,9 +20,10 @@ typedef struct moray_test_rig {
 } moray_test_rig;
 
 // Error: MORAY_INPUT (robot), MORAY_MEMORY. Free with moray_test_rig_free.
-moray_status moray_test_rig_new(moray_test_rig *rig, const moray_robot *robot, const double current[2], double course);
-void moray_test_rig_free(moray_test_rig *rig);
-moray_swim_setup moray_test_rig_setup(const moray_test_rig *rig, moray_model model);
+MORAY_API moray_status moray_test_rig_new(moray_test_rig *rig, const moray_robot *robot, const double current[2],
+                                          double course);
+MORAY_API void moray_test_rig_free(moray_test_rig *rig);
+MORAY_API moray_swim_setup moray_test_rig_setup(const moray_test_rig *rig, moray_model model);
 
 // One gait, mapped to each model and swum from rest to steady state, holding the course. Where the course cannot be
 // held `held` is false with the reason in `why`, and the gait swims straight from a start heading along the course
@@ -32,20 +36,20 @@ typedef struct moray_gait_trial {
 } moray_gait_trial;
 
 // Tries the gait of `model` on both. Error: those of moray_swim_steady.
-moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *gait, moray_model model,
-                                  moray_gait_trial *trial);
+MORAY_API moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *gait, moray_model model,
+                                            moray_gait_trial *trial);
 
 // The part of it of one model, with trial->gait[model] as given, which may have a series. Error: as above.
-moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_model model, moray_gait_trial *trial);
+MORAY_API moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_model model, moray_gait_trial *trial);
 
 // Speed along the course from rest under the trial's gait on one model, at n times equally spaced over [0, horizon]:
 // mean over the period before (from rest on while the first period lasts). time[n], speed[n]. Error: those of
 // moray_swim_run.
-moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const moray_gait_trial *trial, moray_model model,
-                                     double horizon, int n, double *time, double *speed);
+MORAY_API moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const moray_gait_trial *trial,
+                                               moray_model model, double horizon, int n, double *time, double *speed);
 
 // theta_max 20 deg, omega 120 deg/s, delta 40 deg (Sec. V), as a gait of the control-oriented model.
-moray_gait moray_gait_paper(const moray_robot *robot);
+MORAY_API moray_gait moray_gait_paper(const moray_robot *robot);
 
 // First-principles model: by how much the trial's gait beats the baseline's at the baseline's power (omega rescaled),
 // and how much less power it needs at the baseline's speed. NaN where no omega does it, with the reason.
@@ -54,20 +58,24 @@ typedef struct moray_gait_gain {
     double omega_at_equal_power; // [rad/s]
     moray_status why_no_speed, why_no_power;
 } moray_gait_gain;
-moray_gait_gain moray_gait_gain_over(const moray_test_rig *rig, const moray_gait_trial *trial,
-                                     const moray_gait_trial *baseline);
+MORAY_API moray_gait_gain moray_gait_gain_over(const moray_test_rig *rig, const moray_gait_trial *trial,
+                                               const moray_gait_trial *baseline);
 
 // The blocks of design.md's schema: gait; and speed_m_s to max_link_angle_deg of one model (key validated or
 // predicted).
-void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *robot, const moray_gait gait[2]);
-void moray_steady_to_json(moray_json *json, const char *key, moray_model model, const moray_gait_trial *trial,
-                          double course);
+MORAY_API void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *robot,
+                                  const moray_gait gait[2]);
+MORAY_API void moray_steady_to_json(moray_json *json, const char *key, moray_model model, const moray_gait_trial *trial,
+                                    double course);
 
 // Rows of a table of trials, in columns: (trial 0, trial 1, ...) of the gait, or of one model's results. Fills
 // rows[0..], returns how many (at most MORAY_TRIAL_ROWS).
 enum { MORAY_TRIAL_ROWS = 10 };
-int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *trials, int n, moray_table_row *rows);
-int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, int n, double course,
-                      moray_table_row *rows);
+MORAY_API int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *trials, int n,
+                              moray_table_row *rows);
+MORAY_API int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, int n, double course,
+                                moray_table_row *rows);
+
+MORAY_END
 
 #endif

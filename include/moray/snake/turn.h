@@ -4,8 +4,11 @@
 #ifndef MORAY_SNAKE_TURN_H
 #define MORAY_SNAKE_TURN_H
 
+#include "moray/export.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/steering.h"
+
+MORAY_BEGIN
 
 // The problem of turning in the least time: at its end heading and turning are those of the straight straight, and the
 // offset is back at rest. The heading swings with every stroke, and the stroke that the turn ends in is free: what is
@@ -32,8 +35,8 @@ typedef struct moray_turn {
 } moray_turn;
 
 // Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_turn_free.
-moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec);
-void moray_turn_free(moray_turn *problem);
+MORAY_API moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec);
+MORAY_API void moray_turn_free(moray_turn *problem);
 
 // A plan from t = 0, p = 0 and mean heading 0 on, in the straight straight of its gait; see moray_heading_plan.
 typedef struct moray_turn_plan {
@@ -44,9 +47,11 @@ typedef struct moray_turn_plan {
 
 // `start`, `undulation` and the times of the spec are set by this; the rest as moray_heading_plan_make. `turn_rate`:
 // how fast the robot turns with its offset at the limit, for the guess and the longest time [rad/s].
-moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec, const moray_settings *settings,
-                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from,
-                                  double stretch);
-void moray_turn_plan_free(moray_turn_plan *plan); // safe on a zeroed plan, and twice
+MORAY_API moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec,
+                                            const moray_settings *settings, const moray_gait *gait, double turn_rate,
+                                            const moray_turn_plan *from, double stretch);
+MORAY_API void moray_turn_plan_free(moray_turn_plan *plan); // safe on a zeroed plan, and twice
+
+MORAY_END
 
 #endif
