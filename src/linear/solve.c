@@ -7,7 +7,7 @@
 
 #include "linear/parts.h"
 
-static const double accurate = 1e-13; // backward error that refinement would hardly better
+static const double accurate = 1e-14; // backward error that refinement would hardly better
 enum { refinements = 2 };
 
 struct part {
