@@ -330,12 +330,13 @@ static void test_empty(void)
 // bounds and it must pair with the control of a stage elsewhere: the order made for the first values is given up.
 enum { STAGES = 500, PER_STAGE = 6 };
 
-static void set_stages(int *row, int *col, double *value, double held, double elsewhere)
+static void set_stages(int *row, int *col, double *value, bool held)
 {
     for (int i = 0, k = 0; i < STAGES; i++) {
         const int x = 3 * i, u = x + 1, c = x + 2, before = i > 0 ? x - 3 : x, other = 3 * ((7 * i + 3) % STAGES) + 1;
         const int rows[PER_STAGE] = {x, u, c, c, c, c}, cols[PER_STAGE] = {x, u, x, before, u, other};
-        const double values[PER_STAGE] = {held, 1, 1, -0.5 + 0.1 * sin(i), 1e-3, elsewhere};
+        const double values[PER_STAGE] = {held ? 1e8 : 1e-3, held ? 1e-3 : 1, 1, -0.5 + 0.1 * sin(i), 1e-3,
+                                          held ? 1 : 1e-3};
         for (int e = 0; e < PER_STAGE; e++, k++) {
             row[k] = rows[e];
             col[k] = cols[e];
@@ -366,10 +367,10 @@ static void test_other_values(void)
     moray_ldl *ldl = NULL;
     double error = 0;
     int right = 0;
-    set_stages(row, col, value, 1e-3, 1e-3);
+    set_stages(row, col, value, false);
     CHECK_OK(moray_ldl_new(&ldl, 3 * STAGES, &pattern), "stages");
     for (int k = 0; k < 8; k++) {
-        set_stages(row, col, value, k < 4 ? 1e-3 : 1e8, k < 4 ? 1e-3 : 1);
+        set_stages(row, col, value, k >= 4);
         error = fmax(error, stage_error(ldl, &pattern, value));
         right += moray_ldl_inertia_of(ldl).negative == STAGES && moray_ldl_inertia_of(ldl).zero == 0;
     }
