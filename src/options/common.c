@@ -2,8 +2,17 @@
 #include "options/options.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char *const models[] = {[MORAY_CONTROL_ORIENTED] = "control", [MORAY_FIRST_PRINCIPLES] = "fp", NULL};
+static const char *const hydrodynamics[] = {[MORAY_PAPER] = "paper", [MORAY_CONSISTENT] = "consistent", NULL};
+static const char *const rotations[] = {[MORAY_ROTATION_PAPER] = "paper", [MORAY_ROTATION_STRIP] = "strip", NULL};
+static const char *const drags[] = {
+    [MORAY_DRAG_LINEAR] = "linear", [MORAY_DRAG_QUADRATIC] = "quadratic", [MORAY_DRAG_BOTH] = "both", NULL};
+static const char *const added_masses[] = {
+    [MORAY_ADDED_MASS_PAPER] = "paper", [MORAY_ADDED_MASS_INVARIANT] = "invariant", NULL};
+static const char *const frames[] = {[MORAY_FRAME_PAPER] = "paper", [MORAY_FRAME_INVARIANT] = "invariant", NULL};
+_Static_assert(sizeof(moray_hydrodynamics) == 5 * sizeof(int), "choices are stored as int");
 static const char *const linear_solvers[] = {
     [MORAY_LINEAR_OWN] = "moray", [MORAY_LINEAR_MUMPS] = "mumps", [MORAY_LINEAR_MA57] = "ma57", NULL};
 _Static_assert(sizeof(moray_model) == sizeof(int) && sizeof(moray_linear_solver) == sizeof(int),
@@ -15,6 +24,10 @@ _Static_assert(sizeof(moray_model) == sizeof(int) && sizeof(moray_linear_solver)
 #define REAL(where, name, field) .section = where, .key = name, .type = MORAY_OPTION_REAL, MORAY_AT(moray_common, field)
 #define ROBOT(name, field) REAL("robot", name, robot.field)
 #define LINK(name, field) REAL("robot", name, geometry.field)
+#define HYDRO(name, list)                                                                                              \
+    .section = "robot", .key = #name, .type = MORAY_OPTION_CHOICE, MORAY_AT(moray_common, robot.hydro.name),           \
+    .choices = list
+#define BY_WORD "; by --hydrodynamics unless given"
 #define FROM_GEOMETRY "; from the geometry unless given"
 
 static const moray_option robot_rows[] = {
@@ -73,6 +86,23 @@ static const moray_option robot_rows[] = {
      .help = "gain from joint offset to turning in the control-oriented model, second constant of (20)"},
     {ROBOT("k_p", k_p), AT_LEAST(0), .unit = "1/s^2", .help = "proportional gain of the joint controller (34)"},
     {ROBOT("k_d", k_d), AT_LEAST(0), .unit = "1/s", .help = "derivative gain of the joint controller (34)"},
+    {.section = "robot",
+     .key = "hydrodynamics",
+     .flag = "hydrodynamics",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(moray_common, hydrodynamics),
+     .choices = hydrodynamics,
+     .help = "the paper's, or strips, both drags, invariant added mass and frame"},
+    {HYDRO(rotation, rotations), .help = "drag and added mass at a link's centre or along it, fp model" BY_WORD},
+    {HYDRO(drag, drags), .help = "growth of the drag with velocity, fp model" BY_WORD},
+    {HYDRO(added_mass, added_masses), .help = "form of the added mass in a current, fp model" BY_WORD},
+    {HYDRO(frame, frames), .help = "form of (15) where the robot turns, control-oriented model" BY_WORD},
+    {.section = "robot",
+     .key = "pieces",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(moray_common, robot.hydro.pieces),
+     SPAN(1, 1000),
+     .help = "rigid pieces a link is cut into for drag and added mass, fp model without strips"},
 };
 
 static const moray_option solver_rows[] = {
@@ -133,7 +163,19 @@ moray_common moray_common_defaults(void)
                            .tol = 1e-8};
     moray_robot *r = &common.robot;
     r->l = r->m = r->J = r->c_t = r->c_n = r->mu_n = r->lambda_1 = r->lambda_2 = r->lambda_3 = NAN;
+    memset(&r->hydro, -1, offsetof(moray_hydrodynamics, pieces)); // not given
     return common;
+}
+
+// What was not given comes from the word.
+static void make_hydrodynamics(moray_hydrodynamics *hydro, int word)
+{
+    const moray_hydrodynamics from =
+        word == MORAY_CONSISTENT ? moray_hydrodynamics_consistent() : (moray_hydrodynamics){.pieces = 1};
+    hydro->rotation = (int)hydro->rotation < 0 ? from.rotation : hydro->rotation;
+    hydro->drag = (int)hydro->drag < 0 ? from.drag : hydro->drag;
+    hydro->added_mass = (int)hydro->added_mass < 0 ? from.added_mass : hydro->added_mass;
+    hydro->frame = (int)hydro->frame < 0 ? from.frame : hydro->frame;
 }
 
 moray_status moray_common_make_robot(moray_common *common)
@@ -147,6 +189,7 @@ moray_status moray_common_make_robot(moray_common *common)
     for (unsigned i = 0; i < sizeof from / sizeof *from; i++)
         if (!isnan(from[i]))
             *to[i] = from[i];
+    make_hydrodynamics(&made.hydro, common->hydrodynamics);
     *given = made;
     return moray_robot_check(&made);
 }

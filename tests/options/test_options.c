@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -6,8 +7,6 @@
 #include <unistd.h>
 
 #include "options/options.h"
-
-#define DEG (M_PI / 180)
 
 typedef struct settings {
     moray_common common;
@@ -213,7 +212,8 @@ static void test_precedence(void)
 static bool same_robot(const moray_robot *a, const moray_robot *b)
 {
     return a->links == b->links &&
-           memcmp(&a->l, &b->l, sizeof *a - offsetof(moray_robot, l)) == 0; // doubles only, without padding
+           memcmp(&a->l, &b->l, offsetof(moray_robot, hydro) - offsetof(moray_robot, l)) == 0 && // doubles only
+           memcmp(&a->hydro, &b->hydro, sizeof a->hydro) == 0;                                   // int only
 }
 
 static void test_robot(void)
@@ -230,8 +230,28 @@ static void test_robot(void)
         ini("[robot]\nlinks=3\nl_m=0.1\nm_kg=1\nJ_kg_m2=2\nc_t=3\nc_n=4\nmu_n=5\nlambda_1=6\nlambda_2=7\n"
             "lambda_3=8\nrot_damping=9\nrot_gain=10\nk_p=11\nk_d=12\n");
     CHECK_OK(PARSE(&s, "--robot", path), "all direct keys");
-    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, {.pieces = 1}};
     CHECK(same_robot(&s.common.robot, &direct), "each direct key reaches its field");
+}
+
+static void test_hydrodynamics(void)
+{
+    settings s;
+    const moray_hydrodynamics paper = moray_robot_paper().hydro, consistent = moray_hydrodynamics_consistent();
+    moray_hydrodynamics mixed = consistent;
+    mixed.drag = MORAY_DRAG_LINEAR;
+    CHECK_OK(PARSE(&s, "--hydrodynamics", "paper"), "the paper's");
+    CHECK(memcmp(&s.common.robot.hydro, &paper, sizeof paper) == 0, "is the default");
+    CHECK_OK(PARSE(&s, "--hydrodynamics", "consistent"), "one word");
+    CHECK(memcmp(&s.common.robot.hydro, &consistent, sizeof consistent) == 0, "sets all");
+    CHECK_OK(PARSE(&s, "--set", "drag=linear", "--hydrodynamics", "consistent"), "a word and a key");
+    CHECK(memcmp(&s.common.robot.hydro, &mixed, sizeof mixed) == 0, "the key goes before the word, in any order");
+    const char *path = ini("[robot]\nrotation=strip\ndrag=both\nadded_mass=invariant\nframe=invariant\n");
+    CHECK_OK(PARSE(&s, "--robot", path), "four keys");
+    CHECK(memcmp(&s.common.robot.hydro, &consistent, sizeof consistent) == 0, "each key reaches its field");
+    CHECK_OK(PARSE(&s, "--set", "pieces=3"), "links in three pieces");
+    CHECK(s.common.robot.hydro.pieces == 3, "pieces");
+    CHECK(PARSE(&s, "--set", "pieces=3", "--set", "rotation=strip").code == MORAY_INPUT, "a strip is not cut");
 }
 
 static void test_bad_files(void)
@@ -449,6 +469,7 @@ int main(void)
     test_messages();
     test_precedence();
     test_robot();
+    test_hydrodynamics();
     test_bad_files();
     test_table();
     test_help();

@@ -43,9 +43,13 @@ typedef struct moray_option {
 
 enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };
 
+enum { MORAY_PAPER, MORAY_CONSISTENT }; // the word of --hydrodynamics
+
 // Settings every program has: the first member of its own settings.
 typedef struct moray_common {
-    moray_robot robot;            // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry
+    moray_robot robot; // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry,
+                       // the choices of its hydro -1: from hydrodynamics
+    int hydrodynamics;
     moray_link_geometry geometry; // gives the coefficients of the robot that are not given directly
     moray_model model;
     double current[2]; // V_x, V_y [m/s]

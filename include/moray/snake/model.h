@@ -9,6 +9,25 @@
 #include "moray/map.h"
 #include "moray/ode.h"
 
+// Which hydrodynamics: all zero is the paper's. Those of the first-principles model but for the last;
+// src/snake/README.md has the equations, and which erratum each one answers. The control-oriented model knows linear
+// drag only.
+typedef enum { MORAY_ROTATION_PAPER, MORAY_ROTATION_STRIP } moray_rotation;
+typedef enum { MORAY_DRAG_LINEAR, MORAY_DRAG_QUADRATIC, MORAY_DRAG_BOTH } moray_drag;
+typedef enum { MORAY_ADDED_MASS_PAPER, MORAY_ADDED_MASS_INVARIANT } moray_added_mass;
+typedef enum { MORAY_FRAME_PAPER, MORAY_FRAME_INVARIANT } moray_frame;
+typedef struct moray_hydrodynamics {
+    moray_rotation rotation; // drag and added mass at the centre of a link, or spread evenly along it
+    moray_drag drag;         // the terms of (2) relative to the water: linear, quadratic, both (Remark 2, erratum E8)
+    moray_added_mass added_mass; // (2) as printed, or the same to every observer who moves with a constant velocity
+    moray_frame frame; // (15b), (15c) of the control-oriented model, or with theta' v_n, -theta' v_t (erratum E7)
+    int pieces; // every link cut into so many with the joints between them held: (2)-(4) with lambda_1, lambda_2 of
+                // (l/pieces)^3, lambda_3 of (l/pieces)^4 for each, J of the whole; 0 or 1: not cut. Not with strip.
+} moray_hydrodynamics;
+
+// Strip, both drags, invariant added mass and frame.
+moray_hydrodynamics moray_hydrodynamics_consistent(void);
+
 // The robot. Every field is set; moray_robot_check says whether they make sense.
 typedef struct moray_robot {
     int links;                           // N >= 2
@@ -19,6 +38,7 @@ typedef struct moray_robot {
     double lambda_1, lambda_2, lambda_3; // fluid torque (4): added inertia, linear and quadratic drag
     double rot_damping, rot_gain;        // lambda~_1 [1/s], lambda~_2 [1/(m^2 s)] of (20), control-oriented model only
     double k_p, k_d;                     // joint controller (34) [1/s^2], [1/s]
+    moray_hydrodynamics hydro;
 } moray_robot;
 
 // An elliptic-cylinder link in a fluid, from which the coefficients of moray_robot follow (Sec. V-A).
@@ -106,18 +126,11 @@ moray_model moray_swimmer_model(const moray_swimmer *swimmer);
 int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
 
 void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
+void moray_swimmer_current(const moray_swimmer *swimmer, double V[2]);
 
-// How a swimmer of the control-oriented model reads the paper. Misprints can be swum as printed, to see what they do;
-// the plants below have no such choice.
-typedef enum {
-    MORAY_READ_CORRECTED = 0,
-    MORAY_READ_23H_PRINTED = 1, // (23h) with h_4 and h_5 as printed (erratum E1)
-    MORAY_READ_L_PRINTED = 2,   // l of (8), (12), (13) half a link, as everywhere else (erratum E2)
-    MORAY_READ_PRINTED = 3      // both
-} moray_reading;
-
-// Corrected unless set; without effect on the first-principles model.
-void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
+// Something that the model leaves out: adds to the state derivative dx[2N+4] in the state x[2N+4]. NULL: nothing.
+typedef void moray_swimmer_extra_fn(const moray_swimmer *swimmer, const double *x, double *dx);
+void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *extra);
 
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].
@@ -126,11 +139,26 @@ void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, 
 // Joint coordinates and rates (N-1 each) of the state.
 void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
 
-// The six states of the plants with the joints on the gait, see below: of a full state of the model; and the full state
-// whose joints are on the gait at t.
-void moray_state_body(moray_model model, int links, const double *x, double body[6]);
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
-                           double *x);
+// States of the plants with the joints on the gait, and behind them, where it is steered, of the joint offset.
+// Velocity: v_t, v_n along and across the head link in the control-oriented model, v_x, v_y in the other, whose theta
+// is the mean.
+enum {
+    MORAY_STATE_THETA,
+    MORAY_STATE_P_X,
+    MORAY_STATE_P_Y,
+    MORAY_STATE_V_THETA,
+    MORAY_STATE_V_1,
+    MORAY_STATE_V_2,
+    MORAY_BODY_STATES,
+    MORAY_STATE_PHI_0 = MORAY_BODY_STATES,
+    MORAY_STATE_V_PHI_0, // phi_0'
+    MORAY_STEERING_STATES
+};
+
+// Those of the body: of a full state of the model; and the full state whose joints are on the gait at t.
+void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES]);
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
+                           const double body[MORAY_BODY_STATES], double *x);
 
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
