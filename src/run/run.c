@@ -90,6 +90,8 @@ static moray_settings settings_of(app_run *run)
     settings.intervals = run->common.intervals;
     settings.tolerance = run->common.tol;
     settings.linear_solver = run->common.linear_solver;
+    settings.ipopt = run->common.ipopt.at;
+    settings.n_ipopt = run->common.ipopt.n;
     settings.mesh_tolerance = run->mesh_tol;
     settings.max_refinements = run->refinements;
     settings.max_iterations = run->max_iterations;
@@ -213,8 +215,7 @@ int moray_app_run(const moray_app *app, int argc, char **argv)
     const moray_program program = {.name = run.name,
                                    .summary = app->summary ? app->summary : "Solves an optimal-control problem.",
                                    .options = rows,
-                                   .n_options = own_count + app->n_constants,
-                                   .no_robot = true};
+                                   .n_options = own_count + app->n_constants};
     int exit_code;
     if (app->n_constants > MORAY_APP_CONSTANTS)
         return moray_app_end(

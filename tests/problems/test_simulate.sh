@@ -173,4 +173,6 @@ schedule 't_s,delta_deg\n0,40\n0,30\n'
 refuse 's.csv:3: t_s = 0: must lie after that of the line before, 0' --schedule s.csv
 schedule 't_s,a_m,alpha_deg\n0,0.04,10\n'
 refuse 's.csv:2: alpha_deg = 10 contradicts a_m = 0.04' --schedule s.csv
+lost --duration 1
+lost --duration 1 --json
 tap_done

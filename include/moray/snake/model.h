@@ -61,6 +61,9 @@ moray_status moray_robot_check(const moray_robot *robot);
 
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
+const char *moray_model_name(moray_model model); // "control-oriented", "first-principles"
+const char *moray_model_key(moray_model model);  // "control", "fp", as options and summaries have it
+
 // A free periodic motion of the joints, beyond the paper: a truncated Fourier series in each of them,
 //     phi_i(t) = c_i + sum_k p_ik sin(k omega t) + q_ik cos(k omega t),   k = 1..harmonics.
 // at[joints (1 + 2 harmonics)], borrowed: c of all joints, then p and q of all joints for one harmonic after the other.

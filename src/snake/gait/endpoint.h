@@ -29,12 +29,13 @@ struct gait_endpoint {
 moray_status moray_gait_endpoint_map(moray_map *map, struct gait_endpoint *endpoint);
 void moray_gait_endpoint_free(struct gait_endpoint *endpoint);
 
-// What the events are called, name[endpoint->events].
-void moray_gait_event_names(const struct gait_endpoint *endpoint, const char **name);
+typedef char gait_name[32];
+
+// What the events are called, name[endpoint->events]; text has room for nx names.
+void moray_gait_event_names(const struct gait_endpoint *endpoint, gait_name *text, const char **name);
 
 // What the n path outputs are called: joint efforts if any, then angles of the links, then rates of the joints. name[n]
 // into text[n].
-typedef char gait_name[32];
 void moray_gait_path_names(int n, int efforts, int links, gait_name *text, const char **name);
 
 // Bounds of the amplitude event for a range of theta_max: (33) a / (L cos(delta/2)) = sin theta_max, or

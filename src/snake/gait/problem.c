@@ -182,7 +182,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
               at = problem->endpoint.position;
     problem->block = calloc((size_t)(nx + nc + ne + ns), sizeof *problem->block);
     problem->names = calloc((size_t)(ne + nc), sizeof *problem->names);
-    problem->path_names = calloc((size_t)nc + 1, sizeof *problem->path_names);
+    problem->path_names = calloc((size_t)(nc + nx), sizeof *problem->path_names);
     if (!problem->block || !problem->names || !problem->path_names)
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
     moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc, *s = e + ne;
@@ -191,7 +191,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
     fill_path_bounds(problem, c);
     fill_event_bounds(problem, e);
     fill_parameter_bounds(problem, s);
-    moray_gait_event_names(&problem->endpoint, problem->names);
+    moray_gait_event_names(&problem->endpoint, problem->path_names + nc, problem->names);
     moray_gait_path_names(nc, path_efforts(problem), problem->spec.robot.links, problem->path_names,
                           problem->names + ne);
     const moray_phase_spec phase = {

@@ -3,6 +3,16 @@
 
 #include <math.h>
 
+const char *moray_model_name(moray_model model)
+{
+    return model == MORAY_CONTROL_ORIENTED ? "control-oriented" : "first-principles";
+}
+
+const char *moray_model_key(moray_model model)
+{
+    return model == MORAY_CONTROL_ORIENTED ? "control" : "fp";
+}
+
 moray_link_geometry moray_link_geometry_paper(void)
 {
     return (moray_link_geometry){
