@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "linear/ldl.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "linear/parts.h"
+
+static const double worn =
+    2; // growth of the work by delayed pivots that asks for another order, of pairs that hold now
 
 double moray_ldl_clock(void)
 {
@@ -62,6 +66,7 @@ static void forget_plan(moray_ldl *ldl)
     ldl->value = ldl->update = ldl->panel = ldl->kept = ldl->pivot = ldl->local = NULL;
     ldl->index = NULL;
     ldl->planned = ldl->factored = false;
+    ldl->usual = 0;
 }
 
 void moray_ldl_free(moray_ldl *ldl)
@@ -140,32 +145,55 @@ static moray_status order(moray_ldl *ldl, const double *values)
 // ---- Factorisation
 // ---------------------------------------------------------------------------------------------------
 
-static moray_status factor(moray_ldl *ldl)
+// Fronts one by one; leaves off where the work passes `most`.
+static moray_status eliminate(moray_ldl *ldl, double most, bool *outgrown)
 {
     ldl->panel_used = ldl->index_used = 0;
-    for (int s = 0; s < ldl->plan.nodes; s++) {
+    ldl->inertia = (moray_ldl_inertia){0};
+    ldl->statistics.delayed = ldl->statistics.pivots_2x2 = 0;
+    ldl->statistics.done = 0;
+    for (int s = 0; s < ldl->plan.nodes && ldl->statistics.done <= most; s++) {
         MORAY_TRY(moray_ldl_front_assemble(ldl, s));
         moray_ldl_front_eliminate(ldl, s);
     }
+    *outgrown = ldl->statistics.done > most;
     return moray_ok();
+}
+
+// The first factorisation after an ordering says what the next may cost.
+static moray_status factor_ordered(moray_ldl *ldl, const double *values, bool *outgrown)
+{
+    const bool first = ldl->usual == 0;
+    if (!moray_ldl_load(ldl, values))
+        return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows is not finite", ldl->n);
+    MORAY_TRY(eliminate(ldl, first ? INFINITY : worn * ldl->usual, outgrown));
+    if (first)
+        ldl->usual = ldl->statistics.done;
+    return moray_ok();
+}
+
+static moray_status factor(moray_ldl *ldl, const double *values)
+{
+    bool outgrown = false;
+    if (!ldl->planned)
+        MORAY_TRY(order(ldl, values));
+    MORAY_TRY(factor_ordered(ldl, values, &outgrown));
+    if (!outgrown)
+        return moray_ok();
+    forget_plan(ldl);
+    MORAY_TRY(order(ldl, values));
+    return factor_ordered(ldl, values, &outgrown);
 }
 
 moray_status moray_ldl_factor(moray_ldl *ldl, const double *values, double threshold)
 {
+    const double start = moray_ldl_clock(), ordering = ldl->statistics.order_seconds;
     ldl->factored = false;
-    ldl->inertia = (moray_ldl_inertia){0};
-    if (!ldl->planned)
-        MORAY_TRY(order(ldl, values));
-    const double start = moray_ldl_clock();
     ldl->threshold = threshold;
-    ldl->statistics.delayed = ldl->statistics.pivots_2x2 = 0;
-    ldl->statistics.done = 0;
-    if (!moray_ldl_load(ldl, values))
-        return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows is not finite", ldl->n);
-    const moray_status status = factor(ldl);
+    const moray_status status = factor(ldl, values);
     ldl->factored = !moray_failed(status);
     ldl->statistics.factors++;
-    ldl->statistics.factor_seconds += moray_ldl_clock() - start;
+    ldl->statistics.factor_seconds += moray_ldl_clock() - start - (ldl->statistics.order_seconds - ordering);
     return status;
 }
 

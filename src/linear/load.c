@@ -46,7 +46,7 @@ bool moray_ldl_load(moray_ldl *ldl, const double *values)
 {
     if (!sum_up(ldl, values))
         return false;
-    for (int k = 0; k < (ldl->statistics.factors == 0 ? first_sweeps : sweeps); k++)
+    for (int k = 0; k < (ldl->usual == 0 ? first_sweeps : sweeps); k++)
         sweep(ldl);
     for (int c = 0; c < ldl->plan.n; c++)
         for (int k = ldl->plan.start[c]; k < ldl->plan.start[c + 1]; k++)

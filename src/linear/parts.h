@@ -99,6 +99,7 @@ struct moray_ldl {
     double *permuted, *rhs, *solution; // [n]
     size_t panel_room, index_room, kept_room, local_room, panel_used, index_used;
     double threshold;
+    double usual; // work of the first factorisation in this order; 0: none yet
     moray_ldl_inertia inertia;
     moray_ldl_statistics statistics;
 };

@@ -7,7 +7,8 @@
 
 #include "linear/parts.h"
 
-static const double accurate = 1e-13; // backward error that refinement would hardly better
+static const double accurate = 1e-14; // backward error that refinement would hardly better
+enum { refinements = 2 };
 
 struct part {
     const double *P, *D;
@@ -114,7 +115,7 @@ static void add_solution(moray_ldl *ldl)
         ldl->solution[c] += ldl->permuted[c];
 }
 
-// Small pivots that the threshold let pass may have cost digits: then once more with the residual.
+// Small pivots that the threshold let pass may have cost digits, which the residual gives back.
 static double solve_one(moray_ldl *ldl, double *b)
 {
     const struct plan *plan = &ldl->plan;
@@ -125,7 +126,7 @@ static double solve_one(moray_ldl *ldl, double *b)
     substitute(ldl);
     add_solution(ldl);
     double error = find_residual(ldl);
-    if (error > accurate) {
+    for (int k = 0; k < refinements && error > accurate; k++) {
         substitute(ldl);
         add_solution(ldl);
         error = find_residual(ldl);

@@ -9,6 +9,7 @@
 #include <tgmath.h>
 #include <unistd.h>
 
+#include "linear/ldl.h"
 #include "moray/control/receding_horizon.h"
 #include "moray/snake/gait_problem.h"
 #include "moray/ocp.h"
@@ -272,6 +273,42 @@ static moray_status swim_fp(void)
     return swim(MORAY_FIRST_PRINCIPLES);
 }
 
+// Factors with room for what is planned, then with delayed pivots, then in another order: constraints i of an arrow
+// whose head alone moves them.
+enum { SHAFT = 40 };
+
+static moray_status factor_arrow(moray_ldl *ldl, double shaft)
+{
+    double value[3 * SHAFT], x[2 * SHAFT + 1] = {1};
+    for (int i = 0; i < SHAFT; i++) {
+        value[3 * i] = 1;
+        value[3 * i + 1] = shaft;
+        value[3 * i + 2] = 1 + i;
+    }
+    MORAY_TRY(moray_ldl_factor(ldl, value, 0.1));
+    return moray_ldl_solve(ldl, 1, x);
+}
+
+static moray_status factors(void)
+{
+    int row[3 * SHAFT], col[3 * SHAFT];
+    moray_ldl *ldl = NULL;
+    for (int i = 0; i < SHAFT; i++) {
+        row[3 * i] = col[3 * i] = col[3 * i + 1] = 2 * i;
+        row[3 * i + 1] = col[3 * i + 2] = 2 * i + 1;
+        row[3 * i + 2] = 2 * SHAFT;
+    }
+    moray_status status = moray_ldl_new(&ldl, 2 * SHAFT + 1, &(moray_pattern){3 * SHAFT, row, col});
+    if (!moray_failed(status))
+        status = factor_arrow(ldl, 1);
+    if (!moray_failed(status))
+        status = factor_arrow(ldl, 1e-3);
+    if (!moray_failed(status) && moray_ldl_statistics_of(ldl).orders != 2)
+        status = moray_error(MORAY_NUMERIC, "nothing was outgrown");
+    moray_ldl_free(ldl);
+    return status;
+}
+
 // A directory of results.
 static char directory[] = "/tmp/moray_memory_XXXXXX";
 
@@ -332,6 +369,7 @@ int main(void)
     fail_each("orbit", false, orbit);
     fail_each("gait on the control-oriented model", true, swim_control);
     fail_each("gait on the first-principles model", true, swim_fp);
+    fail_each("factors", false, factors);
     fail_each("results", false, results);
     remove(strcat(strcpy(summary, directory), "/summary.json"));
     rmdir(directory);
