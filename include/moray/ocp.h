@@ -279,6 +279,7 @@ typedef struct moray_mesh_record {
     double seconds;
     double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved
     double objective;
+    int dependences; // 0; of the functions on their inputs, found at this solution and new: solved again with them
 } moray_mesh_record;
 
 // The meshes that were tried, first to last; [*meshes], owned by the solution.

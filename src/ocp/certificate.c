@@ -99,7 +99,7 @@ static moray_status examine_phase(const moray_solution *solution, int p, const m
                                        moray_examiner_interval(&e, &layout->interval[k], &certificate->between_nodes));
     moray_status status = resimulate(&e, integrator, certificate);
     moray_examiner_free(&e);
-    if (!moray_failed(status) && is_autonomous(solution->transcription->ocp->phase[p].map))
+    if (!moray_failed(status) && is_autonomous(solution->transcription->phase[p].map))
         status = spread_of_hamiltonian(solution, p, &certificate->hamiltonian);
     return status;
 }
