@@ -9,7 +9,9 @@
 
 static const double slope_step = 5e-4, shrink = 0.01;
 static const double bend_step = 1.5e-4;        // near the fourth root of the rounding unit
-static const double mark_step[] = {0.07, 0.05}; // wide: a second difference is to stand out of the rounding
+static const double slope_mark = 1e-3;
+static const double bend_mark[] = {0.07, 0.05}; // wide: a second difference is to stand out of the rounding
+static const double narrow = 1.0 / 16;          // but it is there in smaller steps too, unless a kink has made it
 static const double rounding = 1e-13;           // of a second difference, relative to what it is made of
 enum { shrinks = 3 }; // tries with smaller steps, for points next to the end of the function's domain
 
@@ -112,14 +114,12 @@ static void real_mark_slopes(struct numeric_map *map, const double *at)
         map->direction[j] = 0;
     for (int j = 0; j < map->n_in; j++) {
         map->direction[j] = map->size[j] + fabs(at[j]);
-        for (int k = 0; k < 2; k++) {
-            shifted(self, at, -mark_step[k] / (k ? 100 : 1), map->direction, 0, NULL, self->out[0]);
-            shifted(self, at, mark_step[k] / (k ? 100 : 1), map->direction, 0, NULL, self->out[1]);
-            for (int i = 0; i < map->n_out; i++)
-                if (self->out[0][i] != map->out[i] && self->out[1][i] != map->out[i] &&
-                    isfinite(self->out[0][i] + self->out[1][i]))
-                    moray_mark_slope(map, i, j);
-        }
+        shifted(self, at, -slope_mark, map->direction, 0, NULL, self->out[0]);
+        shifted(self, at, slope_mark, map->direction, 0, NULL, self->out[1]);
+        for (int i = 0; i < map->n_out; i++)
+            if (self->out[0][i] != map->out[i] && self->out[1][i] != map->out[i] &&
+                isfinite(self->out[0][i] + self->out[1][i]))
+                moray_mark_slope(map, i, j);
         map->direction[j] = 0;
     }
 }
@@ -127,7 +127,7 @@ static void real_mark_slopes(struct numeric_map *map, const double *at)
 // curved[n_out] &= f(x + a + b) - f(x + a) - f(x + b) + f(x) is more than rounding, with steps a, b along two groups.
 static void keep_curved(struct real_self *self, const double *at, double side, bool *curved)
 {
-    const double a = side * mark_step[0], b = side * mark_step[1];
+    const double a = side * bend_mark[0], b = side * bend_mark[1];
     const double *one = self->map.direction, *other = self->map.other;
     shifted(self, at, a, one, b, other, self->out[0]);
     shifted(self, at, a, one, 0, NULL, self->out[1]);
@@ -149,8 +149,8 @@ static void real_mark_curvatures(struct numeric_map *map, const double *at)
             moray_set_direction(map, at, &map->linear, h, map->other);
             for (int i = 0; i < map->n_out; i++)
                 curved[i] = true;
-            keep_curved((struct real_self *)map, at, 1, curved);
-            keep_curved((struct real_self *)map, at, -1, curved);
+            for (int k = 0; k < 4; k++)
+                keep_curved((struct real_self *)map, at, (k & 1 ? 1 : -1) * (k & 2 ? narrow : 1), curved);
             for (int i = 0; i < map->n_out; i++)
                 if (curved[i])
                     moray_mark_curvature(map, i, g, h);
