@@ -291,6 +291,8 @@ const char *moray_solution_diagnosis(const moray_solution *solution);
 
 // ---- Certificate ---------------------------------------------------------------------------------------------------
 
+#define MORAY_WORST_DERIVATIVES 1e-4
+
 // Computed apart from the solver. Passes when every number is within its limit.
 typedef struct moray_certificate {
     bool pass;
@@ -302,6 +304,10 @@ typedef struct moray_certificate {
     double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
                           // when each phase is integrated again from its start with the found controls; limit 100 x
                           // mesh_tolerance
+    double derivatives;   // largest disagreement between the derivatives in use at the solution, patterns included, and
+                          // differences of constraints, objective and gradient of the Lagrangian along dense
+                          // directions, as in moray_derivative_report with scaled rows; limit
+                          // MORAY_WORST_DERIVATIVES
     double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
                           // functions do not depend on time, where theory has it constant; NaN without such a phase
 } moray_certificate;
