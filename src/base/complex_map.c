@@ -9,7 +9,7 @@
 #include "base/numeric_map.h"
 
 static const double complex_step = 1e-50;
-static const double bend_step = 6e-6; // near the cube root of the rounding unit
+static const double bend_step = 1e-6; // below the cube root of the rounding unit: functions often change within a part of their input
 static const double mark_step = 1e-3;
 
 struct complex_self {
@@ -84,21 +84,13 @@ static void complex_mark_slopes(struct numeric_map *map, const double *at)
 
 // A slope that does not depend on x_c stays the same to the last bit when x_c moves. That it moves on both sides says
 // that it bends there, not that a kink is near.
-static void complex_mark_curvatures(struct numeric_map *map, const double *at)
+static void complex_find_bent(struct numeric_map *map, const double *at)
 {
-    double *here = map->sum, *behind = map->behind, *ahead = map->slope;
-    for (int g = 0; g < map->linear.count; g++) {
-        moray_set_direction(map, at, &map->linear, g, map->direction);
-        complex_along(map, at, map->direction, here);
-        for (int h = 0; h <= g; h++) {
-            moray_set_direction(map, at, &map->linear, h, map->other);
-            slope_at(map, at, -mark_step, map->other, map->direction, behind);
-            slope_at(map, at, mark_step, map->other, map->direction, ahead);
-            for (int i = 0; i < map->n_out; i++)
-                if (behind[i] != here[i] && ahead[i] != here[i] && isfinite(behind[i] + here[i] + ahead[i]))
-                    moray_mark_curvature(map, i, g, h);
-        }
-    }
+    const double *here = map->sum, *behind = map->behind, *ahead = map->slope;
+    slope_at(map, at, -mark_step, map->other, map->direction, map->behind);
+    slope_at(map, at, mark_step, map->other, map->direction, map->slope);
+    for (int i = 0; i < map->n_out; i++)
+        map->bent[i] = behind[i] != here[i] && ahead[i] != here[i] && isfinite(behind[i] + here[i] + ahead[i]);
 }
 
 static struct numeric_map *complex_twin(const struct numeric_map *map);
@@ -114,7 +106,7 @@ static const struct numeric_kind complex_kind = {
     .bend = complex_bend,
     .bend_pair = complex_bend_pair,
     .mark_slopes = complex_mark_slopes,
-    .mark_curvatures = complex_mark_curvatures,
+    .find_bent = complex_find_bent,
     .twin = complex_twin,
     .release = complex_release,
     .doubt = {.slope = 1e-10, .bend = 1e-6, .bend_of_slope = 1e-7},

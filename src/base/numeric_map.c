@@ -76,7 +76,7 @@ static moray_status allocate(struct numeric_map *self, const double *size)
         return moray_error(MORAY_MEMORY, "no memory for a map of %d inputs and %d outputs", self->n_in, self->n_out);
     self->bends = self->feels + n * m;
     self->curved = self->bends + n * m;
-    self->curved_now = self->curved + n * n;
+    self->bent = self->curved + n * n;
     double **vectors[] = {&self->point, &self->direction, &self->other};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
         *vectors[i] = self->size + (i + 1) * n;
@@ -183,7 +183,7 @@ moray_status moray_map_widened(moray_map *wider, const moray_map *map, const dou
     describe(wider, self);
     moray_status status = allocate(self, from->size);
     if (!moray_failed(status)) {
-        memcpy(self->feels, from->feels, (size_t)((char *)from->curved_now - (char *)from->feels));
+        memcpy(self->feels, from->feels, (size_t)((char *)from->bent - (char *)from->feels));
         self->marks = from->marks;
         status = moray_numeric_arrange(self);
     }

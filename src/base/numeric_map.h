@@ -34,10 +34,11 @@ struct numeric_kind {
     // needed.
     void (*around)(struct numeric_map *map, const double *in);
     void (*bend_pair)(struct numeric_map *map, const double *in, int g, int h, double *curvature);
-    // Tell by moray_mark_slope, moray_mark_curvature what the outputs feel at a point: exactly, so that rounding is
-    // never taken for dependence nor a small dependence for rounding.
+    // What the outputs feel at a point, exactly, so that rounding is never taken for dependence nor a small dependence
+    // for rounding. Of slopes told by moray_mark_slope; of curvatures in map->bent[n_out]: the slope along
+    // map->direction, in map->sum, changes along map->other.
     void (*mark_slopes)(struct numeric_map *map, const double *at);
-    void (*mark_curvatures)(struct numeric_map *map, const double *at);
+    void (*find_bent)(struct numeric_map *map, const double *at);
     // Another map of the same function, with scratch of its own. NULL: no memory.
     struct numeric_map *(*twin)(const struct numeric_map *map);
     void (*release)(struct numeric_map *map); // of what the kind allocated
@@ -53,7 +54,7 @@ struct numeric_map {
     bool *feels;     // [n_out][n_in]: the output depends on the input
     bool *bends;     // [n_out][n_in]: nonlinearly
     bool *curved;    // [n_in][n_in], lower: some output has that second derivative
-    bool *curved_now; // [n_out] scratch
+    bool *bent;       // [n_out] scratch
     int marks;       // of feels, bends and curved that are set
     struct numeric_groups linear, nonlinear; // of feels, of bends
     moray_pattern jac, hess;                 // the map's own, kept here to be freed; jac in the order of groups
@@ -104,8 +105,6 @@ moray_status moray_map_widened(moray_map *wider, const moray_map *map, const dou
 void moray_set_direction(const struct numeric_map *map, const double *in, const struct numeric_groups *groups,
                          int which, double *direction);
 void moray_mark_slope(struct numeric_map *map, int output, int input);
-// The slope of the output along group g of map->linear changes along group h.
-void moray_mark_curvature(struct numeric_map *map, int output, int g, int h);
 
 // ---- Patterns (numeric_pattern.c) ----
 

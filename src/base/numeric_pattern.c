@@ -27,7 +27,8 @@ void moray_mark_slope(struct numeric_map *self, int output, int input)
         mark(self, &self->feels[output * self->n_in + input]);
 }
 
-void moray_mark_curvature(struct numeric_map *self, int output, int g, int h)
+// The slope of the output along group g of self->linear changes along group h.
+static void mark_curvature(struct numeric_map *self, int output, int g, int h)
 {
     const int r = self->linear.member[output * self->linear.count + g];
     const int c = self->linear.member[output * self->linear.count + h];
@@ -38,6 +39,37 @@ void moray_mark_curvature(struct numeric_map *self, int output, int g, int h)
     mark(self, &self->curved[(r > c ? r : c) * self->n_in + (r > c ? c : r)]);
 }
 
+// Marks what bends the slope along group g among the groups first..last - 1: halves of them where some do, so that the
+// cost goes with what is found.
+static void search_bends(struct numeric_map *self, const double *at, int g, int first, int last)
+{
+    bool some = false;
+    for (int j = 0; j < self->n_in; j++) {
+        const int group = self->linear.group[j];
+        self->other[j] = group >= first && group < last ? self->size[j] + fabs(at[j]) : 0;
+    }
+    self->kind->find_bent(self, at);
+    for (int i = 0; i < self->n_out; i++) {
+        some = some || self->bent[i];
+        if (self->bent[i] && last - first == 1)
+            mark_curvature(self, i, g, first);
+    }
+    if (!some || last - first == 1)
+        return;
+    const int middle = (first + last) / 2;
+    search_bends(self, at, g, first, middle);
+    search_bends(self, at, g, middle, last);
+}
+
+static void mark_curvatures(struct numeric_map *self, const double *at)
+{
+    for (int g = 0; g < self->linear.count; g++) {
+        moray_set_direction(self, at, &self->linear, g, self->direction);
+        self->kind->along(self, at, self->direction, self->sum);
+        search_bends(self, at, g, 0, g + 1);
+    }
+}
+
 moray_status moray_numeric_mark(struct numeric_map *self, const double *at)
 {
     int before = self->marks;
@@ -46,7 +78,7 @@ moray_status moray_numeric_mark(struct numeric_map *self, const double *at)
     if (self->marks > before) // whose groups tell the second derivatives apart
         MORAY_TRY(moray_numeric_arrange(self));
     before = self->marks;
-    self->kind->mark_curvatures(self, at);
+    mark_curvatures(self, at);
     return self->marks > before ? moray_numeric_arrange(self) : moray_ok();
 }
 

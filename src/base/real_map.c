@@ -124,8 +124,8 @@ static void real_mark_slopes(struct numeric_map *map, const double *at)
     }
 }
 
-// curved[n_out] &= f(x + a + b) - f(x + a) - f(x + b) + f(x) is more than rounding, with steps a, b along two groups.
-static void keep_curved(struct real_self *self, const double *at, double side, bool *curved)
+// bent[n_out] &= f(x + a + b) - f(x + a) - f(x + b) + f(x) is more than rounding, with steps a, b along the directions.
+static void keep_bent(struct real_self *self, const double *at, double side)
 {
     const double a = side * bend_mark[0], b = side * bend_mark[1];
     const double *one = self->map.direction, *other = self->map.other;
@@ -136,25 +136,16 @@ static void keep_curved(struct real_self *self, const double *at, double side, b
         const double here = self->map.out[i], both = self->out[0][i], first = self->out[1][i], second = self->out[2][i];
         const double size = fabs(both) + fabs(first) + fabs(second) + fabs(here);
         const double sum = both - first - second + here;
-        curved[i] = curved[i] && isfinite(sum) && fabs(sum) > rounding * size;
+        self->map.bent[i] = self->map.bent[i] && isfinite(sum) && fabs(sum) > rounding * size;
     }
 }
 
-static void real_mark_curvatures(struct numeric_map *map, const double *at)
+static void real_find_bent(struct numeric_map *map, const double *at)
 {
-    bool *curved = map->curved_now;
-    for (int g = 0; g < map->linear.count; g++)
-        for (int h = 0; h <= g; h++) {
-            moray_set_direction(map, at, &map->linear, g, map->direction);
-            moray_set_direction(map, at, &map->linear, h, map->other);
-            for (int i = 0; i < map->n_out; i++)
-                curved[i] = true;
-            for (int k = 0; k < 4; k++)
-                keep_curved((struct real_self *)map, at, (k & 1 ? 1 : -1) * (k & 2 ? narrow : 1), curved);
-            for (int i = 0; i < map->n_out; i++)
-                if (curved[i])
-                    moray_mark_curvature(map, i, g, h);
-        }
+    for (int i = 0; i < map->n_out; i++)
+        map->bent[i] = true;
+    for (int k = 0; k < 4; k++)
+        keep_bent((struct real_self *)map, at, (k & 1 ? 1 : -1) * (k & 2 ? narrow : 1));
 }
 
 static struct numeric_map *real_twin(const struct numeric_map *map);
@@ -171,7 +162,7 @@ static const struct numeric_kind real_kind = {
     .around = real_around,
     .bend_pair = real_bend_pair,
     .mark_slopes = real_mark_slopes,
-    .mark_curvatures = real_mark_curvatures,
+    .find_bent = real_find_bent,
     .twin = real_twin,
     .release = real_release,
     .doubt = {.slope = 1e-6, .slope_of_value = 1e-9, .bend = 1e-3, .bend_of_value = 1e-6},
