@@ -137,7 +137,7 @@ moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
 void moray_ocp_free(moray_ocp *ocp);
 
 // The worst disagreement, relative as in moray_derivative_report, between the derivatives in use and differences of the
-// functions at several points within the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
+// functions at points over the whole box of the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
 // is 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
 typedef struct moray_ocp_derivative_report {
     double jacobian_error, hessian_error;

@@ -9,7 +9,8 @@
 #include "base/numeric_map.h"
 
 static const double complex_step = 1e-50;
-static const double bend_step = 1e-6; // below the cube root of the rounding unit: functions often change within a part of their input
+static const double bend_step =
+    1e-6; // below the cube root of the rounding unit: functions often change within a part of their input
 static const double mark_step = 1e-3;
 
 struct complex_self {

@@ -51,11 +51,11 @@ struct numeric_map {
     void *user;
     void (*release_user)(void *user);
     int n_in, n_out;
-    bool *feels;     // [n_out][n_in]: the output depends on the input
-    bool *bends;     // [n_out][n_in]: nonlinearly
-    bool *curved;    // [n_in][n_in], lower: some output has that second derivative
-    bool *bent;       // [n_out] scratch
-    int marks;       // of feels, bends and curved that are set
+    bool *feels;                             // [n_out][n_in]: the output depends on the input
+    bool *bends;                             // [n_out][n_in]: nonlinearly
+    bool *curved;                            // [n_in][n_in], lower: some output has that second derivative
+    bool *bent;                              // [n_out] scratch
+    int marks;                               // of feels, bends and curved that are set
     struct numeric_groups linear, nonlinear; // of feels, of bends
     moray_pattern jac, hess;                 // the map's own, kept here to be freed; jac in the order of groups
     int *slot;                               // [n_in][n_in]: entry of hess, -1
@@ -74,8 +74,8 @@ struct numeric_probe {
     int n;
 };
 
-// Sizes up the map on `self`, new from its kind (NULL: there was no memory). Takes over user, which `release_user` frees
-// with the map or on error. Error: MORAY_MEMORY; MORAY_INPUT when the function is not finite at the first point.
+// Sizes up the map on `self`, new from its kind (NULL: there was no memory). Takes over user, which `release_user`
+// frees with the map or on error. Error: MORAY_MEMORY; MORAY_INPUT when the function is not finite at the first point.
 moray_status moray_numeric_map_new(moray_map *map, struct numeric_map *self, int n_in, void *user,
                                    void (*release_user)(void *user), const struct numeric_probe *probe);
 // The same with points at and around `at`, for functions of which no more is known.

@@ -251,8 +251,8 @@ bool moray_map_pattern_holds(const moray_map *map, const double *in)
         return false;
     sum_curvatures(self, in, direction, sum, allowed);
     for (int i = 0; i < m; i++)
-        allowed[i] = doubt->bend * allowed[i] + doubt->bend_of_slope * slopes[i] +
-                     doubt->bend_of_value * fabs(self->out[i]);
+        allowed[i] =
+            doubt->bend * allowed[i] + doubt->bend_of_slope * slopes[i] + doubt->bend_of_value * fabs(self->out[i]);
     self->kind->bend(self, in, direction, self->slope);
     return explains(self, sum, allowed);
 }

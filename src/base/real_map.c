@@ -8,7 +8,7 @@
 #include "base/numeric_map.h"
 
 static const double slope_step = 5e-4, shrink = 0.01;
-static const double bend_step = 1.5e-4;        // near the fourth root of the rounding unit
+static const double bend_step = 1.5e-4; // near the fourth root of the rounding unit
 static const double slope_mark = 1e-3;
 static const double bend_mark[] = {0.07, 0.05}; // wide: a second difference is to stand out of the rounding
 static const double narrow = 1.0 / 16;          // but it is there in smaller steps too, unless a kink has made it

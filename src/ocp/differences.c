@@ -66,16 +66,14 @@ static void slopes_at(void *self, const double *in, double *values)
     const moray_nlp *nlp = ray->nlp;
     move_to(ray, in[0]);
     memset(values, 0, (size_t)(1 + nlp->m) * sizeof *values);
-    if (!nlp->gradient(nlp->self, ray->x, true, ray->gradient) ||
-        !nlp->jacobian(nlp->self, ray->x, false, ray->jac)) {
+    if (!nlp->gradient(nlp->self, ray->x, true, ray->gradient) || !nlp->jacobian(nlp->self, ray->x, false, ray->jac)) {
         fill_nan(values, 1 + nlp->m);
         return;
     }
     for (int j = 0; j < nlp->n; j++)
         values[0] += f_scale(ray) * ray->gradient[j] * ray->direction[j];
     for (int k = 0; k < nlp->nnz_jac; k++)
-        values[1 + nlp->jac_row[k]] +=
-            g_scale(ray, nlp->jac_row[k]) * ray->jac[k] * ray->direction[nlp->jac_col[k]];
+        values[1 + nlp->jac_row[k]] += g_scale(ray, nlp->jac_row[k]) * ray->jac[k] * ray->direction[nlp->jac_col[k]];
 }
 
 // What each variable, moved by its size, does to the Lagrangian beside what the objective does.

@@ -46,6 +46,7 @@ void moray_solver_line(const moray_solution *solution, const char *scheme, int i
 
 void moray_certificate_line(const moray_certificate *c, char *text, size_t size)
 {
-    snprintf(text, size, "Certificate: %s (KKT %.1e, mesh error %.1e, between nodes %.1e, re-simulation %.1e, derivatives %.1e)",
+    snprintf(text, size,
+             "Certificate: %s (KKT %.1e, mesh error %.1e, between nodes %.1e, re-simulation %.1e, derivatives %.1e)",
              c->pass ? "pass" : "FAIL", c->kkt, c->mesh_error, c->between_nodes, c->resimulation, c->derivatives);
 }

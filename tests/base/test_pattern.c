@@ -18,9 +18,9 @@ static bool saw_nan;
 struct sample {
     const char *name;
     void (*function)(const moray_num *x, moray_num *out, int n);
-    int n_in, n_out, jac, hess;        // entries of the patterns
-    int for_jacobian, for_hessian;     // calls of the complex map
-    double at;                         // probe of every input: at, or about 1 and all different where it is NAN
+    int n_in, n_out, jac, hess;    // entries of the patterns
+    int for_jacobian, for_hessian; // calls of the complex map
+    double at;                     // probe of every input: at, or about 1 and all different where it is NAN
 };
 
 static void call_complex(void *self, const double complex *x, double complex *out)
@@ -181,8 +181,8 @@ static void check_sample(const struct sample *sample)
     CHECK_OK(moray_map_from_complex(&map, sample->n_in, sample->n_out, call_complex, (void *)sample, NULL, probe),
              sample->name);
     const int groups = sample->for_jacobian, points = 13;
-    CHECK(calls <= points * (sample->n_in + 2 + 2 * groups * groups + 4 * groups),
-          "%s: %d calls to find the patterns", sample->name, calls);
+    CHECK(calls <= points * (sample->n_in + 2 + 2 * groups * groups + 4 * groups), "%s: %d calls to find the patterns",
+          sample->name, calls);
     check_patterns(sample, &map, "complex");
     calls = 0;
     map.jacobian(map.self, probe, values);

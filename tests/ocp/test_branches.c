@@ -11,9 +11,14 @@
 #include "moray/sim.h"
 
 enum { by_time, by_state, by_control, by_parameter, by_time_curved, by_place, by_place_curved, kinds };
-static const char *const kind_names[kinds] = {
-    "time",      "a state", "a control", "a parameter", "time, in the Hessian alone", "a place that no point of the box "
-    "is near to", "such a place, in the Hessian alone"};
+static const char *const kind_names[kinds] = {"time",
+                                              "a state",
+                                              "a control",
+                                              "a parameter",
+                                              "time, in the Hessian alone",
+                                              "a place that no point of the box "
+                                              "is near to",
+                                              "such a place, in the Hessian alone"};
 
 struct branch {
     int kind;
@@ -113,8 +118,8 @@ static void check_kind(int kind)
     const moray_nlp_size whole = moray_solution_size(reference);
     CHECK(size.nnz_jac <= whole.nnz_jac && size.nnz_hess <= whole.nnz_hess, "%s: and no entry is made up: %d, %d",
           kind_names[kind], size.nnz_jac, size.nnz_hess);
-    printf("# %s: %.8g, %d meshes, %d dependences found at solutions\n",kind_names[kind],
-             moray_solution_objective(found), meshes, fresh);
+    printf("# %s: %.8g, %d meshes, %d dependences found at solutions\n", kind_names[kind],
+           moray_solution_objective(found), meshes, fresh);
     moray_solution_free(found);
     moray_solution_free(reference);
     moray_ocp_free(one);
