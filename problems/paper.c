@@ -27,7 +27,7 @@ _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room fo
         .max = high, .open = true, .unit = in, .help = text                                                            \
     }
 
-_Static_assert(sizeof(moray_reading) == sizeof(int), "choices are stored as int");
+_Static_assert(sizeof(paper_reading) == sizeof(int), "choices are stored as int");
 
 static const moray_option options[] = {
     {.section = "problem",
@@ -73,7 +73,7 @@ static moray_status check_write_ini(const paper_settings *settings)
 static moray_status complete(paper_settings *settings)
 {
     if (settings->as_printed)
-        settings->reading = MORAY_READ_PRINTED;
+        settings->reading = PAPER_PRINTED;
     const int N = settings->common.robot.links;
     if (!isnan(settings->delta))
         return moray_ok();
@@ -96,8 +96,12 @@ static moray_status prepare(paper *p, const paper_settings *settings)
         p->gait[model] = paper_gait(p, (moray_model)model, settings->theta_max);
     }
     MORAY_TRY(moray_test_rig_new(&p->rig, p->robot, settings->common.current, 0));
+    moray_swimmer_free(p->rig.swimmer[MORAY_CONTROL_ORIENTED]); // the rig reads no misprints
+    MORAY_TRY(paper_reading_swimmer(&p->rig.swimmer[MORAY_CONTROL_ORIENTED], p->robot, MORAY_CONTROL_ORIENTED,
+                                    settings->reading));
+    moray_swimmer_set_current(p->rig.swimmer[MORAY_CONTROL_ORIENTED], settings->common.current[0],
+                              settings->common.current[1]);
     p->rig.settings.sim.max_steps = 20000; // between samples; a misprint can make motion without end
-    moray_swimmer_set_reading(p->rig.swimmer[MORAY_CONTROL_ORIENTED], settings->reading);
     p->json = moray_json_new();
     paper_json_head(p->json, settings);
     return moray_ok();

@@ -65,7 +65,7 @@ static const moray_option options[] = {
      .type = MORAY_OPTION_CHOICE,
      MORAY_AT(simulate, integrator),
      .choices = simulate_integrators,
-     .help = "Runge-Kutta of order 8 to 1e-9, TR-BDF2 to 1e-9, or as in the paper TR-BDF2 to 1e-4"},
+     .help = "Runge-Kutta of order 8 to 1e-10, TR-BDF2 to 1e-9, or as in the paper TR-BDF2 to 1e-4"},
     {.section = "simulation",
      .key = "rtol",
      .type = MORAY_OPTION_REAL,

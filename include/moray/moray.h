@@ -4,9 +4,14 @@
 #ifndef MORAY_MORAY_H
 #define MORAY_MORAY_H
 
+#include "moray/angle.h"
 #include "moray/app/program.h"
 #include "moray/app/results.h"
 #include "moray/app/run.h"
+#include "moray/control/closed_loop.h"
+#include "moray/control/path.h"
+#include "moray/control/periodic_orbit.h"
+#include "moray/control/receding_horizon.h"
 #include "moray/dense.h"
 #include "moray/map.h"
 #include "moray/nlp.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Forward simulation of ordinary differential equations, on SUNDIALS ARKODE.
+// Forward simulation of ordinary differential equations: a lean explicit method, and SUNDIALS ARKODE.
 #ifndef MORAY_SIM_H
 #define MORAY_SIM_H
 
@@ -8,12 +8,13 @@
 
 typedef enum {
     MORAY_SIM_EXPLICIT, // Runge-Kutta of order 8 with an error estimate of order 7 (Prince & Dormand 1981, RK8(7)13M)
-    MORAY_SIM_TR_BDF2   // order 2, L-stable: MATLAB's ode23tb, with which the paper integrates
+    MORAY_SIM_ARKODE,   // the same method in ARKODE, several times slower: the check of the one above
+    MORAY_SIM_TR_BDF2   // ARKODE; order 2, L-stable: MATLAB's ode23tb, with which the paper integrates
 } moray_sim_method;
 
 typedef struct moray_sim_settings {
     moray_sim_method method; // MORAY_SIM_EXPLICIT
-    double rtol, atol;       // 1e-9, 1e-9; local error of a step against rtol |x_i| + atol
+    double rtol, atol;       // 1e-10, 1e-10; local error of a step against rtol |x_i| + atol
     double max_step;         // 0: no limit [unit of t]
     long max_steps;          // 1000000; limit between two stops
 } moray_sim_settings;

@@ -7,10 +7,9 @@
 #include <math.h>
 
 #include "classics/classics.h"
+#include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
-
-#define DEG (M_PI / 180)
 
 // Processor seconds of one solve, start to finish: from the first line of the problem to the solution.
 enum { SETUP, FUNCTION, JACOBIAN, HESSIAN, IPOPT, LINEAR, PIECES };

@@ -15,11 +15,12 @@
 #include <math.h>
 #include <tgmath.h>
 
+#include "degree.h"
 #include "classics.h"
 #include "spline.h"
 
 static const double S = 530, Re = 20902900, Isp = 1600, mu = 0.14076539e17, g0 = 32.174; // feet, pounds, seconds
-static const double degree = M_PI / 180, foot = 0.3048;
+static const double foot = 0.3048;
 
 static const double mach[] = {0, 0.4, 0.8, 0.9, 1, 1.2, 1.4, 1.6, 1.8}; // of the aerodynamic tables
 static const double c_La[] = {3.44, 3.44, 3.44, 3.58, 4.44, 3.44, 3.01, 2.86, 2.44};
@@ -106,11 +107,11 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .continuous = fly,
         .t0 = moray_fixed(0),
         .tf = moray_between(200, 500),
-        .x = MORAY_BOUNDS(moray_between(0, 69000), moray_between(1, 2000), moray_between(-89 * degree, 89 * degree),
+        .x = MORAY_BOUNDS(moray_between(0, 69000), moray_between(1, 2000), moray_between(-89 * DEG, 89 * DEG),
                           moray_between(10000, 45000)),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(424.26), moray_fixed(0), moray_fixed(42000)),
         .xf = MORAY_BOUNDS(moray_fixed(65600), moray_fixed(968.148), moray_fixed(0), moray_free()),
-        .u = MORAY_BOUNDS(moray_between(-20 * degree, 20 * degree))};
+        .u = MORAY_BOUNDS(moray_between(-20 * DEG, 20 * DEG))};
     return moray_ocp_new(
         ocp, &(moray_ocp_spec){.name = "climb", .phases = 1, .phase = &phase, .endpoint = arrival, .data = tables});
 }

@@ -12,9 +12,9 @@
 #include <math.h>
 #include <tgmath.h>
 
+#include "degree.h"
 #include "classics.h"
 
-static const double degree = M_PI / 180;
 static const double mu = 3.986012e14, Re = 6378145, Omega = 7.29211585e-5;
 static const double Cd = 0.5, A = 4 * M_PI, rho0 = 1.225, H = 7200;
 static const double latitude = 28.5 * M_PI / 180;
@@ -176,7 +176,7 @@ static moray_status build(moray_ocp **ocp, const void *data)
     moray_bounds e[26];
     for (int i = 0; i < 21; i++)
         e[i] = moray_fixed(0);
-    const double target[] = {24361140, 0.7308, 28.5 * degree, 269.8 * degree, 130.5 * degree};
+    const double target[] = {24361140, 0.7308, 28.5 * DEG, 269.8 * DEG, 130.5 * DEG};
     for (int i = 0; i < 5; i++)
         e[21 + i] = moray_fixed(target[i]);
     return moray_ocp_new(
@@ -188,7 +188,7 @@ static moray_status build(moray_ocp **ocp, const void *data)
 static double start(int phase, double tau, double *x, double *u, const void *data)
 {
     (void)data;
-    const double a = 24361140, e = 0.7308, i = 28.5 * degree, node = 269.8 * degree, omega = 130.5 * degree;
+    const double a = 24361140, e = 0.7308, i = 28.5 * DEG, node = 269.8 * DEG, omega = 130.5 * DEG;
     const double end = phase == 3 ? payload : initial_mass(phase + 1) + dropped(phase);
     if (phase < 3) {
         x[0] = Re * cos(latitude);

@@ -14,9 +14,9 @@
 #include <math.h>
 #include <tgmath.h>
 
+#include "degree.h"
 #include "classics.h"
 
-static const double degree = M_PI / 180;
 static const double Re = 20902900, mu = 0.14076539e17, rho0 = 0.002378, hr = 23800, S = 2690, m = 203000 / 32.174;
 static const double a0 = -0.20704, a1 = 0.029244, b0 = 0.07854, b1 = -0.61592e-2, b2 = 0.621408e-3;
 
@@ -24,7 +24,7 @@ static void reenter(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num theta = at->x[2], v = at->x[3], gamma = at->x[4], psi = at->x[5], beta = at->u[1];
-    const moray_num r = Re + at->x[0], g = mu / (r * r), alpha = at->u[0] / degree;
+    const moray_num r = Re + at->x[0], g = mu / (r * r), alpha = at->u[0] / DEG;
     const moray_num pressure = rho0 * exp(-at->x[0] / hr) * v * v / 2;
     const moray_num L = (a0 + a1 * alpha) * S * pressure, D = (b0 + b1 * alpha + b2 * alpha * alpha) * S * pressure;
     out->f[0] = v * sin(gamma);
@@ -38,13 +38,13 @@ static void reenter(const moray_node *at, moray_rates *out, const void *data)
 static void cross_range(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
-    out->objective = -at->phase[0].xf[2] / degree;
+    out->objective = -at->phase[0].xf[2] / DEG;
 }
 
 static moray_status build(moray_ocp **ocp, const void *data)
 {
     (void)data;
-    const moray_bounds upright = moray_between(-89 * degree, 89 * degree);
+    const moray_bounds upright = moray_between(-89 * DEG, 89 * DEG);
     const moray_phase_spec phase = {
         .name = "entry",
         .nx = 6,
@@ -55,10 +55,10 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .x = MORAY_BOUNDS(moray_between(0, 300000), moray_free(), upright, moray_between(1, 40000), upright,
                           moray_between(-M_PI, M_PI)),
         .x0 = MORAY_BOUNDS(moray_fixed(260000), moray_fixed(0), moray_fixed(0), moray_fixed(25600),
-                           moray_fixed(-1 * degree), moray_fixed(90 * degree)),
-        .xf = MORAY_BOUNDS(moray_fixed(80000), moray_free(), moray_free(), moray_fixed(2500), moray_fixed(-5 * degree),
+                           moray_fixed(-1 * DEG), moray_fixed(90 * DEG)),
+        .xf = MORAY_BOUNDS(moray_fixed(80000), moray_free(), moray_free(), moray_fixed(2500), moray_fixed(-5 * DEG),
                            moray_free()),
-        .u = MORAY_BOUNDS(moray_between(-90 * degree, 90 * degree), moray_between(-90 * degree, 1 * degree))};
+        .u = MORAY_BOUNDS(moray_between(-90 * DEG, 90 * DEG), moray_between(-90 * DEG, 1 * DEG))};
     return moray_ocp_new(ocp,
                          &(moray_ocp_spec){.name = "shuttle", .phases = 1, .phase = &phase, .endpoint = cross_range});
 }
@@ -71,8 +71,8 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
     x[0] = 260000 - 180000 * tau;
     x[1] = x[2] = 0;
     x[3] = 25600 - 23100 * tau;
-    x[4] = (-1 - 4 * tau) * degree;
-    x[5] = 90 * degree;
+    x[4] = (-1 - 4 * tau) * DEG;
+    x[5] = 90 * DEG;
     u[0] = u[1] = 0;
     return 2000 * tau;
 }

@@ -5,7 +5,7 @@
 
 enum { PERIODS = 15, LAST = 5, PER_PERIOD = 60, SAMPLES = PERIODS * PER_PERIOD + 1, POINTS = 361 };
 
-static moray_status swimmer_reading(paper *p, moray_reading reading, moray_swimmer **swimmer)
+static moray_status swimmer_reading(paper *p, paper_reading reading, moray_swimmer **swimmer)
 {
     return paper_swimmer(p, p->robot, MORAY_CONTROL_ORIENTED, reading, swimmer);
 }
@@ -18,7 +18,7 @@ static double period_of(const paper *p)
 // ---- E1 ------------------------------------------------------------------------------------------------------------
 
 // dv_n in the states of the corrected model's steady swimming.
-static moray_status acceleration(paper *p, moray_reading reading, const moray_swim_track *orbit, double *dv_n)
+static moray_status acceleration(paper *p, paper_reading reading, const moray_swim_track *orbit, double *dv_n)
 {
     const moray_gait *gait = &p->gait[MORAY_CONTROL_ORIENTED];
     moray_swimmer *swimmer;
@@ -46,7 +46,7 @@ static double root_mean_square(const double *values, int n)
 static moray_status corrected_orbit(paper *p, moray_swim_track **orbit)
 {
     moray_swim_setup setup = moray_test_rig_setup(&p->rig, MORAY_CONTROL_ORIENTED);
-    MORAY_TRY(swimmer_reading(p, MORAY_READ_CORRECTED, &setup.swimmer));
+    MORAY_TRY(swimmer_reading(p, PAPER_CORRECTED, &setup.swimmer));
     return paper_orbit_of(p, &setup, &p->gait[MORAY_CONTROL_ORIENTED], POINTS, NULL, orbit);
 }
 
@@ -56,7 +56,7 @@ typedef struct sway {
 } sway;
 
 // That the equations as printed cannot be simulated to the end would be a finding, too.
-static moray_status swim_23h(paper *p, moray_reading reading, sway *s)
+static moray_status swim_23h(paper *p, paper_reading reading, sway *s)
 {
     const moray_gait_change change = {0, p->gait[MORAY_CONTROL_ORIENTED]};
     const double step = period_of(p) / PER_PERIOD;
@@ -64,7 +64,7 @@ static moray_status swim_23h(paper *p, moray_reading reading, sway *s)
     moray_swim_track *track;
     MORAY_TRY(swimmer_reading(p, reading, &plan.swimmer));
     const moray_status status = paper_swim(p, &plan, (SAMPLES - 1) * step, step, &track);
-    if (moray_failed(status) && !(status.code == MORAY_NUMERIC && reading != MORAY_READ_CORRECTED))
+    if (moray_failed(status) && !(status.code == MORAY_NUMERIC && reading != PAPER_CORRECTED))
         return status;
     for (int k = 0; k < SAMPLES; k++) {
         s->t[k] = k * step;
@@ -104,7 +104,7 @@ static void json_23h(moray_json *json, const char *key, const sway *s)
 
 moray_status erratum_23h(paper *p)
 {
-    static const moray_reading readings[] = {MORAY_READ_23H_PRINTED, MORAY_READ_CORRECTED};
+    static const paper_reading readings[] = {PAPER_23H_PRINTED, PAPER_CORRECTED};
     static sway s[2]; // printed, corrected
     moray_swim_track *orbit;
     double dv_n[POINTS];
@@ -144,7 +144,7 @@ static moray_status speed(paper *p, int way, double theta_max, double *v_x)
     const moray_model model = way == 0 ? MORAY_FIRST_PRINCIPLES : MORAY_CONTROL_ORIENTED;
     const moray_gait_change change = {0, paper_gait(p, model, theta_max)};
     paper_swim_plan plan = {.model = model, .schedule = &change, .n_changes = 1};
-    MORAY_TRY(paper_swimmer(p, p->robot, model, way == 2 ? MORAY_READ_L_PRINTED : MORAY_READ_CORRECTED, &plan.swimmer));
+    MORAY_TRY(paper_swimmer(p, p->robot, model, way == 2 ? PAPER_L_PRINTED : PAPER_CORRECTED, &plan.swimmer));
     return paper_mean_velocity(p, &plan, PERIODS * period_of(p), LAST, v_x);
 }
 

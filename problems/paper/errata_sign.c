@@ -44,7 +44,7 @@ static moray_status mean_forces(paper *p, tangential_force *mean, double *mass_t
     moray_swim_setup setup = moray_test_rig_setup(&p->rig, MORAY_CONTROL_ORIENTED);
     moray_swim_track *orbit;
     double *ubar;
-    MORAY_TRY(paper_swimmer(p, p->robot, MORAY_CONTROL_ORIENTED, MORAY_READ_CORRECTED, &setup.swimmer));
+    MORAY_TRY(paper_swimmer(p, p->robot, MORAY_CONTROL_ORIENTED, PAPER_CORRECTED, &setup.swimmer));
     MORAY_TRY(paper_orbit_of(p, &setup, gait, POINTS, NULL, &orbit));
     MORAY_TRY(paper_numbers(p, (size_t)(N + n), &ubar));
     *mean = (tangential_force){0};

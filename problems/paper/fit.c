@@ -88,8 +88,7 @@ static moray_status try_constants(paper_fitting *fit, paper_constants *c)
     moray_swimmer *swimmer;
     robot.rot_damping = c->damping;
     robot.rot_gain = c->gain;
-    MORAY_TRY(moray_swimmer_new(&swimmer, &robot, MORAY_CONTROL_ORIENTED));
-    moray_swimmer_set_reading(swimmer, fit->p->settings->reading);
+    MORAY_TRY(paper_reading_swimmer(&swimmer, &robot, MORAY_CONTROL_ORIENTED, fit->p->settings->reading));
     const moray_status status = turn(fit, swimmer, fit->trial);
     moray_swimmer_free(swimmer);
     compare(fit, c);

@@ -20,7 +20,7 @@ typedef struct paper_chapter {
     moray_status status;
 } paper_chapter;
 
-extern const char *const paper_reading_names[]; // by moray_reading, NULL-terminated
+extern const char *const paper_reading_names[]; // by paper_reading, NULL-terminated
 
 void paper_release(paper *p); // all that p owns
 

@@ -7,17 +7,17 @@
 
 #include <math.h>
 
+#include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
-
-#define DEG (M_PI / 180)
+#include "reading.h"
 
 enum { PAPER_STUDIES = 32, PAPER_TABLES = 12 };
 
 typedef struct paper_settings {
     moray_common common;             // robot, current, output
     double theta_max, omega, delta;  // of the gait that studies take where they do not vary it
-    moray_reading reading;           // of the control-oriented model
+    paper_reading reading;           // of the control-oriented model
     bool as_printed;                 // reading = printed
     char write_ini[MORAY_PATH_SIZE]; // empty: none
     bool chosen[PAPER_STUDIES];
@@ -62,7 +62,7 @@ moray_status paper_track(paper *p, const moray_swimmer *swimmer, int capacity, m
 
 // A swimmer of the robot, or of another, in the settings' current, with its own reading. Error: those of
 // moray_swimmer_new.
-moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model, moray_reading reading,
+moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model, paper_reading reading,
                            moray_swimmer **swimmer);
 
 // A text as printf makes it, "" when out of memory.

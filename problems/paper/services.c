@@ -75,13 +75,12 @@ static void release_swimmer(void *swimmer)
     moray_swimmer_free(swimmer);
 }
 
-moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model, moray_reading reading,
+moray_status paper_swimmer(paper *p, const moray_robot *robot, moray_model model, paper_reading reading,
                            moray_swimmer **swimmer)
 {
-    MORAY_TRY(moray_swimmer_new(swimmer, robot, model));
+    MORAY_TRY(paper_reading_swimmer(swimmer, robot, model, reading));
     MORAY_TRY(paper_own(p, *swimmer, release_swimmer));
     moray_swimmer_set_current(*swimmer, p->rig.current[0], p->rig.current[1]);
-    moray_swimmer_set_reading(*swimmer, reading);
     return moray_ok();
 }
 

@@ -15,7 +15,7 @@ static moray_sim_settings settings_of(const simulate *run)
     if (run->integrator == SIMULATE_PAPER)
         settings = moray_sim_settings_paper();
     if (run->integrator == SIMULATE_TR_BDF2)
-        settings.method = MORAY_SIM_TR_BDF2;
+        settings.method = MORAY_SIM_TR_BDF2, settings.rtol = settings.atol = 1e-9;
     if (!isnan(run->rtol))
         settings.rtol = run->rtol;
     if (!isnan(run->atol))

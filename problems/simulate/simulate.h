@@ -2,10 +2,9 @@
 #ifndef PROBLEMS_SIMULATE_SIMULATE_H
 #define PROBLEMS_SIMULATE_SIMULATE_H
 
+#include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
-
-#define DEG (M_PI / 180)
 
 typedef enum { SIMULATE_EXPLICIT, SIMULATE_TR_BDF2, SIMULATE_PAPER } simulate_integrator;
 

@@ -1,90 +1,158 @@
 // SPDX-License-Identifier: MIT
 #include "steer.h"
 
+#include <stdarg.h>
 #include <string.h>
 
-steer_input steer_input_default(void)
+steer_job steer_defaults(void)
 {
-    return (steer_input){.theta_max = {1 * DEG, 20 * DEG},
-                         .omega = {30 * DEG, 360 * DEG},
-                         .delta = {15 * DEG, 90 * DEG},
-                         .offset = 0.015,
-                         .offset_rate = 0.01,
-                         .power = NAN};
+    steer_job job = {.common = moray_common_defaults(),
+                     .input = {.theta_max = {1 * DEG, 20 * DEG},
+                               .omega = {30 * DEG, 360 * DEG},
+                               .delta = {15 * DEG, 90 * DEG},
+                               .offset = 0.015,
+                               .offset_rate = 0.01,
+                               .power = NAN},
+                     .intervals_per_period = 5,
+                     .refinements = 4,
+                     .replan_periods = 1,
+                     .look_ahead_periods = 6,
+                     .receding = true};
+    job.common.model = MORAY_FIRST_PRINCIPLES;
+    strcpy(job.common.scheme, "radau5");
+    job.common.intervals = 0; // by the period
+    return job;
 }
 
-static bool single(const double range[2])
+// ---- Start and end -------------------------------------------------------------------------------------------------
+
+static moray_status work(steer_job *job)
 {
-    return range[0] == range[1];
+    moray_family family;
+    int stages;
+    MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
+    return job->program->work(job);
 }
 
-bool steer_gait_given(const steer_input *input)
+static bool certified(const steer_job *job)
 {
-    return single(input->theta_max) && single(input->omega) && single(input->delta);
+    return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->common.model].pass;
 }
 
-static double into(const double range[2], double value)
+int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job)
 {
-    return fmin(fmax(value, range[0]), range[1]);
+    int exit_code;
+    job->name = app->name;
+    job->program = program;
+    memcpy(job->number, program->numbers, (size_t)program->n_numbers * sizeof *job->number);
+    if (!moray_app_start(app, argc, argv, job, &exit_code))
+        return exit_code;
+    job->ticker = moray_ticker_start(stderr, job->common.quiet);
+    moray_interrupt_begin();
+    moray_status status = work(job);
+    moray_interrupt_end();
+    moray_ticker_end(&job->ticker);
+    if (!moray_failed(status))
+        status = steer_report(job);
+    exit_code = moray_app_end(app, job, status);
+    if (exit_code == MORAY_EXIT_SOLVED && !certified(job))
+        exit_code = MORAY_EXIT_CERTIFICATE;
+    program->release(job);
+    return exit_code;
 }
 
-moray_gait steer_first_gait(const steer_input *input, const moray_robot *robot)
+// ---- Plans ---------------------------------------------------------------------------------------------------------
+
+static bool show_iteration(void *observer, const moray_progress *at)
 {
-    const moray_gait paper = moray_gait_paper(robot);
-    const double theta_max =
-        moray_theta_max_from_amplitude(robot, MORAY_CONTROL_ORIENTED, paper.amplitude, paper.delta);
-    moray_gait gait = {.omega = into(input->omega, paper.omega), .delta = into(input->delta, paper.delta)};
-    gait.amplitude =
-        moray_amplitude_from_theta_max(robot, MORAY_CONTROL_ORIENTED, into(input->theta_max, theta_max), gait.delta);
-    return gait;
+    const steer_job *job = observer;
+    moray_ticker_show(&job->ticker, "%s: iteration %d, objective %.6g, violation %.1e", job->name, at->iteration,
+                      at->objective, at->infeasibility);
+    return !moray_interrupted();
 }
 
-moray_steering_limits steer_limits(const steer_input *input, const moray_robot *robot,
-                                   const moray_straight_motion *straight)
+moray_settings steer_settings(steer_job *job, bool averaged, int intervals, double mesh_tolerance, double barrier)
 {
-    const double usual = steer_gait_given(input) ? MORAY_INFINITY : straight->power;
-    const moray_gait gait = steer_first_gait(input, robot);
-    const moray_steering_limits limits = {
-        .theta_max = moray_between(input->theta_max[0], input->theta_max[1]),
-        .omega = moray_between(input->omega[0], input->omega[1]),
-        .delta = moray_between(input->delta[0], input->delta[1]),
-        .offset = input->offset,
-        .offset_rate = input->offset_rate,
-        .offset_acceleration = MORAY_INFINITY,
-        .power = isnan(input->power) ? usual : fmin(input->power, MORAY_INFINITY),
-    };
-    return moray_steering_limits_map(robot, &limits, &gait, MORAY_CONTROL_ORIENTED, straight->model);
+    moray_settings settings = moray_settings_default();
+    settings.scheme = averaged ? STEER_AVERAGED_SCHEME : job->common.scheme;
+    settings.intervals = !averaged && job->common.intervals > 0 ? job->common.intervals : intervals;
+    settings.tolerance = job->common.tol;
+    settings.mesh_tolerance = mesh_tolerance;
+    settings.max_refinements = averaged ? 0 : job->refinements;
+    settings.barrier = averaged ? 0.1 : barrier;
+    settings.progress = show_iteration;
+    settings.observer = job;
+    return settings;
 }
 
-steer_saturation steer_saturation_of(const moray_solution *solution, const moray_steering_limits *limits)
+moray_status steer_take_plan(steer_job *job, int number, const moray_solution *solution,
+                             const moray_straight_motion *straight)
+{
+    const moray_sim_settings sim = moray_sim_settings_default();
+    const moray_integrator integrator = moray_sim_integrator(&sim);
+    job->plan[number] = (steer_plan){solution, *straight};
+    return number == STEER_AVERAGED ? moray_ok() : moray_certify(solution, &integrator, &job->certificate[number]);
+}
+
+moray_status steer_not_solved(const moray_solution *solution)
+{
+    char text[300];
+    const moray_nlp_info *info = moray_solution_info(solution);
+    if (info->outcome == MORAY_NLP_INTERRUPTED)
+        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations; nothing is written", info->iterations);
+    snprintf(text, sizeof text, "%s", moray_solution_diagnosis(solution));
+    for (char *at = strchr(text, '\n'); at; at = strchr(at, '\n'))
+        *at = ' ';
+    return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
+}
+
+double steer_duration(const moray_solution *solution)
+{
+    double t0, tf;
+    moray_solution_times(solution, 0, &t0, &tf);
+    return tf;
+}
+
+steer_saturation steer_saturation_of(const steer_job *job, moray_model model)
 {
     enum { points = 4000 };
     const double at_limit = 0.999;
+    const moray_solution *solution = job->plan[model].solution;
+    const moray_steering_limits limits = steer_limits(job, model);
     steer_saturation share = {0, 0};
     double t0, t1;
     moray_solution_times(solution, 0, &t0, &t1);
     for (int k = 0; k < points; k++) {
         const moray_offset offset = moray_steering_offset(solution, t0 + (t1 - t0) * (k + 0.5) / points);
-        share.offset += (fabs(offset.value) > at_limit * limits->offset) / (double)points;
-        share.rate += (fabs(offset.rate) > at_limit * limits->offset_rate) / (double)points;
+        share.offset += (fabs(offset.value) > at_limit * limits.offset) / (double)points;
+        share.rate += (fabs(offset.rate) > at_limit * limits.offset_rate) / (double)points;
     }
     return share;
 }
 
-void steer_diagnosis(const moray_solution *solution, char *text, size_t size)
+// ---- Words ---------------------------------------------------------------------------------------------------------
+
+void steer_say(char *text, size_t size, const char *format, ...)
 {
-    snprintf(text, size, "%s", moray_solution_diagnosis(solution));
-    for (char *at = strchr(text, '\n'); at; at = strchr(at, '\n'))
-        *at = ' ';
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
 }
 
-bool steer_go_on(void *observer, const moray_search_progress *progress)
+void steer_say_limit(const steer_job *job, char *text, size_t size)
 {
-    (void)observer, (void)progress;
-    return !moray_interrupted();
+    const moray_steering_limits limits = steer_limits(job, job->common.model);
+    const bool control = job->common.model == MORAY_CONTROL_ORIENTED;
+    *text = 0;
+    steer_say(text, size, "With |phi_0| at its limit of %.3g %s the robot turns",
+              control ? 100 * limits.offset : limits.offset / DEG, control ? "cm" : "deg");
 }
 
-moray_status steer_interruption(void)
+void steer_say_saturation(const steer_job *job, char *text, size_t size)
 {
-    return moray_interrupted() ? moray_error(MORAY_INTERRUPTED, "interrupted; nothing is written") : moray_ok();
+    const steer_saturation share = steer_saturation_of(job, job->common.model);
+    steer_say(text, size, "he plan has the offset at its limit for %.0f %% of the time, and its rate for %.0f %%.",
+              100 * share.offset, 100 * share.rate);
 }

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// What the programs that steer share: gait and offset limits as options, and figures of closed_loops.
+// One trial, tune and report of steering. A program has a problem of its own and a table of laws; a trial steers by one
+// of them on both models.
 #ifndef PROBLEMS_STEERING_STEER_H
 #define PROBLEMS_STEERING_STEER_H
 
 #include <math.h>
 
+#include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
 
-#define DEG (M_PI / 180)
+enum { STEER_TRIALS = 10, STEER_GAITS = 3, STEER_NUMBERS = 4, STEER_SCORES = 6, STEER_TEXT = 1200 };
 
 typedef struct steer_input {
     double theta_max[2], omega[2], delta[2]; // ranges
@@ -17,103 +19,281 @@ typedef struct steer_input {
     double power;                            // [W]; NaN: what the paper's gait uses
 } steer_input;
 
-steer_input steer_input_default(void);
+typedef struct steer_job steer_job;
+typedef struct steer_trial steer_trial;
 
-#define STEER_RANGE(settings, place, name, low, high, in, text)                                                        \
-    {                                                                                                                  \
-        .section = "problem", .key = name, .type = MORAY_OPTION_RANGE, MORAY_AT(settings, place), .min = low,          \
-        .max = high, .unit = in, .help = text                                                                          \
-    }
-#define STEER_LIMIT(settings, place, name, in, text)                                                                   \
-    {                                                                                                                  \
-        .section = "problem", .key = name, .type = MORAY_OPTION_LIMIT, MORAY_AT(settings, place), .min = 0,            \
-        .max = INFINITY, .open = true, .unit = in, .help = text                                                        \
-    }
-#define STEER_REAL(settings, place, part, name, low, high, in, text)                                                   \
-    {                                                                                                                  \
-        .section = part, .key = name, .type = MORAY_OPTION_REAL, MORAY_AT(settings, place), .min = low, .max = high,   \
-        .unit = in, .help = text                                                                                       \
-    }
-#define STEER_INT(settings, place, part, name, low, high, text)                                                        \
-    {                                                                                                                  \
-        .section = part, .key = name, .type = MORAY_OPTION_INT, MORAY_AT(settings, place), .min = low, .max = high,    \
-        .help = text                                                                                                   \
-    }
-#define STEER_OPTIONS(settings, field)                                                                                 \
-    STEER_RANGE(settings, field.theta_max, "theta_max_deg", 0.1, 89, "deg", "link-angle amplitude of (24)"),           \
-        STEER_RANGE(settings, field.omega, "omega_deg_s", 1, 3600, "deg/s", "gait frequency"),                         \
-        STEER_RANGE(settings, field.delta, "delta_deg", 1, 179, "deg", "phase shift between joints"),                  \
-        STEER_REAL(settings, field.offset, "problem", "phi0_max_m", 1e-6, 0.5, "m",                                    \
-                   "largest joint offset of the control-oriented model; of the other in the ratio of amplitudes"),     \
-        STEER_REAL(settings, field.offset_rate, "problem", "phi0_rate_m_s", 1e-6, 10, "m/s",                           \
-                   "largest rate of the offset, likewise"),                                                            \
-        STEER_LIMIT(settings, field.power, "power_W", "W",                                                             \
-                    "mean joint power; by default what the paper's gait uses straight ahead in the same model, none "  \
-                    "where the gait is given")
+// ---- What a program is made of -------------------------------------------------------------------------------------
+
+// A number that laws are tuned by.
+typedef struct steer_number {
+    const char *key;     // in JSON
+    const char *column;  // of the table
+    double unit;         // there
+    bool logarithmic;    // searched so
+    double lower, upper; // searched within
+} steer_number;
+
+// A mean or largest value by which a trial is judged, in JSON.
+typedef struct steer_score {
+    const char *key;
+    double unit;
+} steer_score;
+
+// A column of the table of scores.
+typedef struct steer_column {
+    const char *title;
+    moray_model model; // swum on
+    int score;         // or STEER_SPENT
+    double unit;
+    bool rounded; // zero where it is as good as zero
+} steer_column;
+enum { STEER_SPENT = -1 }; // simulations spent on tuning
+
+// One law on one model; must stay where it is.
+typedef struct steer_steersman {
+    const steer_job *job;
+    const steer_trial *trial;
+    moray_model model;                    // of the swimmer
+    moray_plan plan;                      // of the trial, for that model
+    const moray_straight_motion *planned; // by the plan
+    moray_feedback feedback;
+    moray_swim_receding_horizon *receding;
+    moray_path_seeker seeker;
+    union {
+        moray_guidance guidance;
+        moray_heading_replanner heading;
+        moray_path_replanner path;
+        struct steer_bang {
+            double limit, ramp, hold, brake; // limit with its sign [m or rad], times [s]
+        } bang;
+    } own; // of some laws
+    moray_swim_controller controller;
+} steer_steersman;
+
+typedef enum { STEER_UNPLANNED, STEER_PLANNED, STEER_RECEDING } steer_kind;
+
+typedef struct steer_law {
+    const char *key;                                 // in JSON
+    steer_kind kind;                                 // whether it knows a plan, or makes plans anew
+    bool preview;                                    // the reference is known ahead
+    moray_status (*set)(steer_steersman *steersman); // the controller; NULL: the plan, blindly
+    unsigned tuned;                                  // bits of the numbers that are
+    double start[STEER_NUMBERS];                     // of the search; of those not tuned the value, NaN: it has none
+    bool afresh;                                     // searched from there even after another law
+    int curve;                                       // from 1: which of the figures; 0: none
+} steer_law;
+
+enum { STEER_CURVES = 3, STEER_POINTS = 400 };
+typedef struct steer_tables steer_tables;
+
+typedef struct steer_program {
+    // Makes plans, chooses trials, runs them. Error: MORAY_NOT_SOLVED saying what limits the robot, MORAY_INTERRUPTED.
+    moray_status (*work)(steer_job *job);
+    void (*release)(steer_job *job);
+    bool one_gait; // number 0, for all trials
+    const steer_law *laws;
+    const steer_number *numbers; // [n_numbers], or copied to the job where the ranges are found along the way
+    int n_numbers;
+    double x_tolerance, f_tolerance, rough_per_second; // of tuning; samples a second of its simulations
+    // Where and how long the trial swims.
+    void (*start)(steer_steersman *steersman, moray_swim_closed_loop_spec *spec);
+    // Fills score[] in SI units; returns what tuning minimises.
+    double (*judge)(const steer_trial *trial, const steer_steersman *steersman,
+                    const moray_swim_closed_loop *closed_loop, double *score);
+    const steer_score *scores;
+    int n_scores;
+    const char *score_title;
+    const steer_column *columns;
+    // Report.
+    void (*tables)(const steer_job *job, steer_tables *tables);
+    void (*headline)(const steer_job *job, FILE *file);
+    void (*conclude)(const steer_job *job, char *text, size_t size); // how optimised steering does against the rest
+    void (*explain)(const steer_job *job, char *text, size_t size);  // what keeps the robot from doing better
+    void (*notes)(const steer_job *job, FILE *file);                 // or NULL
+    double (*swum)(const steer_job *job, const steer_trial *trial);  // on plans of a receding horizon [s]; or NULL
+    bool tells_name, tells_preview;                                  // of a trial, in JSON
+    const char *duration;                                            // before a plan's, beside its solver; or NULL
+    void (*json_head)(const steer_job *job, moray_json *json);
+    void (*json_plan)(const steer_job *job, moray_json *json, moray_model model);
+    void (*json_tail)(const steer_job *job, moray_json *json); // or NULL
+    // Figures: over time, a value for every sample, without a trial the reference (false: there is none); the path to
+    // be followed, or NULL; more, or NULL.
+    moray_figure over_time;
+    bool (*values)(const steer_job *job, const steer_trial *trial, const moray_swim_track *track, double *values);
+    void (*path)(const steer_job *job, double x[STEER_POINTS], double y[STEER_POINTS]);
+    moray_status (*draw)(const steer_job *job);
+} steer_program;
+
+// ---- A job ---------------------------------------------------------------------------------------------------------
+
+// One way of steering, on both models.
+struct steer_trial {
+    const char *name;
+    const steer_law *law;
+    int gait;                               // swum
+    moray_model plan;                       // whose plan
+    const steer_trial *like;                // whose numbers the search starts from; NULL: none
+    double number[STEER_NUMBERS];           // tuned; gains of the control-oriented model
+    int evaluations;                        // spent on tuning these
+    bool run, barred;                       // barred: takes more than the power allowed
+    double score[2][STEER_SCORES], cost[2]; // by the model swum on
+    moray_receding_horizon_record record[2];
+};
+
+// Of the program's own, whose job also owns it.
+typedef struct steer_plan {
+    const moray_solution *solution; // NULL: not yet made
+    moray_straight_motion straight;
+} steer_plan;
+
+enum { STEER_AVERAGED = 2 }; // plan beside those of the models
+
+struct steer_job {
+    moray_common common; // model: of the last plan; with fp there is one on the control-oriented model before
+    steer_input input;
+    double weight_steering;
+    int intervals_per_period, refinements, evaluations;
+    double replan_periods, look_ahead_periods;
+    bool receding;
+    // found along the way
+    const char *name; // of the program
+    const steer_program *program;
+    steer_number number[STEER_NUMBERS];
+    moray_straight_motion straight[STEER_GAITS][2]; // of the paper's gait, those of the plans; by the model swum on
+    steer_plan plan[3];
+    moray_certificate certificate[2];
+    double turn_rate[2]; // sustained at the limit of the offset [rad/s], with its sign
+    steer_trial trial[STEER_TRIALS];
+    int n_trials;
+    moray_ticker ticker;
+};
+
+// First-principles model, radau5, mesh by the period.
+steer_job steer_defaults(void);
+
+// Runs a program; the job is what it begins with. Returns the exit code.
+int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job);
+
+static inline const steer_plan *steer_last_plan(const steer_job *job)
+{
+    return &job->plan[job->common.model];
+}
+
+// ---- Gaits and limits ----------------------------------------------------------------------------------------------
 
 // Whether the ranges leave no choice of a gait.
-bool steer_gait_given(const steer_input *input);
+bool steer_gait_given(const steer_job *job);
 
 // The gait of the ranges nearest to the paper's, of the control-oriented model.
-moray_gait steer_first_gait(const steer_input *input, const moray_robot *robot);
+moray_gait steer_first_gait(const steer_job *job);
 
-// Limits of the model; `straight` is of the paper's gait in it, for the power. Offsets are in the ratio of the
-// amplitudes of the first gait.
-moray_steering_limits steer_limits(const steer_input *input, const moray_robot *robot,
-                                   const moray_straight_motion *straight);
-
-// Largest share of [t0, t1] in which the solution's offset, or its rate, is at its limit.
-typedef struct steer_saturation {
-    double offset, rate;
-} steer_saturation;
-steer_saturation steer_saturation_of(const moray_solution *solution, const moray_steering_limits *limits);
-
-// The first sentences of a solution's diagnosis, on one line.
-void steer_diagnosis(const moray_solution *solution, char *text, size_t size);
-
-// ---- Gaits and models ----------------------------------------------------------------------------------------------
+// Of the model. Offsets are in the ratio of the amplitudes of the first gait; the power is that of the paper's gait.
+moray_steering_limits steer_limits(const steer_job *job, moray_model model);
 
 // From *gait to the fastest one of the first-principles model straight ahead, within the ranges and the power [W].
 // Error: those of moray_gait_search_new and _run; MORAY_NOT_SOLVED when no gait gets by with the power.
-moray_status steer_fastest_gait(const steer_input *input, const moray_robot *robot, double power, moray_gait *gait);
+moray_status steer_fastest_gait(const steer_job *job, double power, moray_gait *gait);
 
-// Of one gait on both models.
-moray_status steer_straight_motions(moray_straight_motion straight[2], const moray_robot *robot, const moray_gait *gait,
-                                    moray_model from);
+// Of gait number `index`, on both models.
+moray_status steer_straight_motions(steer_job *job, int index, const moray_gait *gait, moray_model from);
 
-// Offsets of the one model per offset of the other, with erratum E3.
-double steer_offset_ratio(const moray_straight_motion straight[2], moray_model from, moray_model to);
+// Turning at the limit of the offset on a gait.
+moray_status steer_find_turn_rate(steer_job *job, moray_model model, const moray_gait *gait);
 
-// Limits of plans on the gait of the straight that keep both their own offset limits and, times `scale`, the swimmer's.
-moray_steering_limits steer_replanning_limits(const moray_robot *robot, const moray_straight_motion *straight,
-                                              const moray_steering_limits *own, const moray_steering_limits *swum,
-                                              double scale);
+// Offsets of the one model per offset of the other, with the gait of that number (erratum E3).
+double steer_offset_ratio(const steer_job *job, int gait, moray_model from, moray_model to);
 
-// Progress of a search that Ctrl-C ends.
+// ---- Plans ---------------------------------------------------------------------------------------------------------
+
+#define STEER_AVERAGED_SCHEME "radau3"
+
+// Of a solve on the averaged plant, on one mesh, or on the full one.
+moray_settings steer_settings(steer_job *job, bool averaged, int intervals, double mesh_tolerance, double barrier);
+
+// Notes a plan that is solved, number model or STEER_AVERAGED; certifies it unless averaged.
+moray_status steer_take_plan(steer_job *job, int number, const moray_solution *solution,
+                             const moray_straight_motion *straight);
+
+// The first sentences of a solution's diagnosis as an error; of an interrupted one MORAY_INTERRUPTED.
+moray_status steer_not_solved(const moray_solution *solution);
+
+double steer_duration(const moray_solution *solution);
+
+// Share of the time in which the last plan's offset, or its rate, is at its limit.
+typedef struct steer_saturation {
+    double offset, rate;
+} steer_saturation;
+steer_saturation steer_saturation_of(const steer_job *job, moray_model model);
+
+// ---- Laws and trials -----------------------------------------------------------------------------------------------
+
+// For the tables of laws: the plan's offset, and feedback towards its heading, whose gain is the one number tuned.
+moray_status steer_set_both(steer_steersman *steersman);
+
+// Feedback of this gain; target, feed and self as of a moray_feedback.
+void steer_set_feedback(steer_steersman *steersman, double gain, double (*target)(const moray_swim_sample *, void *),
+                        double (*feed)(const moray_swim_sample *, double, void *), void *self);
+
+// Receding horizon with this replanner, whose limits it sets; look: between two looks for a change [s].
+moray_status steer_set_receding(steer_steersman *steersman, const char *scheme, moray_replanner replanner,
+                                moray_steering_limits *limits, double look, const moray_solution *first);
+
+// Adds a trial of the law, with its starting numbers.
+steer_trial *steer_add(steer_job *job, const char *name, const steer_law *law, int gait, moray_model plan);
+
+// Adds trials for the plans of both models, blindly and with feedback; in receding horizon if the job has that.
+void steer_add_plans(steer_job *job, const steer_law *blind, const steer_law *both);
+void steer_add_receding(steer_job *job, const steer_law *law);
+
+// Tunes and swims every trial not yet run whose gait and plan are known. Error: those of moray_swim_closed_loop_run,
+// MORAY_INTERRUPTED.
+moray_status steer_run_trials(steer_job *job);
+
+// Swims one of them again, to be drawn.
+moray_status steer_swim(const steer_job *job, const steer_trial *trial, moray_swim_closed_loop *closed_loop);
+
+// Progress of a search that Ctrl-C ends, and MORAY_INTERRUPTED after it.
 bool steer_go_on(void *observer, const moray_search_progress *progress);
-
-// MORAY_INTERRUPTED after Ctrl-C.
 moray_status steer_interruption(void);
 
-// ---- Figures -------------------------------------------------------------------------------------------------------
+// ---- Report --------------------------------------------------------------------------------------------------------
 
-// A closed_loop to be drawn.
-typedef struct steer_curve {
-    const char *label;
-    const moray_closed_loop *closed_loop;
-} steer_curve;
+enum { STEER_TABLES = 4, STEER_ROWS = 16 };
+struct steer_tables {
+    int n;
+    moray_table table[STEER_TABLES];
+    moray_table_row rows[STEER_TABLES][STEER_ROWS];
+    char label[STEER_ROWS][40];
+};
 
-// Draws a figure; where gnuplot does not, says so on standard error unless quiet. Error: MORAY_MEMORY, MORAY_INPUT.
-moray_status steer_draw(moray_output *output, bool quiet, const char *program, const moray_figure *figure);
+// Adds a table; its rows are those of the tables at that place, filled in before.
+void steer_add_table(steer_tables *tables, const moray_table *table);
 
-// path.svg: the paths of the closed_loops, the robot along the last, the current as an arrow; and the curves of `more`.
-moray_status steer_draw_path(const moray_common *common, const char *program, const steer_curve *curves, int n,
-                             const moray_curve *more, int n_more);
+void steer_gait_table(const steer_job *job, steer_tables *tables, int first); // 1: without the paper's, it is given
+void steer_score_table(const steer_job *job, steer_tables *tables, int n_columns);
+void steer_tuning_table(const steer_job *job, steer_tables *tables);
 
-// joints.svg: joints at the tail, in the middle and at the head while the closed_loop steers most.
-moray_status steer_draw_joints(const moray_common *common, const char *program, const moray_closed_loop *closed_loop);
+extern const char *const steer_model_names[2];
 
-// trajectory.csv of a closed_loop. Error: MORAY_IO, MORAY_MEMORY.
-moray_status steer_write_trajectory(const moray_common *common, const moray_closed_loop *closed_loop);
+// The best on the first-principles model by a score, of the trials whose law is one of the bits and that are not
+// barred.
+const steer_trial *steer_best(const steer_job *job, unsigned laws, int score);
+
+// Adds to a text, the limit at its beginning.
+void steer_say(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void steer_say_limit(const steer_job *job, char *text, size_t size); // "With |phi_0| at its limit ... the robot turns"
+void steer_say_saturation(const steer_job *job, char *text, size_t size); // behind a "T" or "t"
+
+// Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
+moray_status steer_report(const steer_job *job);
+moray_json *steer_json(const steer_job *job);
+void steer_json_gait(const steer_job *job, moray_json *json, int gait);
+void steer_json_saturation(const steer_job *job, moray_json *json, moray_model model);
+
+// Figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of moray_swim_closed_loop_run.
+moray_status steer_draw(const steer_job *job);
+
+// Where gnuplot does not draw, says so on standard error unless quiet. Error: MORAY_MEMORY, MORAY_INPUT.
+moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure);
 
 #endif

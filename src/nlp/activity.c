@@ -41,6 +41,8 @@ double moray_objective_scale(const moray_nlp *nlp)
     return nlp->f_scale != 0 ? nlp->f_scale : 1;
 }
 
+// An interior-point solution is never at a bound: a bound is active where its multiplier outweighs its slack, in the
+// solver's scale.
 void moray_find_activity(moray_nlp_sensitivity *s)
 {
     const moray_nlp *nlp = s->nlp;
@@ -84,6 +86,8 @@ double moray_bound_slope(const moray_nlp *nlp, const moray_nlp_shift *shift, int
     return of_columns ? of_columns[i - nlp->m] : 0;
 }
 
+// How far the parameter may go until a multiplier of an active bound, or the slack of an inactive one, reaches zero
+// linearly.
 static moray_nlp_change change_of(const moray_nlp_sensitivity *s, const moray_nlp_shift *shift,
                                   const moray_iterate *slope, int i, bool upper, int direction)
 {

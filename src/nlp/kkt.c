@@ -89,6 +89,8 @@ static void measure(const moray_nlp *nlp, const moray_iterate *it, const double 
     kkt->error = fmax(kkt->stationarity, fmax(kkt->feasibility, kkt->complementarity));
 }
 
+// gradient f + J' lambda - z_lower + z_upper, feasibility and complementarity anew from the callbacks, in unscaled
+// units.
 moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt)
 {
     double *block = calloc((size_t)(nlp->n + 2 * nlp->m + nlp->nnz_jac) + 1, sizeof *block);

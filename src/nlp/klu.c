@@ -63,6 +63,7 @@ static moray_status analyse(sparse_lu *lu)
     return moray_ok();
 }
 
+// Triplets to compressed columns with the place of each triplet kept, so that new values are one scatter.
 moray_status moray_sparse_lu_new(sparse_lu **result, int n, const moray_pattern *pattern)
 {
     const size_t rows = (size_t)n, nnz = (size_t)pattern->nnz;

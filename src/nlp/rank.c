@@ -49,6 +49,7 @@ static void fill(struct augmented *a)
     }
 }
 
+// [I J'; J -eps I]: rows of J that depend on others show as pivots of size eps.
 static moray_status augmented_new(struct augmented *a, bool normalise)
 {
     const moray_nlp *nlp = a->selection->nlp;

@@ -279,6 +279,8 @@ static moray_status make_memory(struct session *s)
     return moray_ok();
 }
 
+// The result is the best point of all that were tried, which the session keeps: NLopt may end at another, infeasible
+// one.
 static moray_status run(struct session *s, double *x)
 {
     const moray_search_problem *p = s->problem;

@@ -30,6 +30,8 @@ static void put(moray_nlp_sensitivity *s, int k, int row, int col, double value)
     s->values[k] = is_held(s, row) ? 0 : value;
 }
 
+// Full storage of the symmetric matrix: KLU pivots freely. A held row is a unit row, the equation that bound or zero
+// multiplier imposes.
 static void fill(moray_nlp_sensitivity *s)
 {
     const moray_nlp *nlp = s->nlp;
@@ -182,6 +184,7 @@ static void find_residual(moray_nlp_sensitivity *s)
             s->residual[s->pattern.row[k]] -= s->values[k] * s->solution[s->pattern.col[k]];
 }
 
+// Iterative refinement against the unregularised matrix: what is left over tells constraints that cannot all follow.
 static moray_status solve_kkt(moray_nlp_sensitivity *s)
 {
     const int size = s->nlp->n + s->nlp->m;
@@ -221,6 +224,8 @@ static void complete_multipliers(const moray_nlp_sensitivity *s, const moray_nlp
     }
 }
 
+// Implicit function theorem on the KKT conditions with the active set held: K d(x, lambda) = -d(KKT
+// residual)/d(parameter).
 moray_status moray_nlp_sensitivity_solve(moray_nlp_sensitivity *s, const moray_nlp_shift *shift, moray_iterate *slope)
 {
     const moray_nlp *nlp = s->nlp;

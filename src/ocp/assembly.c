@@ -15,6 +15,8 @@ static double duration(const struct transcription *t, int p)
 
 // ---- Constraints ----
 
+// Row block i of an interval: P and Q are the scheme's (I and its integration matrix for collocation at all points), so
+// that one loop serves Lobatto, Radau and Gauss; entries that are zero for a scheme cost nothing.
 static void interval_defects(const struct transcription *t, int p, const struct interval *interval, double *g)
 {
     const int nx = t->ocp->phase[p].nx, n_out = t->phase[p].map->n_out, points = interval->scheme->points;
@@ -33,6 +35,8 @@ static void interval_defects(const struct transcription *t, int p, const struct 
     }
 }
 
+// Path constraints stand where the dynamics are collocated, once a node; the integrals use the weights of the same
+// nodes.
 static void path_and_integrals(const struct transcription *t, int p, double *g)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -117,6 +121,7 @@ static void put_interval(const struct transcription *t, int p, const struct inte
     }
 }
 
+// Of one collocated node: c into its own rows, - T weight g into the rows of the integrals, and what T does to those.
 static void put_path_and_integrals(const struct transcription *t, int p, int n, triplets *out)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -137,6 +142,7 @@ static void put_path_and_integrals(const struct transcription *t, int p, int n, 
         put_duration(t, p, layout->integral_row + m, -node->weight * value[before_g + m], out);
 }
 
+// One walk for pattern and values: recording, it notes where entries go, and ever after writes values in that order.
 void moray_walk_jacobian(const struct transcription *t, triplets *out)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
@@ -157,6 +163,8 @@ void moray_walk_jacobian(const struct transcription *t, triplets *out)
 
 // ---- Hessian ----
 
+// What multiplies f at a node in the Lagrangian: - T w sum_i Q_ij lambda_i over the defects of all intervals it serves,
+// so that each node needs a single Hessian of its weighted sum.
 void moray_dynamics_multipliers(const struct transcription *t, int p, const double *lambda, double *lambda_f)
 {
     const int nx = t->ocp->phase[p].nx;
@@ -221,6 +229,8 @@ static void put_duration_products(const struct transcription *t, int p, int n, c
     }
 }
 
+// Curvature of the weighted (f, c, g) at a node; T times f and g is a product, whose mixed terms come only with free
+// times.
 static void put_node_hessian(const struct transcription *t, int p, int n, const double *lambda, triplets *out)
 {
     const struct phase *phase = &t->ocp->phase[p];

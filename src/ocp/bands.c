@@ -8,6 +8,8 @@
 
 static const double close_to_bound = 1e-5; // scaled
 
+// Every column and row of the programme once, grouped as the user knows them, so that a diagnosis names things and
+// times.
 void moray_visit_bands(const struct transcription *t, void (*visit)(const struct band *band, void *self), void *self)
 {
     const struct layout *layout = &t->layout;
@@ -38,6 +40,8 @@ int moray_band_members(const struct transcription *t, const struct band *band)
     return band->kind == band_single ? 1 : t->layout.phase[band->p].nodes;
 }
 
+// Column or row of the n-th node of a band, -1 where it has none (controls and path constraints stand at collocated
+// nodes only, dynamics behind the first).
 int moray_band_member(const struct transcription *t, const struct band *band, int n)
 {
     if (band->kind == band_single)

@@ -100,6 +100,8 @@ static bool is_finite(const struct subject *s)
     return true;
 }
 
+// A point where a function is not finite tells nothing of its derivatives and is passed over; all passed over is an
+// error.
 static moray_status check_at(struct subject *s, int point, int *checked, moray_ocp_derivative_report *report)
 {
     moray_derivative_report found;

@@ -33,6 +33,7 @@ struct ranking {
     bool only_dynamics;
 };
 
+// Keeps the few bands of largest violation, each by its worst member: a list for people, not of rows.
 static void rank_band(const struct band *band, void *self)
 {
     struct ranking *ranking = self;
@@ -139,6 +140,7 @@ static void search_band(const struct band *band, void *self)
             *search = (struct search){e, gain[upper], *band, upper};
 }
 
+// By the multipliers: the bound whose loosening would reduce the remaining violation fastest.
 bool moray_hardest_bound(struct evidence *e)
 {
     const struct selection selection = select_active(e, true);

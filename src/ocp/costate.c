@@ -27,6 +27,8 @@ static void costate_from_ends(const moray_solution *solution, int p, int n, doub
     }
 }
 
+// lambda_f = T weight costate at a collocated node: the discrete adjoint is the costate's collocation by the adjoint
+// scheme.
 int moray_solution_nodes(const moray_solution *solution, int p, double *time, double *costate)
 {
     const struct transcription *t = solution->transcription;
@@ -46,6 +48,7 @@ int moray_solution_nodes(const moray_solution *solution, int p, double *time, do
     return layout->nodes;
 }
 
+// H = g + lambda f, with lambda_f and the integrals' multipliers divided by what T weight brought in.
 int moray_solution_hamiltonian(const moray_solution *solution, int p, double *hamiltonian)
 {
     const struct transcription *t = solution->transcription;

@@ -7,6 +7,7 @@
 
 enum { samples_between = 5 }; // per point of the scheme, placed between the nodes
 
+// An error is relative to 1 + the largest value that the state takes at the nodes, or 1 + the integral.
 moray_status moray_examiner_new(struct examiner *e, const moray_solution *solution, int p)
 {
     const struct phase *phase = &solution->transcription->ocp->phase[p];

@@ -62,6 +62,7 @@ static double end_value(moray_bounds end, moray_bounds other)
     return moray_bounds_middle(known ? end : other);
 }
 
+// Straight from x0 to xf by the middles of their bounds; a state known at one end stays as it is there.
 static void guess_from_bounds(const struct transcription *t, int p, double *x)
 {
     const struct phase *phase = &t->ocp->phase[p];

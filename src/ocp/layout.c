@@ -63,6 +63,8 @@ static void number_phase(struct layout *layout, struct phase_layout *phase, cons
     phase->tf = moray_bounds_are_fixed(p->tf) ? -1 : layout->columns++;
 }
 
+// Numbers columns and rows interval by interval along time, parameters and events last: the order in which bands are
+// narrow.
 moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family,
                               const struct mesh *meshes)
 {

@@ -105,6 +105,8 @@ static void split_evenly(struct mesh *mesh, double end, int pieces, int stages)
     add_interval(mesh, end, stages);
 }
 
+// A jump or kink between two nodes is cut out at those nodes; elsewhere the error falls with width^(stages + 1), which
+// gives the number of even pieces.
 static void split(struct refinement *r, const struct interval *interval, double excess)
 {
     const struct node *node = r->e.solution->transcription->layout.phase[r->e.p].node + interval->first;
@@ -148,6 +150,8 @@ static void keep(struct refinement *r, double end, int stages, enum mesh_past pa
     }
 }
 
+// Coefficients e^(-rate k) need log(excess)/rate more stages; where more stages did not help last time the interval is
+// cut.
 static void refine_interval(struct refinement *r, int k, double error)
 {
     const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];

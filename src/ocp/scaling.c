@@ -72,6 +72,8 @@ static double moray_objective_scale(const struct transcription *t, const double 
     return largest > 0 ? fmin(fmax(1 / largest, 1e-4), 1e4) : 1;
 }
 
+// One scale for a state or control along its whole phase, so that the transcription's structure survives the scaling;
+// rows from the Jacobian at the guess; the objective so that its largest scaled slope is near 1.
 moray_status moray_choose_scales(struct transcription *t, const double *x)
 {
     const int n = t->nlp.n, m = t->nlp.m;

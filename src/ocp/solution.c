@@ -68,6 +68,8 @@ static const struct interval *interval_at(const struct phase_layout *layout, dou
     return &layout->interval[low];
 }
 
+// State: x at the start plus the integral of the interpolated slopes, which is the collocation polynomial for every
+// scheme; control: the polynomial through its values at the stage points.
 void moray_solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau,
                            double *x, double *u)
 {

@@ -53,6 +53,7 @@ static void free_meshes(struct campaign *c)
         moray_mesh_free(&c->meshes[p]);
 }
 
+// Meshes of the settings, or those of the solution that the guess comes from.
 static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
 {
     const struct layout *other = guess && guess->from ? &guess->from->transcription->layout : NULL;
@@ -159,6 +160,8 @@ static moray_status transcribe_at_guess(const struct campaign *c, const moray_gu
     return moray_ok();
 }
 
+// A warm start lowers the barrier only where the interpolated point is nearly right: elsewhere it would start in a
+// corner.
 static moray_status solve_once(const struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     *result = NULL;
@@ -271,6 +274,7 @@ static moray_status run_campaign(struct campaign *c, const moray_guess *guess, m
     return moray_ok();
 }
 
+// Mesh after mesh until the certificate would accept what lies between the nodes, or until a limit; the best stays.
 moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
                          moray_solution **solution)
 {

@@ -84,6 +84,7 @@ static void find_runaway(const struct band *band, void *self)
     }
 }
 
+// An objective that keeps falling with variables far beyond their guess: nothing bounds it.
 static bool runaway(const struct evidence *e)
 {
     struct search search = {.e = e, .most = 1e4};

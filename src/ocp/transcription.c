@@ -48,6 +48,7 @@ static bool fail_at_node(struct transcription *t, int p, int n, int bad)
     return false;
 }
 
+// All functions of a phase at its collocated nodes; x, u, s and t are gathered into the map's one vector of inputs.
 static bool phase_values(struct transcription *t, int p)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -71,6 +72,7 @@ static bool phase_values(struct transcription *t, int p)
     return true;
 }
 
+// Inputs of the endpoint map that are variables come through end_column; fixed times stay from the phases.
 static bool end_values(struct transcription *t)
 {
     const moray_map *map = t->endpoint;
@@ -107,6 +109,7 @@ bool moray_transcription_values(struct transcription *t, const double *x)
     return t->have_values;
 }
 
+// Ipopt asks for gradient, Jacobian and Hessian at the same x: the maps' Jacobians are evaluated once for all three.
 bool moray_transcription_jacobians(struct transcription *t, const double *x)
 {
     if (!moray_transcription_values(t, x))

@@ -47,6 +47,8 @@ static void set_bounds(struct transcription *t)
         set_row(t, t->layout.events + i, t->ocp->e[i]);
 }
 
+// Where each input of the endpoint map lives among the variables, in the order [x0, t0, xf, tf, q of each phase, s];
+// -1: fixed.
 static void set_end_columns(struct transcription *t)
 {
     int *column = t->end_column;
@@ -83,6 +85,7 @@ static moray_status allocate_phase_cache(struct transcription *t, int p)
                        t->ocp->phase[p].name);
 }
 
+// Everything that solving touches is allocated here, once: no callback allocates.
 static moray_status allocate(struct transcription *t)
 {
     const moray_map *end = t->endpoint;
@@ -132,6 +135,7 @@ static void describe_programme(struct transcription *t)
     moray_transcription_callbacks(t);
 }
 
+// Layout, memory, bounds, then one walk that records both patterns: values later follow the same walk.
 moray_status moray_transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
                                      const struct mesh *meshes)
 {

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "moray/angle.h"
+
 void moray_option_bounds(const moray_option *row, double *min, double *max)
 {
     const bool any = row->min == 0 && row->max == 0;
@@ -13,7 +15,7 @@ void moray_option_bounds(const moray_option *row, double *min, double *max)
 
 double moray_option_scale(const moray_option *row)
 {
-    return row->unit && strncmp(row->unit, "deg", 3) == 0 ? M_PI / 180 : 1;
+    return row->unit && strncmp(row->unit, "deg", 3) == 0 ? MORAY_DEGREE : 1;
 }
 
 static void show_number(const moray_option *row, const char *noun, char *text, size_t size)

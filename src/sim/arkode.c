@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The simulator on SUNDIALS ARKODE; the only file that knows of it.
-#include "moray/sim.h"
+// The methods of SUNDIALS ARKODE; the only file that knows of it.
+#include "sim/sim.h"
 
 #include <arkode/arkode_arkstep.h>
 #include <float.h>
@@ -15,15 +15,8 @@
 
 #include "sim/prince_dormand.h"
 
-struct moray_sim {
-    moray_ode ode;
-    moray_sim_settings settings;
-    double t, *x;     // last accepted step
-    bool outside;     // the right-hand side has failed since that step
-    double outside_t; // where it did
-    double retreat;   // the step then taken instead, 0 if none since that step
-    char why[160];    // SUNDIALS' last message
-    moray_sim_statistics statistics;
+struct arkode {
+    double retreat; // the step taken since the right-hand side failed, 0 if it did not since the accepted step
     SUNContext context;
     void *ark;
     N_Vector y; // ARKODE writes trial values here
@@ -40,170 +33,133 @@ static void keep_message(int code, const char *module, const char *function, cha
 
 static int rhs(double t, N_Vector y, N_Vector dy, void *self)
 {
-    moray_sim *sim = self;
-    double *dx = N_VGetArrayPointer(dy);
-    sim->statistics.rhs_evaluations++;
-    bool inside = sim->ode.rhs(t, N_VGetArrayPointer(y), dx, sim->ode.self);
-    for (int i = 0; inside && i < sim->ode.n; i++)
-        inside = isfinite(dx[i]);
-    if (inside)
-        return 0;
-    sim->outside = true;
-    sim->outside_t = t;
-    return 1; // recoverable, in SUNDIALS' terms
+    return moray_sim_rhs(self, t, N_VGetArrayPointer(y), N_VGetArrayPointer(dy)) ? 0 : 1; // 1: recoverable
 }
 
-static bool use_explicit(moray_sim *sim)
+static bool use_explicit(struct arkode *a)
 {
-    double a[PD_STAGES * PD_STAGES], b[PD_STAGES], c[PD_STAGES], embedded[PD_STAGES];
-    memcpy(a, pd_a, sizeof a); // SUNDIALS takes no const
+    double A[PD_STAGES * PD_STAGES], b[PD_STAGES], c[PD_STAGES], embedded[PD_STAGES];
+    memcpy(A, pd_a, sizeof A); // SUNDIALS takes no const
     memcpy(b, pd_b, sizeof b);
     memcpy(c, pd_c, sizeof c);
     memcpy(embedded, pd_embedded, sizeof embedded);
-    ARKodeButcherTable table = ARKodeButcherTable_Create(PD_STAGES, PD_ORDER, PD_EMBEDDED_ORDER, c, a, b, embedded);
-    const bool done = table && ARKStepSetTables(sim->ark, PD_ORDER, PD_EMBEDDED_ORDER, NULL, table) == ARK_SUCCESS;
+    ARKodeButcherTable table = ARKodeButcherTable_Create(PD_STAGES, PD_ORDER, PD_EMBEDDED_ORDER, c, A, b, embedded);
+    const bool done = table && ARKStepSetTables(a->ark, PD_ORDER, PD_EMBEDDED_ORDER, NULL, table) == ARK_SUCCESS;
     ARKodeButcherTable_Free(table);
     return done;
 }
 
-static bool use_tr_bdf2(moray_sim *sim)
+static bool use_tr_bdf2(struct arkode *a, int n)
 {
-    sim->jacobian = SUNDenseMatrix(sim->ode.n, sim->ode.n, sim->context);
-    sim->solver = sim->jacobian ? SUNLinSol_Dense(sim->y, sim->jacobian, sim->context) : NULL;
-    return sim->solver && ARKStepSetTableNum(sim->ark, ARKODE_TRBDF2_3_3_2, ARKODE_ERK_NONE) == ARK_SUCCESS &&
-           ARKStepSetLinearSolver(sim->ark, sim->solver, sim->jacobian) == ARK_SUCCESS;
+    a->jacobian = SUNDenseMatrix(n, n, a->context);
+    a->solver = a->jacobian ? SUNLinSol_Dense(a->y, a->jacobian, a->context) : NULL;
+    return a->solver && ARKStepSetTableNum(a->ark, ARKODE_TRBDF2_3_3_2, ARKODE_ERK_NONE) == ARK_SUCCESS &&
+           ARKStepSetLinearSolver(a->ark, a->solver, a->jacobian) == ARK_SUCCESS;
 }
 
-static bool configure(moray_sim *sim)
+static bool configure(moray_sim *sim, struct arkode *a, bool is_explicit)
 {
     const moray_sim_settings *settings = &sim->settings;
-    return ARKStepSetErrHandlerFn(sim->ark, keep_message, sim) == ARK_SUCCESS &&
-           ARKStepSetUserData(sim->ark, sim) == ARK_SUCCESS &&
-           ARKStepSStolerances(sim->ark, settings->rtol, settings->atol) == ARK_SUCCESS &&
-           ARKStepSetMaxStep(sim->ark, settings->max_step) == ARK_SUCCESS &&
-           ARKStepSetMaxErrTestFails(sim->ark, 40) == ARK_SUCCESS && // down to a jump of the right-hand side; usually 7
+    return ARKStepSetErrHandlerFn(a->ark, keep_message, sim) == ARK_SUCCESS &&
+           ARKStepSetUserData(a->ark, sim) == ARK_SUCCESS &&
+           ARKStepSStolerances(a->ark, settings->rtol, settings->atol) == ARK_SUCCESS &&
+           ARKStepSetMaxStep(a->ark, settings->max_step) == ARK_SUCCESS &&
+           ARKStepSetMaxErrTestFails(a->ark, 40) == ARK_SUCCESS && // down to a jump of the right-hand side; usually 7
            // The interpolant serves only at the ends of steps; a higher degree would ask for more derivatives.
-           ARKStepSetInterpolantDegree(sim->ark, 3) == ARK_SUCCESS &&
-           (settings->method == MORAY_SIM_EXPLICIT ? use_explicit(sim) : use_tr_bdf2(sim));
+           ARKStepSetInterpolantDegree(a->ark, 3) == ARK_SUCCESS &&
+           (is_explicit ? use_explicit(a) : use_tr_bdf2(a, sim->ode.n));
 }
 
-static bool build(moray_sim *sim)
+static bool build(moray_sim *sim, bool is_explicit)
 {
-    const bool is_explicit = sim->settings.method == MORAY_SIM_EXPLICIT;
-    sim->x = calloc((size_t)sim->ode.n, sizeof *sim->x);
-    if (!sim->x || SUNContext_Create(NULL, &sim->context))
+    struct arkode *a = calloc(1, sizeof *a);
+    sim->method_self = a;
+    if (!a || SUNContext_Create(NULL, &a->context))
         return false;
-    sim->y = N_VNew_Serial(sim->ode.n, sim->context);
-    if (!sim->y)
+    a->y = N_VNew_Serial(sim->ode.n, a->context);
+    if (!a->y)
         return false;
-    N_VConst(0, sim->y);
-    sim->ark = ARKStepCreate(is_explicit ? rhs : NULL, is_explicit ? NULL : rhs, 0, sim->y, sim->context);
-    return sim->ark && configure(sim);
+    N_VConst(0, a->y);
+    a->ark = ARKStepCreate(is_explicit ? rhs : NULL, is_explicit ? NULL : rhs, 0, a->y, a->context);
+    return a->ark && configure(sim, a, is_explicit);
 }
 
-moray_status moray_sim_new(moray_sim **out, const moray_ode *ode, const moray_sim_settings *settings)
+static bool build_explicit(moray_sim *sim)
 {
-    *out = NULL;
-    if (ode->n < 1)
-        return moray_error(MORAY_INPUT, "n = %d: an equation to simulate has at least 1 state", ode->n);
-    MORAY_TRY(moray_sim_settings_check(settings));
-    moray_sim *sim = calloc(1, sizeof *sim);
-    if (sim) {
-        *sim = (moray_sim){.ode = *ode, .settings = *settings, .why = "out of memory"};
-        if (build(sim)) {
-            *out = sim;
-            return moray_ok();
-        }
-    }
-    moray_status status =
-        moray_error(MORAY_MEMORY, "cannot make a simulator of %d states: %s", ode->n, sim ? sim->why : "out of memory");
-    moray_sim_free(sim);
-    return status;
+    return build(sim, true);
 }
 
-void moray_sim_free(moray_sim *sim)
+static bool build_tr_bdf2(moray_sim *sim)
 {
-    if (!sim)
+    return build(sim, false);
+}
+
+static void release(moray_sim *sim)
+{
+    struct arkode *a = sim->method_self;
+    if (!a)
         return;
-    ARKStepFree(&sim->ark);
-    if (sim->solver)
-        SUNLinSolFree(sim->solver);
-    SUNMatDestroy(sim->jacobian);
-    N_VDestroy(sim->y);
-    SUNContext_Free(&sim->context);
-    free(sim->x);
-    free(sim);
+    ARKStepFree(&a->ark);
+    if (a->solver)
+        SUNLinSolFree(a->solver);
+    SUNMatDestroy(a->jacobian);
+    N_VDestroy(a->y);
+    SUNContext_Free(&a->context);
+    free(a);
 }
 
 // Starts ARKODE anew at the accepted state; step 0 lets it choose the first one.
-static moray_status restart(moray_sim *sim, double step, double growth)
+static moray_status begin(moray_sim *sim, double step, double growth)
 {
-    const bool is_explicit = sim->settings.method == MORAY_SIM_EXPLICIT;
-    memcpy(N_VGetArrayPointer(sim->y), sim->x, (size_t)sim->ode.n * sizeof *sim->x);
-    if (ARKStepReInit(sim->ark, is_explicit ? rhs : NULL, is_explicit ? NULL : rhs, sim->t, sim->y) == ARK_SUCCESS &&
-        ARKStepSetInitStep(sim->ark, step) == ARK_SUCCESS && ARKStepSetMaxFirstGrowth(sim->ark, growth) == ARK_SUCCESS)
+    struct arkode *a = sim->method_self;
+    const bool is_explicit = sim->settings.method == MORAY_SIM_ARKODE;
+    memcpy(N_VGetArrayPointer(a->y), sim->x, (size_t)sim->ode.n * sizeof *sim->x);
+    if (ARKStepReInit(a->ark, is_explicit ? rhs : NULL, is_explicit ? NULL : rhs, sim->t, a->y) == ARK_SUCCESS &&
+        ARKStepSetInitStep(a->ark, step) == ARK_SUCCESS && ARKStepSetMaxFirstGrowth(a->ark, growth) == ARK_SUCCESS)
         return moray_ok();
     return moray_error(MORAY_NUMERIC, "simulation cannot start at t = %g: %s", sim->t, sim->why);
 }
 
-moray_status moray_sim_start(moray_sim *sim, double t, const double *x)
+static moray_status restart(moray_sim *sim)
 {
-    for (int i = 0; i < sim->ode.n; i++) {
-        if (!isfinite(x[i]))
-            return moray_error(MORAY_NUMERIC, "simulation cannot start at t = %g: x[%d] = %g", t, i, x[i]);
-    }
-    memmove(sim->x, x, (size_t)sim->ode.n * sizeof *sim->x);
-    sim->t = t;
-    return restart(sim, 0, 0);
+    ((struct arkode *)sim->method_self)->retreat = 0;
+    return begin(sim, 0, 0);
 }
 
 static moray_status explain(const moray_sim *sim, int flag, double stop)
 {
-    if (sim->outside)
-        return moray_error(
-            MORAY_NUMERIC,
-            "simulation stopped at t = %.10g on its way to %g: the right-hand side is outside its domain "
-            "or not finite at t = %.10g",
-            sim->t, stop, sim->outside_t);
-    const char *why = sim->why;
     if (flag == ARK_ERR_FAILURE || flag == ARK_TOO_MUCH_ACC)
-        why = "the error test fails with ever shorter steps (rtol or atol too small, or a singular right-hand side)";
+        return moray_sim_stuck(sim, stop, SIM_ERROR_TEST);
     if (flag == ARK_CONV_FAILURE)
-        why = "the stage equations do not converge with ever shorter steps (singular right-hand side?)";
-    return moray_error(MORAY_NUMERIC, "simulation stopped at t = %.10g on its way to %g: %s", sim->t, stop, why);
+        return moray_sim_stuck(
+            sim, stop, "the stage equations do not converge with ever shorter steps (singular right-hand side?)");
+    return moray_sim_stuck(sim, stop, sim->why);
 }
 
 // A shorter step from the accepted state, after the right-hand side has failed on the last attempt.
 static moray_status retreat(moray_sim *sim, int flag, double stop)
 {
+    struct arkode *a = sim->method_self;
     const double longest = stop - sim->t;
-    double tried = sim->retreat;
+    double tried = a->retreat;
     if (tried == 0)
-        ARKStepGetCurrentStep(sim->ark, &tried);
-    sim->retreat = 0.25 * (tried > 0 ? fmin(tried, longest) : longest);
-    if (sim->retreat < 1e3 * DBL_EPSILON * fmax(fabs(sim->t), longest))
+        ARKStepGetCurrentStep(a->ark, &tried);
+    a->retreat = 0.25 * (tried > 0 ? fmin(tried, longest) : longest);
+    if (a->retreat < 1e3 * DBL_EPSILON * fmax(fabs(sim->t), longest))
         return explain(sim, flag, stop);
-    return restart(sim, sim->retreat, 2);
+    return begin(sim, a->retreat, 2);
 }
 
-static void accept(moray_sim *sim, double t)
+static moray_status step(moray_sim *sim, double stop)
 {
-    sim->t = t;
-    memcpy(sim->x, N_VGetArrayPointer(sim->y), (size_t)sim->ode.n * sizeof *sim->x);
-    sim->outside = false;
-    sim->retreat = 0;
-    sim->statistics.steps++;
-}
-
-// One accepted step towards the stop, or an error.
-static moray_status step_towards(moray_sim *sim, double stop)
-{
+    struct arkode *a = sim->method_self;
     for (;;) {
         double t = sim->t;
-        ARKStepSetStopTime(sim->ark, stop); // each time: a restart forgets it
-        const int flag = ARKStepEvolve(sim->ark, stop, sim->y, &t, ARK_ONE_STEP);
+        ARKStepSetStopTime(a->ark, stop); // each time: a restart forgets it
+        const int flag = ARKStepEvolve(a->ark, stop, a->y, &t, ARK_ONE_STEP);
         if (flag == ARK_TSTOP_RETURN || (flag == ARK_SUCCESS && t > sim->t)) {
-            accept(sim, flag == ARK_TSTOP_RETURN ? stop : t);
+            moray_sim_accept(sim, flag == ARK_TSTOP_RETURN ? stop : t, N_VGetArrayPointer(a->y));
+            a->retreat = 0;
             return moray_ok();
         }
         if (flag == ARK_SUCCESS) // t + h == t
@@ -214,37 +170,5 @@ static moray_status step_towards(moray_sim *sim, double stop)
     }
 }
 
-moray_status moray_sim_advance(moray_sim *sim, double t)
-{
-    if (!(t >= sim->t && isfinite(t)))
-        return moray_error(MORAY_INPUT, "simulation to t = %.10g: must be finite and not before the present t = %.10g",
-                           t, sim->t);
-    if (t - sim->t <= 100 * DBL_EPSILON * fmax(fabs(t), fabs(sim->t))) { // too short a way for ARKODE
-        sim->t = t;
-        return moray_ok();
-    }
-    sim->outside = false;
-    sim->retreat = 0;
-    for (long steps = 0; sim->t < t; steps++) {
-        if (steps >= sim->settings.max_steps)
-            return moray_error(MORAY_NUMERIC, "simulation stopped at t = %.10g on its way to %g: %ld steps (max_steps)",
-                               sim->t, t, steps);
-        MORAY_TRY(step_towards(sim, t));
-    }
-    return moray_ok();
-}
-
-double moray_sim_time(const moray_sim *sim)
-{
-    return sim->t;
-}
-
-const double *moray_sim_state(const moray_sim *sim)
-{
-    return sim->x;
-}
-
-moray_sim_statistics moray_sim_get_statistics(const moray_sim *sim)
-{
-    return sim->statistics;
-}
+const sim_method moray_sim_arkode = {build_explicit, release, restart, step};
+const sim_method moray_sim_tr_bdf2 = {build_tr_bdf2, release, restart, step};

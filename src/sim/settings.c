@@ -5,7 +5,7 @@
 
 moray_sim_settings moray_sim_settings_default(void)
 {
-    return (moray_sim_settings){.method = MORAY_SIM_EXPLICIT, .rtol = 1e-9, .atol = 1e-9, .max_steps = 1000000};
+    return (moray_sim_settings){.method = MORAY_SIM_EXPLICIT, .rtol = 1e-10, .atol = 1e-10, .max_steps = 1000000};
 }
 
 moray_sim_settings moray_sim_settings_paper(void)
@@ -18,8 +18,9 @@ moray_sim_settings moray_sim_settings_paper(void)
 
 moray_status moray_sim_settings_check(const moray_sim_settings *settings)
 {
-    if (settings->method != MORAY_SIM_EXPLICIT && settings->method != MORAY_SIM_TR_BDF2)
-        return moray_error(MORAY_INPUT, "method = %d: must be MORAY_SIM_EXPLICIT or MORAY_SIM_TR_BDF2",
+    if ((int)settings->method < MORAY_SIM_EXPLICIT || settings->method > MORAY_SIM_TR_BDF2)
+        return moray_error(MORAY_INPUT,
+                           "method = %d: must be MORAY_SIM_EXPLICIT, MORAY_SIM_ARKODE or MORAY_SIM_TR_BDF2",
                            (int)settings->method);
     if (!(settings->rtol >= 1e-14 && settings->rtol < 1))
         return moray_error(MORAY_INPUT, "rtol = %g: must be at least 1e-14 and below 1", settings->rtol);

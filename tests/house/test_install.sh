@@ -45,5 +45,9 @@ near() {
 check "it finds the published optimum 4: $(optimum)" near "$(optimum)" 4
 check "and with l = 1/10, 4 / (9 l) = 4.444444: $(optimum --set l=0.1)" near "$(optimum --set l=0.1)" 4.4444444
 check "certified" eval './mine --out results && [ -s results/report.html ] && grep -q "\"pass\":.true" results/summary.json'
+sed -n '/^```c/,/^```$/p' "$source/src/control/README.md" | grep -v '^```' >loop.c
+# shellcheck disable=SC2046
+check "the example of src/control builds" "$@" loop.c -o loop $(pkg-config --cflags --libs moray)
+check "and prints what it says: $(./loop)" grep -qF "// $(./loop):" loop.c
 check "a limit that is out of reach is not solved: exit 1" eval './mine --set max_iterations=2; [ $? -eq 1 ]'
 tap_done

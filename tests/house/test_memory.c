@@ -9,6 +9,7 @@
 #include <tgmath.h>
 #include <unistd.h>
 
+#include "moray/control/receding_horizon.h"
 #include "moray/snake/gait_problem.h"
 #include "moray/ocp.h"
 #include "moray/snake/orbit.h"
@@ -116,6 +117,75 @@ static moray_status turn(void)
     if (!moray_failed(status))
         status = solve_twice(ocp);
     moray_ocp_free(ocp);
+    return status;
+}
+
+// The same mass replanned on its way, and recorded.
+static moray_status plan_push(void *self, double t, const double *x, void **problem, const moray_ocp **ocp)
+{
+    moray_ocp *made;
+    const moray_phase_spec phase = {.nx = 2,
+                                    .nu = 1,
+                                    .nc = 1,
+                                    .nq = 1,
+                                    .continuous = push,
+                                    .t0 = moray_fixed(t),
+                                    .tf = moray_fixed(t + 1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(x[0]), moray_fixed(x[1])),
+                                    .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                    .c = MORAY_BOUNDS(moray_at_most(0))};
+    (void)self;
+    MORAY_TRY(moray_ocp_new(&made, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = effort}));
+    *problem = made;
+    *ocp = made;
+    return moray_ok();
+}
+
+static void free_push(void *problem)
+{
+    moray_ocp_free(problem);
+}
+
+static bool pushed(double t, const double *x, const double *u, double *dx, void *self)
+{
+    (void)t, (void)self;
+    dx[0] = x[1];
+    dx[1] = u[0];
+    return true;
+}
+
+static moray_status run_loop(moray_receding_horizon *receding, moray_closed_loop_record *record)
+{
+    static const double times[] = {0, 0.3};
+    const moray_controller controller = moray_receding_horizon_controller(receding);
+    double x[2] = {0, 0.2};
+    const moray_closed_loop_spec spec = {.plant = {.nx = 2, .nu = 1, .rates = pushed},
+                                         .controller = &controller,
+                                         .t1 = 0.3,
+                                         .times = times,
+                                         .n_times = 2,
+                                         .observe = moray_closed_loop_record_add,
+                                         .observer = record,
+                                         .settings = moray_sim_settings_default()};
+    return moray_closed_loop_run(&spec, x);
+}
+
+static moray_status replan(void)
+{
+    moray_receding_horizon *receding = NULL;
+    moray_closed_loop_record record = {0};
+    moray_receding_horizon_spec spec = {.replanner = {.nx = 2, .nu = 1, .make = plan_push, .free = free_push},
+                                        .settings = moray_settings_default(),
+                                        .horizon = 1,
+                                        .interval = 0.2};
+    spec.settings.intervals = 4;
+    moray_status status = moray_receding_horizon_new(&receding, &spec);
+    if (!moray_failed(status))
+        status = moray_closed_loop_record_new(&record, 2, 1, 2);
+    if (!moray_failed(status))
+        status = run_loop(receding, &record);
+    moray_closed_loop_record_free(&record);
+    moray_receding_horizon_free(receding);
     return status;
 }
 
@@ -258,6 +328,7 @@ int main(void)
     if (!CHECK(mkdtemp(directory) != NULL, "a directory"))
         return 1;
     fail_each("problem, solution, certificate", false, turn);
+    fail_each("receding horizon", false, replan);
     fail_each("orbit", false, orbit);
     fail_each("gait on the control-oriented model", true, swim_control);
     fail_each("gait on the first-principles model", true, swim_fp);

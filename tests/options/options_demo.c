@@ -4,9 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "degree.h"
 #include "moray/app/program.h"
-
-#define DEG (M_PI / 180)
 
 typedef struct demo_settings {
     moray_common common;

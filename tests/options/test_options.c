@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -6,8 +7,6 @@
 #include <unistd.h>
 
 #include "options/options.h"
-
-#define DEG (M_PI / 180)
 
 typedef struct settings {
     moray_common common;

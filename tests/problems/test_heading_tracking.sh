@@ -46,7 +46,7 @@ check "nothing on standard error" [ ! -s err ]
 check "the table has the paper's gait and that found" grep -q "paper's  control opt." out
 check "and how it steers" eval 'grep -q "^control-oriented plan " out && grep -q "^feedback ahead, gait found " out'
 check "and what was tuned" grep -q '^Tuned on the first-principles model' out
-check "and a verdict" grep -q '^First-principles model, same limits: the best optimised steering' out
+check "and a conclusion" grep -q '^First-principles model, same limits: the best optimised steering' out
 
 # ---- A CSV file says the same as a text
 printf 't_s,heading_deg\n0,0\n8,0\n12,20\n' >ramp.csv

@@ -108,7 +108,7 @@ static void check_propositions(int N, double theta_max, double delta)
 // ---- Erratum E2 ----------------------------------------------------------------------------------------------------
 
 // Straight motion of Sec. V-B on the control-oriented model: mean v_x of the last five periods of 45 s.
-static double straight_speed(moray_reading reading, double theta_max)
+static double straight_speed(paper_reading reading, double theta_max)
 {
     const moray_robot robot = moray_robot_paper();
     moray_swimmer *swimmer;
@@ -117,9 +117,8 @@ static double straight_speed(moray_reading reading, double theta_max)
     change.gait.amplitude = 2 * robot.l * cos(20 * DEG) * sin(theta_max * DEG);
     const moray_sim_settings settings = moray_sim_settings_default();
     moray_swim_plan plan = {.t1 = 30, .schedule = &change, .n_changes = 1};
-    CHECK_OK(moray_swimmer_new(&swimmer, &robot, MORAY_CONTROL_ORIENTED), "a swimmer");
+    CHECK_OK(paper_reading_swimmer(&swimmer, &robot, MORAY_CONTROL_ORIENTED, reading), "a swimmer");
     moray_swimmer_set_current(swimmer, 0.1, 0.1);
-    moray_swimmer_set_reading(swimmer, reading);
     CHECK_OK(moray_swim_run(swimmer, &settings, &plan, x, NULL), "30 s");
     half = x[10];
     plan.t0 = 30;
@@ -134,8 +133,8 @@ static void check_speeds(void)
     static const double theta_max[] = {10, 15, 20, 30}, corrected[] = {0.2127, 0.2931, 0.3573, 0.4373};
     static const double literal[] = {0.2304, 0.2718, 0.2933, 0.3124};
     for (int k = 0; k < 4; k++) {
-        CHECK_NEAR(straight_speed(MORAY_READ_CORRECTED, theta_max[k]), corrected[k], 0.003 * corrected[k], "L = 2l");
-        CHECK_NEAR(straight_speed(MORAY_READ_L_PRINTED, theta_max[k]), literal[k], 0.003 * literal[k], "l as printed");
+        CHECK_NEAR(straight_speed(PAPER_CORRECTED, theta_max[k]), corrected[k], 0.003 * corrected[k], "L = 2l");
+        CHECK_NEAR(straight_speed(PAPER_L_PRINTED, theta_max[k]), literal[k], 0.003 * literal[k], "l as printed");
     }
 }
 

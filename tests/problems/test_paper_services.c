@@ -39,7 +39,7 @@ static void test_keeping(paper_desk *desk)
     CHECK_OK(paper_numbers(p, 0, &numbers), "none");
     CHECK_OK(paper_track(p, p->rig.swimmer[0], 3, &track), "a track");
     CHECK(track->capacity == 3 && track->n == 0, "is empty");
-    CHECK_OK(paper_swimmer(p, p->robot, MORAY_FIRST_PRINCIPLES, MORAY_READ_PRINTED, &swimmer), "a swimmer");
+    CHECK_OK(paper_swimmer(p, p->robot, MORAY_FIRST_PRINCIPLES, PAPER_PRINTED, &swimmer), "a swimmer");
     CHECK_OK(paper_own(p, malloc(1), count_release), "a thing");
     const moray_status status = paper_own(p, NULL, count_release);
     CHECK(status.code == MORAY_MEMORY && strcmp(status.text, "test: no memory") == 0, "%s", status.text);

@@ -121,7 +121,7 @@ check "trajectory.csv: pose, work, states, efforts" eval \
 check "trajectory.csv ends at the end" eval 'tail -1 files/trajectory.csv | grep -q "^3.03,"'
 check "summary.json is what --json prints" cmp files/summary.json out
 "$simulate" --duration 1 >out 2>err
-check "the table names unit and integrator" eval 'grep -q "peak joint force .* N$" out && grep -q "explicit, rtol 1e-09" out'
+check "the table names unit and integrator" eval 'grep -q "peak joint force .* N$" out && grep -q "explicit, rtol 1e-10" out'
 
 # refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it.
 refuse() {

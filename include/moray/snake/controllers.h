@@ -14,10 +14,10 @@
 // Steady swimming of a gait without offset, in still water, at mean heading 0.
 typedef struct moray_straight_motion {
     moray_model model;
-    moray_gait gait;      // offset 0
-    double speed, power;  // [m/s], [W]
-    double undulation[2]; // of the heading: factors of cos and sin of omega t [rad]
-    double body[6];       // state of moray_state_body where omega t is a multiple of 2 pi, at p = 0
+    moray_gait gait;                // offset 0
+    double speed, power;            // [m/s], [W]
+    double undulation[2];           // of the heading: factors of cos and sin of omega t [rad]
+    double body[MORAY_BODY_STATES]; // state of moray_state_body where omega t is a multiple of 2 pi, at p = 0
 } moray_straight_motion;
 
 // Error: those of moray_orbit_new and moray_orbit_solve.
@@ -45,7 +45,7 @@ typedef struct moray_plan {
 moray_offset moray_plan_offset(const moray_plan *plan, double t);
 
 // Blindly. The plan must outlive the controller.
-moray_controller moray_plan_controller(const moray_plan *plan);
+moray_swim_controller moray_plan_controller(const moray_plan *plan);
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------
 
@@ -63,6 +63,6 @@ typedef struct moray_feedback {
 } moray_feedback;
 
 // The feedback must outlive the controller.
-moray_controller moray_feedback_controller(moray_feedback *feedback);
+moray_swim_controller moray_feedback_controller(moray_feedback *feedback);
 
 #endif

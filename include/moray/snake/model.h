@@ -106,18 +106,11 @@ moray_model moray_swimmer_model(const moray_swimmer *swimmer);
 int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
 
 void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y);
+void moray_swimmer_current(const moray_swimmer *swimmer, double V[2]);
 
-// How a swimmer of the control-oriented model reads the paper. Misprints can be swum as printed, to see what they do;
-// the plants below have no such choice.
-typedef enum {
-    MORAY_READ_CORRECTED = 0,
-    MORAY_READ_23H_PRINTED = 1, // (23h) with h_4 and h_5 as printed (erratum E1)
-    MORAY_READ_L_PRINTED = 2,   // l of (8), (12), (13) half a link, as everywhere else (erratum E2)
-    MORAY_READ_PRINTED = 3      // both
-} moray_reading;
-
-// Corrected unless set; without effect on the first-principles model.
-void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading);
+// Something that the model leaves out: adds to the state derivative dx[2N+4] in the state x[2N+4]. NULL: nothing.
+typedef void moray_swimmer_extra_fn(const moray_swimmer *swimmer, const double *x, double *dx);
+void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *extra);
 
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].
@@ -126,11 +119,26 @@ void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, 
 // Joint coordinates and rates (N-1 each) of the state.
 void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double *phi, double *v_phi);
 
-// The six states of the plants with the joints on the gait, see below: of a full state of the model; and the full state
-// whose joints are on the gait at t.
-void moray_state_body(moray_model model, int links, const double *x, double body[6]);
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
-                           double *x);
+// States of the plants with the joints on the gait, and behind them, where it is steered, of the joint offset.
+// Velocity: v_t, v_n along and across the head link in the control-oriented model, v_x, v_y in the other, whose theta
+// is the mean.
+enum {
+    MORAY_STATE_THETA,
+    MORAY_STATE_P_X,
+    MORAY_STATE_P_Y,
+    MORAY_STATE_V_THETA,
+    MORAY_STATE_V_1,
+    MORAY_STATE_V_2,
+    MORAY_BODY_STATES,
+    MORAY_STATE_PHI_0 = MORAY_BODY_STATES,
+    MORAY_STATE_V_PHI_0, // phi_0'
+    MORAY_STEERING_STATES
+};
+
+// Those of the body: of a full state of the model; and the full state whose joints are on the gait at t.
+void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES]);
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
+                           const double body[MORAY_BODY_STATES], double *x);
 
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.

@@ -60,11 +60,12 @@ moray_status moray_orbit_gradients(moray_orbit *orbit, moray_orbit_gradient *gra
 // are 1; in still water a third belongs to rotations and is 1 too.
 typedef enum { MORAY_MODE_TRANSLATION, MORAY_MODE_ROTATION, MORAY_MODE_OTHER } moray_mode;
 typedef struct moray_floquet {
-    double monodromy[6][6]; // d x(T) / d x(0), x as in moray_control_plant or moray_fp_plant
-    double complex multiplier[6];
-    moray_mode mode[6]; // translations, rotation, then the others, the largest in modulus first
-    double largest;     // modulus among the others
-    bool stable;        // it is below 1 by more than 1e-9, about what rounding and mesh leave
+    double monodromy[MORAY_BODY_STATES]
+                    [MORAY_BODY_STATES]; // d x(T) / d x(0), x as in moray_control_plant or moray_fp_plant
+    double complex multiplier[MORAY_BODY_STATES];
+    moray_mode mode[MORAY_BODY_STATES]; // translations, rotation, then the others, the largest in modulus first
+    double largest;                     // modulus among the others
+    bool stable;                        // it is below 1 by more than 1e-9, about what rounding and mesh leave
 } moray_floquet;
 moray_status moray_orbit_floquet(moray_orbit *orbit, moray_floquet *floquet);
 

@@ -1,46 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Paths in the plane, the problem of following one, and the guidance laws of the field.
+// The problem of following a path, and the guidance laws of the field.
 #ifndef MORAY_SNAKE_PATH_H
 #define MORAY_SNAKE_PATH_H
 
+#include "moray/control/path.h"
 #include "moray/snake/controllers.h"
-#include "moray/num.h"
 #include "moray/snake/receding_horizon.h"
 #include "moray/snake/steering.h"
-
-// ---- Paths ---------------------------------------------------------------------------------------------------------
-
-// A straight leg (curvature 0) or an arc.
-typedef struct moray_path_piece {
-    int leg;                  // from waypoint `leg` to the next, counted from 1; of an arc the leg before it
-    double start;             // distance along the path where it begins [m]
-    double x, y, course;      // there [m], [rad]
-    double length, curvature; // [m], [1/m], positive to the left
-} moray_path_piece;
-
-typedef struct moray_path {
-    int n;
-    moray_path_piece *piece; // owned
-    double length;           // [m]
-} moray_path;
-
-// Through waypoints "X,Y X,Y ..." [m], or those of a CSV file whose first line names the columns x_m,y_m: straight legs
-// joined by arcs of that radius [m] in the corners. Free with moray_path_free. Error: MORAY_INPUT, also where a leg is
-// too short for its arcs; MORAY_IO; MORAY_MEMORY.
-moray_status moray_path_read(moray_path *path, const char *text, double radius);
-void moray_path_free(moray_path *path);
-
-// The point at a distance along the path, which goes on straight before its start and behind its end.
-typedef struct moray_path_point {
-    moray_num x, y, course;
-    double curvature;
-} moray_path_point;
-moray_path_point moray_path_at(const moray_path *path, moray_num along);
-
-// The point of the path nearest to (x, y) of those near the distance `along`: its distance, and how far to the left of
-// the path (x, y) lies.
-void moray_path_project(const moray_path *path, double x, double y, double *along, double *across);
 
 // Who keeps in mind where on the path the swimmer is; begin with where it starts.
 typedef struct moray_path_seeker {
@@ -48,13 +15,6 @@ typedef struct moray_path_seeker {
     double along;
 } moray_path_seeker;
 bool moray_path_seek(const moray_swim_sample *sample, void *seeker); // an observer: false at the end of the path
-
-// Whether a swimmer of this speed through the water makes way along the whole path in the current. Error:
-// MORAY_NOT_SOLVED naming the leg and the numbers where it does not.
-moray_status moray_path_passable(const moray_path *path, double speed, const double current[2]);
-
-// How long such a swimmer takes from a distance along the path to its end, crabbing; NaN where it makes no way [s].
-double moray_path_duration(const moray_path *path, double along, double speed, const double current[2]);
 
 // ---- Following -----------------------------------------------------------------------------------------------------
 
@@ -127,7 +87,7 @@ typedef struct moray_guidance {
     double plan_scale;           // offsets of the swimmer per offset of the plan
     double lookahead, ahead;     // [m]
     double gain;                 // of the integral [m/s]
-    double period;               // between two looks [s]
+    double period;               // between two measurements [s]
     double along, integral;      // now; integral y [m]
 } moray_guidance;
 

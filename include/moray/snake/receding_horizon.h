@@ -1,54 +1,40 @@
 // SPDX-License-Identifier: MIT
 //
-// Receding horizon: a controller that makes a new plan from the measured state every so often.
+// A swimmer steered in receding horizon.
 #ifndef MORAY_SNAKE_RECEDING_HORIZON_H
 #define MORAY_SNAKE_RECEDING_HORIZON_H
 
+#include "moray/control/receding_horizon.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/controllers.h"
 
-// What is planned: problems of one phase with the states and first control of a steering problem, from a state at t on.
-typedef struct moray_replanner {
-    // Makes the problem that begins at t. Error: any; no problem is left then.
-    moray_status (*make)(void *self, double t, const double state[MORAY_STEERING_STATES], void **problem,
-                         const moray_ocp **ocp);
-    void (*free)(void *problem);
-    // Whether what the last problem was made of has changed by t, so that a plan is due at once; NULL: it never does.
-    bool (*changed)(const void *self, double t);
-    void *self;
-    int nu; // controls
-} moray_replanner;
-
-typedef struct moray_receding_horizon_spec {
+// Plans of a steering problem's states and parameters, the second derivative of the offset the first of the controls.
+typedef struct moray_swim_receding_horizon_spec {
     int links;
-    moray_replanner replanner;
+    moray_replanner replanner;             // nx = MORAY_STEERING_STATES, ns = MORAY_STEERING_PARAMETERS
     moray_settings settings;               // of each solve
     const moray_steering_limits *limits;   // of the plans' offset
     const moray_straight_motion *planned;  // of the plans' model: the gait that all plans keep
     const moray_straight_motion *measured; // of the swimmer's model
     double scale;                          // of the swimmer's offset to the plans'
     double horizon, interval;              // length of a plan; between two plans [s]
-    double look;                           // between two looks for a change [s]; 0: none
+    double watch;                          // between two looks for a change [s]; 0: none
     const moray_solution *first;           // where the first plan starts from; NULL: from going straight on
-} moray_receding_horizon_spec;
+} moray_swim_receding_horizon_spec;
 
-typedef struct moray_receding_horizon moray_receding_horizon;
+typedef struct moray_swim_receding_horizon moray_swim_receding_horizon;
 
-// Copies the spec, not what it points to. Error: MORAY_INPUT, MORAY_MEMORY. Free with moray_receding_horizon_free.
-moray_status moray_receding_horizon_new(moray_receding_horizon **receding, const moray_receding_horizon_spec *spec);
-void moray_receding_horizon_free(moray_receding_horizon *receding);
+// A moray_receding_horizon behind a swimmer's eyes: it plans from what the swimmer's state is to the plans' model.
+// Copies the spec, not what it points to. Error: those of moray_receding_horizon_new, and MORAY_INPUT for a replanner
+// of other sizes. Free with moray_swim_receding_horizon_free.
+moray_status moray_swim_receding_horizon_new(moray_swim_receding_horizon **receding,
+                                             const moray_swim_receding_horizon_spec *spec);
+void moray_swim_receding_horizon_free(moray_swim_receding_horizon *receding);
 
-// Plans when one is due, and at a look that finds a change. Where a solve fails the swimmer goes on with the plan it
-// has.
-moray_controller moray_receding_horizon_controller(moray_receding_horizon *receding);
+// Where a solve fails the swimmer goes on with the plan it has.
+moray_swim_controller moray_swim_receding_horizon_controller(moray_swim_receding_horizon *receding);
 
-// Plans made so far, and what they cost of the processor, set-up included.
-typedef struct moray_receding_horizon_record {
-    int plans, failures, iterations;
-    double seconds, longest; // of all plans, of the longest after the first
-    char first_failure[200];
-} moray_receding_horizon_record;
-const moray_receding_horizon_record *moray_receding_horizon_record_of(const moray_receding_horizon *receding);
+const moray_receding_horizon *moray_swim_receding_horizon_engine(const moray_swim_receding_horizon *receding);
 
 // ---- Heading tracking -----------------------------------------------------------------------------------------------
 

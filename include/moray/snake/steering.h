@@ -2,7 +2,7 @@
 //
 // Steering problems: a robot swims on a gait (25) and steers by the joint offset phi_0(t), a piecewise polynomial of
 // limited range, rate and acceleration. One phase; states and control are those of MORAY_JOINTS_STEERED, parameters
-// (a, omega, delta). A task adds what is to be followed or reached.
+// the gait's. A task adds what is to be followed or reached.
 #ifndef MORAY_SNAKE_STEERING_H
 #define MORAY_SNAKE_STEERING_H
 
@@ -10,7 +10,8 @@
 #include "moray/snake/plant.h"
 #include "moray/snake/swim.h"
 
-enum { MORAY_STEERING_STATES = 8, MORAY_STEERING_PARAMETERS = 3 };
+enum { MORAY_STEERING_AMPLITUDE, MORAY_STEERING_OMEGA, MORAY_STEERING_DELTA, MORAY_STEERING_PARAMETERS };
+enum { MORAY_STEERING_CONTROLS = 16 }; // at most: phi_0'' and the task's
 
 // MORAY_INFINITY: no limit.
 typedef struct moray_steering_limits {
@@ -27,7 +28,7 @@ moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const 
 // What a task adds to the steered robot.
 typedef struct moray_steering_task {
     const char *name;
-    int nu, nc, nq;                // further controls, path outputs, integrands
+    int nu, nc, nq;                // further controls (below MORAY_STEERING_CONTROLS), path outputs, integrands
     moray_complex_fn *extra;       // in = [x, phi_0'', further u, s, t] -> [path outputs, integrands]
     int ne;                        // events
     moray_endpoint_fn *events;     // its objective is added to the one below; data: self

@@ -6,6 +6,7 @@
 #ifndef MORAY_SNAKE_SWIM_H
 #define MORAY_SNAKE_SWIM_H
 
+#include "moray/control/closed_loop.h"
 #include "moray/sim.h"
 #include "moray/snake/model.h"
 
@@ -33,21 +34,20 @@ typedef struct moray_offset {
     double value, rate, acceleration;
 } moray_offset;
 
-// Who steers: the offset as a function of time, decided anew at t0 and every `period` after it from what is then
-// measured. `offset` is asked for any t from the last look on, up to the next, and for t0 before the first.
-typedef struct moray_controller {
+// Who steers: a moray_controller of the offset, which measures the swimmer.
+typedef struct moray_swim_controller {
     moray_offset (*offset)(double t, const void *self);
-    void (*look)(const moray_swim_sample *sample, void *self); // NULL: sees nothing
+    moray_status (*measure)(const moray_swim_sample *sample, void *self); // NULL: measures nothing
     double period;
     void *self;
-} moray_controller;
+} moray_swim_controller;
 
 typedef struct moray_swim_plan {
     double t0, t1;
     const moray_gait_change *schedule; // ascending in t, the first not after t0
     int n_changes;
-    const moray_controller *controller; // steers in place of the gait's own offset; NULL: nobody does
-    const double *times;                // of the samples: ascending, within [t0, t1]; may be NULL with n_times 0
+    const moray_swim_controller *controller; // steers in place of the gait's own offset; NULL: nobody does
+    const double *times;                     // of the samples: ascending, within [t0, t1]; may be NULL with n_times 0
     int n_times;
     moray_swim_observer *observe;
     void *observer;
@@ -55,9 +55,9 @@ typedef struct moray_swim_plan {
 } moray_swim_plan;
 
 // Simulates from t0 to t1 in the swimmer's current; x[2N+4] is start and end state, *energy the joint work [J] (may be
-// NULL). Changes of gait, looks of the controller and samples are exact stops; the integrator starts anew at every
-// change and look. When the observer stops the run, the status is ok and x the state last observed; after an error x is
-// the state last reached. Error: MORAY_INPUT (plan, settings), MORAY_MEMORY, MORAY_NUMERIC.
+// NULL). Changes of gait, measurements of the controller and samples are exact stops; the integrator starts anew at
+// every change and measurement. When the observer stops the run, the status is ok and x the state last observed; after
+// an error x is the state last reached. Error: those of moray_closed_loop_run.
 moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings, const moray_swim_plan *plan,
                             double *x, double *energy);
 

@@ -6,10 +6,9 @@
 
 #include <math.h>
 
+#include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
-
-#define DEG (M_PI / 180)
 
 typedef struct gait_job gait_job;
 

@@ -2,7 +2,7 @@
 //
 // The gait of the first-principles plan, by a search over plans: theta_max and delta, each pair with the omega that the
 // power allows and the best steering for it.
-#include "job.h"
+#include "heading.h"
 
 typedef struct hunt {
     heading_job *job;
@@ -57,7 +57,7 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     job->gaits_tried++;
     const bool solved = moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED;
     *f = moray_solution_objective(plan.solution);
-    moray_ticker_show(&job->ticker, "heading_tracking: gait %d: %.1f deg, %.1f deg/s, %.1f deg: objective %.5g",
+    moray_ticker_show(&job->steer.ticker, "heading_tracking: gait %d: %.1f deg, %.1f deg/s, %.1f deg: objective %.5g",
                       job->gaits_tried, x[0] / DEG, gait.omega / DEG, x[1] / DEG, *f);
     if (solved && job->gaits_tried == 1)
         job->first_objective = *f;
@@ -88,8 +88,7 @@ static moray_status search(hunt *h, const moray_gait *start)
     settings.max_evaluations = h->job->gait_evaluations;
     settings.progress = steer_go_on;
     const moray_status status = moray_search(&problem, &settings, x, &info);
-    if (moray_interrupted())
-        return moray_error(MORAY_INTERRUPTED, "interrupted in search of a gait; nothing is written");
+    MORAY_TRY(steer_interruption());
     if (status.code == MORAY_NUMERIC)
         return moray_error(MORAY_NOT_SOLVED, "power_W = %g: no gait within the limits gets by with it", limits->power);
     return status;
@@ -99,7 +98,7 @@ moray_status heading_search_gait(heading_job *job, const moray_gait *start, mora
 {
     hunt h = {.job = job, .spec = heading_spec(job, MORAY_FIRST_PRINCIPLES, false)};
     job->first_objective = job->best_objective = INFINITY;
-    moray_orbit_spec spec = moray_orbit_spec_default(&job->common.robot, MORAY_FIRST_PRINCIPLES);
+    moray_orbit_spec spec = moray_orbit_spec_default(&job->steer.common.robot, MORAY_FIRST_PRINCIPLES);
     spec.steered = false;
     MORAY_TRY(moray_orbit_new(&h.orbit, &spec));
     const moray_status status = search(&h, start);

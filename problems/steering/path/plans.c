@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include <stdarg.h>
-#include <string.h>
-
-#include "job.h"
+#include "path.h"
 
 static const double across_unit = 0.1; // m of cross-track error, in the objective
 
 moray_path_spec path_spec(const path_job *job, moray_model model, bool averaged)
 {
-    const moray_robot *robot = &job->common.robot;
+    const moray_common *common = &job->steer.common;
     // The objective as a tenth of a mean over time: multipliers of the order of one.
-    const double seconds = 10 * job->path.length / job->straight[0][model].speed;
-    return (moray_path_spec){.robot = *robot,
+    const double seconds = 10 * job->path.length / job->steer.straight[0][model].speed;
+    return (moray_path_spec){.robot = common->robot,
                              .model = model,
                              .averaged = averaged,
-                             .current = {job->common.current[0], job->common.current[1]},
-                             .limits = steer_limits(&job->input, robot, &job->straight[0][model]),
+                             .current = {common->current[0], common->current[1]},
+                             .limits = steer_limits(&job->steer, model),
                              .weight = {.across = 1 / (across_unit * across_unit * seconds),
                                         .time = job->weight_time / seconds,
-                                        .steering = job->weight_steering / seconds},
+                                        .steering = job->steer.weight_steering / seconds},
                              .path = &job->path,
                              .tube = fmin(job->tube, MORAY_INFINITY),
                              .reach = job->reach};
@@ -29,7 +26,7 @@ moray_path_spec path_spec(const path_job *job, moray_model model, bool averaged)
 // Speed over ground along a course, crabbing.
 static double way(const path_job *job, double speed, double course)
 {
-    const double *V = job->common.current, c = cos(course), s = sin(course);
+    const double *V = job->steer.common.current, c = cos(course), s = sin(course);
     const double side = V[1] * c - V[0] * s;
     return sqrt(fmax(speed * speed - side * side, 0)) + V[0] * c + V[1] * s;
 }
@@ -54,8 +51,8 @@ static const moray_path_piece *tightest(const path_job *job)
 void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, double *planned)
 {
     enum { points = 4000 };
-    const moray_path_plan *plan = path_last_plan(job);
-    const double *V = job->common.current, speed = plan->straight.speed, course = leg->course;
+    const steer_plan *plan = steer_last_plan(&job->steer);
+    const double *V = job->steer.common.current, speed = plan->straight.speed, course = leg->course;
     double t0, tf, x[MORAY_STEERING_STATES], u[2], sum = 0;
     int n = 0;
     *asked = -asin((V[1] * cos(course) - V[0] * sin(course)) / speed);
@@ -66,150 +63,103 @@ void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, 
         const double part = (u[1] - leg->start) / leg->length;
         if (part < 0.4 || part > 0.8)
             continue;
-        sum += remainder(moray_straight_motion_heading(&plan->straight, t, x[0]) - course, 2 * M_PI);
+        sum += remainder(moray_straight_motion_heading(&plan->straight, t, x[MORAY_STATE_THETA]) - course, 2 * M_PI);
         n++;
     }
     *planned = n ? sum / n : NAN;
 }
 
-static void say(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
-static void say(char *text, size_t size, const char *format, ...)
+static void say_corner(const path_job *job, const moray_path_piece *corner, double turn_rate, char *text, size_t size)
 {
-    const size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
+    steer_say(text, size,
+              "the corner behind leg %d turns by %.4g deg on a radius of %.4g m: at the robot's speed over ground that "
+              "is %.3g deg/s, and with its offset at the limit it turns at %.3g deg/s",
+              corner->leg, fabs(corner->curvature) * corner->length / DEG, fabs(1 / corner->curvature),
+              path_turning(job, corner) / DEG, turn_rate / DEG);
 }
 
-static void say_corner(const path_job *job, const moray_path_piece *corner, char *text, size_t size)
+void path_explain(const steer_job *steer, char *text, size_t size)
 {
-    say(text, size,
-        "the corner behind leg %d turns by %.4g deg on a radius of %.4g m: at the robot's speed over ground that is "
-        "%.3g deg/s, and with its offset at the limit it turns at %.3g deg/s",
-        corner->leg, fabs(corner->curvature) * corner->length / DEG, fabs(1 / corner->curvature),
-        path_turning(job, corner) / DEG, job->turn_rate / DEG);
-}
-
-void path_explain(const path_job *job, char *text, size_t size)
-{
-    const moray_path_plan *plan = path_last_plan(job);
-    const moray_path_spec spec = path_spec(job, job->common.model, false);
-    const steer_saturation share = steer_saturation_of(plan->solution, &spec.limits);
+    const path_job *job = (const path_job *)steer;
+    const moray_model model = steer->common.model;
+    const moray_steering_limits limits = steer_limits(steer, model);
+    const double speed = steer_last_plan(steer)->straight.speed, turn_rate = fabs(steer->turn_rate[model]);
     const moray_path_piece *corner = tightest(job);
-    const bool control = job->common.model == MORAY_CONTROL_ORIENTED;
-    *text = 0;
-    say(text, size,
-        "With |phi_0| at its limit of %.3g %s the robot turns at %.2f deg/s, in still water on a circle of %.3g m, "
-        "which takes %.3g s to build up.",
-        control ? 100 * spec.limits.offset : spec.limits.offset / DEG, control ? "cm" : "deg", job->turn_rate / DEG,
-        plan->straight.speed / job->turn_rate, spec.limits.offset / spec.limits.offset_rate);
-    if (corner && path_turning(job, corner) > job->turn_rate) {
-        say(text, size, " That is too slow: ");
-        say_corner(job, corner, text, size);
-        say(text, size, ".");
+    steer_say_limit(steer, text, size);
+    steer_say(text, size, " at %.2f deg/s, in still water on a circle of %.3g m, which takes %.3g s to build up.",
+              turn_rate / DEG, speed / turn_rate, limits.offset / limits.offset_rate);
+    if (corner && path_turning(job, corner) > turn_rate) {
+        steer_say(text, size, " That is too slow: ");
+        say_corner(job, corner, turn_rate, text, size);
+        steer_say(text, size, ".");
     } else if (corner)
-        say(text, size, " The corners ask for up to %.2f deg/s.", path_turning(job, corner) / DEG);
-    say(text, size, " Swimming straight along the path, crabbing, would take %.1f s by the triangle of velocities.",
-        moray_path_duration(&job->path, 0, plan->straight.speed, job->common.current));
-    say(text, size, " The plan has the offset at its limit for %.0f %% of the time, and its rate for %.0f %%.",
-        100 * share.offset, 100 * share.rate);
+        steer_say(text, size, " The corners ask for up to %.2f deg/s.", path_turning(job, corner) / DEG);
+    steer_say(text, size,
+              " Swimming straight along the path, crabbing, would take %.1f s by the triangle of velocities. T",
+              moray_path_duration(&job->path, 0, speed, steer->common.current));
+    steer_say_saturation(steer, text, size);
 }
 
 static moray_status why_not(const path_job *job, const moray_path_plan *plan)
 {
     char text[400] = "";
-    const moray_nlp_info *info = moray_solution_info(plan->solution);
     const moray_path_piece *corner = tightest(job);
-    if (info->outcome == MORAY_NLP_INTERRUPTED)
-        return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations", info->iterations);
-    if (isfinite(job->tube) && corner && path_turning(job, corner) > job->turn_rate) {
-        say_corner(job, corner, text, sizeof text);
-        return moray_error(MORAY_NOT_SOLVED, "tube_m = %g cannot be kept: %.300s", job->tube, text);
-    }
-    steer_diagnosis(plan->solution, text, sizeof text);
-    return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
+    const double turn_rate = fabs(job->steer.turn_rate[plan->straight.model]);
+    const moray_status told = steer_not_solved(plan->solution);
+    if (told.code != MORAY_NOT_SOLVED || !isfinite(job->tube) || !corner || path_turning(job, corner) <= turn_rate)
+        return told;
+    say_corner(job, corner, turn_rate, text, sizeof text);
+    return moray_error(MORAY_NOT_SOLVED, "tube_m = %g cannot be kept: %.300s", job->tube, text);
 }
 
 // ---- Plans ---------------------------------------------------------------------------------------------------------
 
-static bool show_iteration(void *observer, const moray_progress *at)
-{
-    const path_job *job = observer;
-    moray_ticker_show(&job->ticker, "path_following: iteration %d, objective %.6g, violation %.1e", at->iteration,
-                      at->objective, at->infeasibility);
-    return !moray_interrupted();
-}
-
+// A corner begins and ends with a kink.
 static moray_settings settings_of(path_job *job, bool averaged, const moray_straight_motion *straight)
 {
-    const double per_period = averaged ? 1.2 : job->intervals_per_period, period = 2 * M_PI / straight->gait.omega;
-    const double seconds = moray_path_duration(&job->path, 0, straight->speed, job->common.current);
-    moray_settings settings = moray_settings_default();
-    settings.scheme = averaged ? "radau3" : job->common.scheme;
-    settings.intervals = (int)ceil(seconds / period * per_period) + 4;
-    if (!averaged && job->common.intervals > 0)
-        settings.intervals = job->common.intervals;
-    settings.tolerance = job->common.tol;
-    settings.mesh_tolerance = 1e-4; // a corner begins and ends with a kink
-    settings.max_refinements = averaged ? 0 : job->refinements;
-    settings.barrier = averaged ? 0.1 : 1e-4;
-    settings.progress = show_iteration;
-    settings.observer = job;
-    return settings;
+    const double per_period = averaged ? 1.2 : job->steer.intervals_per_period,
+                 period = 2 * M_PI / straight->gait.omega;
+    const double seconds = moray_path_duration(&job->path, 0, straight->speed, job->steer.common.current);
+    return steer_settings(&job->steer, averaged, (int)ceil(seconds / period * per_period) + 4, 1e-4, 1e-4);
 }
 
-static moray_status find_turn_rate(path_job *job, const moray_straight_motion *straight)
-{
-    const moray_path_spec spec = path_spec(job, straight->model, false);
-    moray_gait gait = straight->gait;
-    gait.offset = spec.limits.offset;
-    MORAY_TRY(moray_turn_rate(&job->common.robot, straight->model, &gait, &job->turn_rate));
-    job->turn_rate = fabs(job->turn_rate);
-    job->speed = straight->speed;
-    return moray_ok();
-}
-
-static moray_status solve(path_job *job, const moray_path_spec *spec, const moray_gait *gait,
+static moray_status solve(path_job *job, moray_model model, bool averaged, const moray_gait *gait,
                           const moray_path_plan *from, moray_path_plan *plan)
 {
+    const moray_path_spec spec = path_spec(job, model, averaged);
     moray_straight_motion straight;
-    MORAY_TRY(moray_straight_motion_find(&straight, &spec->robot, spec->model, gait));
-    MORAY_TRY(moray_path_passable(spec->path, straight.speed, spec->current));
-    MORAY_TRY(find_turn_rate(job, &straight));
-    const moray_settings settings = settings_of(job, spec->averaged, &straight);
-    MORAY_TRY(moray_path_plan_make(plan, spec, &settings, gait, job->start, job->heading, from));
+    MORAY_TRY(moray_straight_motion_find(&straight, &spec.robot, model, gait));
+    MORAY_TRY(moray_path_passable(spec.path, straight.speed, spec.current));
+    MORAY_TRY(steer_find_turn_rate(&job->steer, model, gait));
+    job->speed = straight.speed;
+    const moray_settings settings = settings_of(job, averaged, &straight);
+    MORAY_TRY(moray_path_plan_make(plan, &spec, &settings, gait, job->start, job->heading, from));
     MORAY_TRY(steer_interruption());
-    return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED ? moray_ok() : why_not(job, plan);
+    if (moray_solution_info(plan->solution)->outcome != MORAY_NLP_SOLVED)
+        return why_not(job, plan);
+    return steer_take_plan(&job->steer, averaged ? STEER_AVERAGED : (int)model, plan->solution, &plan->straight);
 }
 
 static moray_status make_plan(path_job *job, moray_model model, const moray_gait *gait, const moray_path_plan *from)
 {
-    const moray_path_spec spec = path_spec(job, model, false);
-    const moray_sim_settings sim = moray_sim_settings_default();
-    const moray_integrator integrator = moray_sim_integrator(&sim);
-    moray_path_plan *plan = &job->plan[model];
-    MORAY_TRY(solve(job, &spec, gait, from, plan));
-    MORAY_TRY(moray_certify(plan->solution, &integrator, &job->certificate[model]));
-    return steer_straight_motions(job->straight[1 + model], &spec.robot, &plan->straight.gait, model);
+    MORAY_TRY(solve(job, model, false, gait, from, &job->plan[model]));
+    return steer_straight_motions(&job->steer, 1 + (int)model, &job->plan[model].straight.gait, model);
 }
 
 moray_status path_make_plans(path_job *job)
 {
-    const moray_robot *robot = &job->common.robot;
-    const moray_gait paper = moray_gait_paper(robot);
+    steer_job *steer = &job->steer;
+    const moray_robot *robot = &steer->common.robot;
+    const moray_gait paper = moray_gait_paper(robot), first = steer_first_gait(steer);
     if (isnan(job->heading))
         job->heading = job->path.piece->course;
-    MORAY_TRY(steer_straight_motions(job->straight[0], robot, &paper, MORAY_CONTROL_ORIENTED));
-    const moray_gait first = steer_first_gait(&job->input, robot);
-    const moray_path_spec averaged = path_spec(job, MORAY_CONTROL_ORIENTED, true);
-    MORAY_TRY(solve(job, &averaged, &first, NULL, &job->averaged));
+    MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
+    MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, true, &first, NULL, &job->averaged));
     MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged.straight.gait, &job->averaged));
-    if (job->common.model == MORAY_CONTROL_ORIENTED)
+    if (steer->common.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
     moray_gait gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
-    const moray_path_spec last = path_spec(job, MORAY_FIRST_PRINCIPLES, false);
-    if (job->find_gait && !steer_gait_given(&job->input))
-        MORAY_TRY(steer_fastest_gait(&job->input, robot, last.limits.power, &gait));
+    if (job->find_gait && !steer_gait_given(steer))
+        MORAY_TRY(steer_fastest_gait(steer, steer_limits(steer, MORAY_FIRST_PRINCIPLES).power, &gait));
     return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->plan[MORAY_CONTROL_ORIENTED]);
 }

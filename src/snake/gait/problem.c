@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "moray/angle.h"
 #include "snake/gait/problem.h"
+#include "snake/swim/limits.h"
 
 moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAMETERS])
 {
@@ -16,24 +18,8 @@ void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAME
     memcpy(s, parameters, sizeof parameters);
 }
 
-static moray_status check_range(const char *name, moray_bounds range, double least, double most, double unit)
-{
-    if (!(range.lower <= range.upper) || range.lower < least || range.upper > most)
-        return moray_error(MORAY_INPUT, "%s = %g:%g: must be a range lo:hi within %g:%g", name, range.lower / unit,
-                           range.upper / unit, least / unit, most / unit);
-    return moray_ok();
-}
-
-static moray_status check_limit(const char *name, double value)
-{
-    if (!(value > 0))
-        return moray_error(MORAY_INPUT, "%s = %g: must be above 0, or none", name, value);
-    return moray_ok();
-}
-
 static moray_status check_spec(const moray_gait_problem_spec *spec)
 {
-    const double degree = M_PI / 180;
     const moray_gait_limits *limits = &spec->limits;
     MORAY_TRY(moray_robot_check(&spec->robot));
     if (spec->joints == MORAY_JOINTS_FREE)
@@ -42,18 +28,17 @@ static moray_status check_spec(const moray_gait_problem_spec *spec)
     const bool control = spec->model == MORAY_CONTROL_ORIENTED;
     if (!control && spec->joints == MORAY_JOINTS_CLOSED_LOOP)
         return moray_error(MORAY_INPUT, "joints: the first-principles model has none in closed loop");
-    MORAY_TRY(check_range("theta_max_deg", limits->theta_max, 0, 89 * degree, degree));
-    MORAY_TRY(check_range("omega_deg_s", limits->omega, 1e-3 * degree, 1e5 * degree, degree));
-    MORAY_TRY(check_range("delta_deg", limits->delta, 1 * degree, 179 * degree, degree));
+    MORAY_TRY(moray_limits_check_gait(limits->theta_max, limits->omega, limits->delta));
     if (control)
-        MORAY_TRY(check_range("phi0_m", limits->offset, -spec->robot.l, spec->robot.l, 1));
+        MORAY_TRY(moray_limits_check_range("phi0_m", limits->offset, -spec->robot.l, spec->robot.l, 1));
     else
-        MORAY_TRY(check_range("phi0_deg", limits->offset, -90 * degree, 90 * degree, degree));
+        MORAY_TRY(
+            moray_limits_check_range("phi0_deg", limits->offset, -90 * MORAY_DEGREE, 90 * MORAY_DEGREE, MORAY_DEGREE));
     const double most = spec->robot.links > 2 ? 1 : 0; // a joint alone has no taper
-    MORAY_TRY(check_range("taper", limits->taper, 0 - most, most, 1));
-    MORAY_TRY(check_limit("power_W", limits->power));
-    MORAY_TRY(check_limit("joint_rate", limits->joint_rate));
-    MORAY_TRY(check_limit("joint_effort", limits->joint_effort));
+    MORAY_TRY(moray_limits_check_range("taper", limits->taper, 0 - most, most, 1));
+    MORAY_TRY(moray_limits_check_above_zero("power_W", limits->power));
+    MORAY_TRY(moray_limits_check_above_zero("joint_rate", limits->joint_rate));
+    MORAY_TRY(moray_limits_check_above_zero("joint_effort", limits->joint_effort));
     if (!(limits->course_speed >= 0 && isfinite(limits->course_speed)))
         return moray_error(MORAY_INPUT, "speed_m_s = %g: must be finite and above 0, or none", limits->course_speed);
     if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]) || !isfinite(spec->course))
@@ -166,8 +151,8 @@ static const char *const goals[][2] = {
     [MORAY_GAIT_THRIFTIEST] = {"thriftiest gait, control-oriented", "thriftiest gait, first principles"}};
 static const char *const s_names[][MORAY_GAIT_PARAMETERS] = {{"a", "omega", "delta", "phi_0", "taper"},
                                                              {"alpha", "omega", "delta", "phi_0", "taper"}};
-static const char *const gait_states[][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
-                                             {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
+static const char *const gait_states[][MORAY_BODY_STATES] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
+                                                             {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
 
 // Bounds of the parameters, s[ns].
 static void fill_parameter_bounds(const moray_gait_problem *problem, moray_bounds *s)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { most_states = 6 + 2 * 512 };
+enum { most_states = MORAY_BODY_STATES + 2 * 512 };
 
 static moray_gait gait_of(const moray_gait_problem *problem, const double *s)
 {

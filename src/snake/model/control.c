@@ -65,7 +65,7 @@ static bool rates(const moray_robot *robot, const double current[2], const doubl
 }
 
 // theta, p_x, p_y, and v_theta, v_t, v_n
-static void body(int N, const double *x, double out[6])
+static void body(int N, const double *x, double out[MORAY_BODY_STATES])
 {
     for (int i = 0; i < 3; i++) {
         out[i] = x[N - 1 + i];
@@ -73,7 +73,7 @@ static void body(int N, const double *x, double out[6])
     }
 }
 
-static void assemble(int N, const double *phi, const double *v_phi, const double in[6], double *x)
+static void assemble(int N, const double *phi, const double *v_phi, const double in[MORAY_BODY_STATES], double *x)
 {
     for (int i = 0; i < N - 1; i++) {
         x[i] = phi[i];

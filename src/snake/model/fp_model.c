@@ -43,7 +43,7 @@ static void joints(int N, const double *x, double *phi, double *v_phi)
 }
 
 // Mean link angle, p_x, p_y, and their rates.
-static void body(int N, const double *x, double out[6])
+static void body(int N, const double *x, double out[MORAY_BODY_STATES])
 {
     for (int half = 0; half < 2; half++, x += N + 2, out += 3) {
         out[0] = 0;
@@ -54,7 +54,7 @@ static void body(int N, const double *x, double out[6])
     }
 }
 
-static void assemble(int N, const double *phi, const double *v_phi, const double in[6], double *x)
+static void assemble(int N, const double *phi, const double *v_phi, const double in[MORAY_BODY_STATES], double *x)
 {
     for (int half = 0; half < 2; half++, x += N + 2, in += 3) {
         moray_fp_angles_d(N, in[0], half ? v_phi : phi, x);

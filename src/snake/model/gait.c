@@ -9,14 +9,16 @@
 
 void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi, double *ddphi)
 {
-    const double omega = gait->omega;
+    const double omega = gait->omega, turn_c = cos(gait->delta), turn_s = sin(gait->delta);
+    double sine = sin(omega * t), cosine = cos(omega * t);
     for (int i = 0; i < n_joints; i++) {
         const double a = gait->amplitude * (1 + gait->taper * taper_place(i, n_joints));
-        const double argument = omega * t + i * gait->delta;
-        const double sine = sin(argument), cosine = cos(argument);
         phi[i] = a * sine + gait->offset; // (25)
         dphi[i] = a * omega * cosine + gait->offset_rate;
         ddphi[i] = -a * omega * omega * sine + gait->offset_acceleration;
+        const double next = sine * turn_c + cosine * turn_s; // a turn by delta costs a tenth of sin and cos
+        cosine = cosine * turn_c - sine * turn_s;
+        sine = next;
     }
     if (gait->series)
         moray_series_add(gait->series, omega, t, phi, dphi, ddphi);

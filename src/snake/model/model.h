@@ -12,8 +12,8 @@ typedef struct snake_model {
     size_t (*scratch_bytes)(int N); // of the scratch space that rates needs
     void (*rest)(int N, double theta, double p_x, double p_y, double *x);
     void (*joints)(int N, const double *x, double *phi, double *v_phi);
-    void (*body)(int N, const double *x, double body[6]);
-    void (*assemble)(int N, const double *phi, const double *v_phi, const double body[6], double *x);
+    void (*body)(int N, const double *x, double body[MORAY_BODY_STATES]);
+    void (*assemble)(int N, const double *phi, const double *v_phi, const double body[MORAY_BODY_STATES], double *x);
     bool (*rates)(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
                   double *u, void *scratch);
     moray_pose (*pose)(const moray_robot *robot, const double *x);

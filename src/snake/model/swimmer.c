@@ -3,16 +3,15 @@
 #include <stdlib.h>
 
 #include "snake/model/model.h"
-#include "snake/model/reading.h"
 
 struct moray_swimmer {
-    moray_robot robot, read; // read: as the reading has it
-    moray_reading reading;
+    moray_robot robot;
     moray_model kind;
     const snake_model *model;
     double current[2];
-    void *scratch;     // of the model
-    double *reference; // phi, phi_ref and their rates, N-1 each
+    moray_swimmer_extra_fn *extra; // NULL: none
+    void *scratch;                 // of the model
+    double *reference;             // phi, phi_ref and their rates, N-1 each
 };
 
 static const snake_model *model_of(moray_model model)
@@ -27,7 +26,7 @@ moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot
     moray_swimmer *made = calloc(1, sizeof *made);
     if (made == NULL)
         return moray_error(MORAY_MEMORY, "a swimmer of %d links: no memory", robot->links);
-    made->robot = made->read = *robot;
+    made->robot = *robot;
     made->kind = model;
     made->model = model_of(model);
     made->scratch = malloc(made->model->scratch_bytes(robot->links));
@@ -70,12 +69,15 @@ void moray_swimmer_set_current(moray_swimmer *swimmer, double V_x, double V_y)
     swimmer->current[1] = V_y;
 }
 
-void moray_swimmer_set_reading(moray_swimmer *swimmer, moray_reading reading)
+void moray_swimmer_current(const moray_swimmer *swimmer, double V[2])
 {
-    if (swimmer->kind != MORAY_CONTROL_ORIENTED)
-        return;
-    swimmer->reading = reading;
-    swimmer->read = moray_reading_robot(&swimmer->robot, reading);
+    V[0] = swimmer->current[0];
+    V[1] = swimmer->current[1];
+}
+
+void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *extra)
+{
+    swimmer->extra = extra;
 }
 
 void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x)
@@ -88,13 +90,13 @@ void moray_swimmer_joints(const moray_swimmer *swimmer, const double *x, double 
     swimmer->model->joints(swimmer->robot.links, x, phi, v_phi);
 }
 
-void moray_state_body(moray_model model, int links, const double *x, double body[6])
+void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES])
 {
     model_of(model)->body(links, x, body);
 }
 
-void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double body[6],
-                           double *x)
+void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
+                           const double body[MORAY_BODY_STATES], double *x)
 {
     const int n = swimmer->robot.links - 1;
     double *phi = swimmer->reference, *v_phi = phi + n;
@@ -112,9 +114,9 @@ static bool all_finite(const double *values, int n)
 
 bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u)
 {
-    const bool regular = swimmer->model->rates(&swimmer->read, swimmer->current, x, ubar, dx, u, swimmer->scratch);
-    if (swimmer->reading & MORAY_READ_23H_PRINTED)
-        dx[moray_swimmer_states(swimmer) - 1] += moray_reading_23h_excess(&swimmer->read, swimmer->current, x);
+    const bool regular = swimmer->model->rates(&swimmer->robot, swimmer->current, x, ubar, dx, u, swimmer->scratch);
+    if (swimmer->extra)
+        swimmer->extra(swimmer, x, dx);
     return regular && all_finite(dx, moray_swimmer_states(swimmer)) &&
            (u == NULL || all_finite(u, swimmer->robot.links - 1));
 }
@@ -133,10 +135,10 @@ void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait,
 
 moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x)
 {
-    return swimmer->model->pose(&swimmer->read, x);
+    return swimmer->model->pose(&swimmer->robot, x);
 }
 
 void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i)
 {
-    swimmer->model->links(&swimmer->read, x, x_i, y_i, angle_i);
+    swimmer->model->links(&swimmer->robot, x, x_i, y_i, angle_i);
 }

@@ -14,7 +14,7 @@
 #include "moray/snake/plant.h"
 #include "snake/model/control_body.h"
 
-enum { states = 8, inputs = 13 };
+enum { states = MORAY_STEERING_STATES, STEERING = states, AMPLITUDE, OMEGA, DELTA, TIME, inputs };
 
 typedef struct average {
     control_body body;
@@ -76,9 +76,11 @@ static void evaluate(void *context, const double complex *in, double complex *ou
 {
     const average *self = context;
     const control_body *b = &self->body;
-    const double complex c = cos(in[0]), s = sin(in[0]), v_theta = in[3], v_t = in[4], v_n = in[5];
-    const double complex phi_0 = in[6], a2 = in[9] * in[9], omega = in[10];
-    const wave of = wave_of(self, in[11]);
+    const double complex c = cos(in[MORAY_STATE_THETA]), s = sin(in[MORAY_STATE_THETA]),
+                         v_theta = in[MORAY_STATE_V_THETA], v_t = in[MORAY_STATE_V_1], v_n = in[MORAY_STATE_V_2];
+    const double complex phi_0 = in[MORAY_STATE_PHI_0], v_phi_0 = in[MORAY_STATE_V_PHI_0], dv_phi_0 = in[STEERING];
+    const double complex a2 = in[AMPLITUDE] * in[AMPLITUDE], omega = in[OMEGA];
+    const wave of = wave_of(self, in[DELTA]);
     const means y = {.s = self->n * phi_0,
                      .q = a2 * of.Q_1 / 2 + phi_0 * phi_0 * self->Q_0,
                      .w = a2 * omega * of.W,
@@ -89,16 +91,16 @@ static void evaluate(void *context, const double complex *in, double complex *ou
     double complex dv_t, dv_n;
     accelerations(b, &y, lift, &dv_t, &dv_n);
     const double complex kappa = b->mu_p * dv_t + b->c_p * y.v_tr;
-    out[0] = v_theta;
-    out[1] = v_t * c - v_n * s;
-    out[2] = v_t * s + v_n * c;
-    out[3] = b->turning * y.v_tr * y.s - b->damping * v_theta; // (20)
-    out[4] = dv_t;
-    out[5] = dv_n;
-    out[6] = in[7];
-    out[7] = in[8];
-    out[8] = b->c_n * (a2 * omega * omega * of.G_1 / 2 + in[7] * in[7] * self->G_0) +
-             b->mt * self->G_0 * in[7] * in[8] + kappa * y.w;
+    out[MORAY_STATE_THETA] = v_theta;
+    out[MORAY_STATE_P_X] = v_t * c - v_n * s;
+    out[MORAY_STATE_P_Y] = v_t * s + v_n * c;
+    out[MORAY_STATE_V_THETA] = b->turning * y.v_tr * y.s - b->damping * v_theta; // (20)
+    out[MORAY_STATE_V_1] = dv_t;
+    out[MORAY_STATE_V_2] = dv_n;
+    out[MORAY_STATE_PHI_0] = v_phi_0;
+    out[MORAY_STATE_V_PHI_0] = dv_phi_0;
+    out[states] = b->c_n * (a2 * omega * omega * of.G_1 / 2 + v_phi_0 * v_phi_0 * self->G_0) +
+                  b->mt * self->G_0 * v_phi_0 * dv_phi_0 + kappa * y.w;
 }
 
 moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec)

@@ -12,7 +12,7 @@
 #include "snake/plant/series.h"
 #include "snake/model/taper.h"
 
-enum { body = 6, most_inputs = 13 };
+enum { body = MORAY_BODY_STATES, most_inputs = 13 };
 
 struct fp_plant {
     moray_plant_spec spec;
@@ -52,9 +52,9 @@ static double complex move(struct fp_plant *plant, const double complex *in, fp_
         gait_motion(plant, s, 0, s[3], in + body);
     else
         gait_motion(plant, s, s[4], s[5], (double complex[]){s[3], 0, 0});
-    moray_fp_angles_z(robot->links, in[0], plant->phi, plant->theta);
-    moray_fp_angles_z(robot->links, in[3], plant->dphi, plant->dtheta);
-    *motion = (fp_motion_z){plant->theta, plant->dtheta, in[4], in[5], plant->ubar};
+    moray_fp_angles_z(robot->links, in[MORAY_STATE_THETA], plant->phi, plant->theta);
+    moray_fp_angles_z(robot->links, in[MORAY_STATE_V_THETA], plant->dphi, plant->dtheta);
+    *motion = (fp_motion_z){plant->theta, plant->dtheta, in[MORAY_STATE_V_1], in[MORAY_STATE_V_2], plant->ubar};
     if (!moray_fp_accelerations_z(robot, plant->spec.current, motion, plant->links, plant->ddtheta, ddp))
         ddp[0] = ddp[1] = NAN;
     return moray_fp_torques_z(robot, motion, plant->links, plant->ddtheta, plant->u);
@@ -69,17 +69,17 @@ static void evaluate(void *self, const double complex *in, double complex *out)
     const double complex power = move(plant, in, &motion, ddp);
     for (int i = 0; i < N; i++)
         mean += plant->ddtheta[i] / N;
-    memcpy(out, in + 3, 3 * sizeof *out);
-    out[3] = mean;
-    out[4] = ddp[0];
-    out[5] = ddp[1];
+    memcpy(out, in + MORAY_STATE_V_THETA, 3 * sizeof *out);
+    out[MORAY_STATE_V_THETA] = mean;
+    out[MORAY_STATE_V_1] = ddp[0];
+    out[MORAY_STATE_V_2] = ddp[1];
     if (plant->spec.joints == MORAY_JOINTS_STEERED)
         memcpy(out + body, in + body + 1, 2 * sizeof *out);
     out += plant->size.nx;
     for (int i = 0; i < N - 1 && plant->spec.path_forces; i++)
         *out++ = plant->u[i];
     for (int i = 0; i < N && plant->spec.path_angles; i++)
-        *out++ = plant->theta[i] - in[0];
+        *out++ = plant->theta[i] - in[MORAY_STATE_THETA];
     *out = power;
 }
 
@@ -115,7 +115,8 @@ static void weighted_gradient(struct fp_plant *plant, const double complex *in, 
     const moray_plant_spec *spec = &plant->spec;
     const int N = spec->robot.links, s = size->nx + size->nu, t = s + size->ns;
     const double *path = weight + size->nx, *on_angles = path + (spec->path_forces ? N - 1 : 0);
-    const fp_weights weights = {weight + 3, spec->path_forces ? path : NULL, weight[size->nx + size->nc]};
+    const fp_weights weights = {weight + MORAY_STATE_V_THETA, spec->path_forces ? path : NULL,
+                                weight[size->nx + size->nc]};
     fp_gradient by = {plant->on_theta, plant->on_dtheta, plant->on_ddtheta, 0, 0};
     double complex *const by_rank[] = {by.theta, by.dtheta, by.ddtheta}, by_gait[5] = {0}, by_offset[3], mean[3],
                           ddp[2];
@@ -130,10 +131,10 @@ static void weighted_gradient(struct fp_plant *plant, const double complex *in, 
         pull_gait(plant, rank, in + s, in[t], plant->on_joints, by_gait, &by_offset[rank]);
     }
     memset(gradient, 0, (size_t)(t + 1) * sizeof *gradient);
-    gradient[0] = mean[0];
-    gradient[3] = mean[1];
-    gradient[4] = by.v_x;
-    gradient[5] = by.v_y;
+    gradient[MORAY_STATE_THETA] = mean[0];
+    gradient[MORAY_STATE_V_THETA] = mean[1];
+    gradient[MORAY_STATE_V_1] = by.v_x;
+    gradient[MORAY_STATE_V_2] = by.v_y;
     if (spec->joints == MORAY_JOINTS_STEERED) {
         memcpy(gradient + body, by_offset, sizeof by_offset);
     } else {

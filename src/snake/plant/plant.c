@@ -10,11 +10,12 @@
 moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
 {
     const int N = spec->robot.links;
-    const moray_plant_size forms[] = {[MORAY_JOINTS_ON_GAIT] = {.nx = 6, .ns = 5},
-                                      [MORAY_JOINTS_CLOSED_LOOP] = {.nx = 2 * N + 4, .ns = 5},
-                                      [MORAY_JOINTS_FREE] = {.nx = 2 * N + 4, .nu = N - 1},
-                                      [MORAY_JOINTS_STEERED] = {.nx = 8, .nu = 1, .ns = 3},
-                                      [MORAY_JOINTS_SERIES] = {.nx = 6, .ns = 1 + (N - 1) * (1 + 2 * spec->harmonics)}};
+    const moray_plant_size forms[] = {
+        [MORAY_JOINTS_ON_GAIT] = {.nx = MORAY_BODY_STATES, .ns = 5},
+        [MORAY_JOINTS_CLOSED_LOOP] = {.nx = 2 * N + 4, .ns = 5},
+        [MORAY_JOINTS_FREE] = {.nx = 2 * N + 4, .nu = N - 1},
+        [MORAY_JOINTS_STEERED] = {.nx = MORAY_STEERING_STATES, .nu = 1, .ns = 3},
+        [MORAY_JOINTS_SERIES] = {.nx = MORAY_BODY_STATES, .ns = 1 + (N - 1) * (1 + 2 * spec->harmonics)}};
     moray_plant_size size = forms[spec->joints];
     size.nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0) + (spec->path_rates ? N - 1 : 0);
     size.nq = 1;

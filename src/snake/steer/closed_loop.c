@@ -6,28 +6,28 @@
 #include <string.h>
 
 struct recorder {
-    moray_closed_loop *closed_loop;
-    const moray_closed_loop_spec *plan;
+    moray_swim_closed_loop *closed_loop;
+    const moray_swim_closed_loop_spec *plan;
 };
 
 static bool record(const moray_swim_sample *sample, void *self)
 {
     const struct recorder *recorder = self;
-    const moray_closed_loop_spec *plan = recorder->plan;
-    const moray_controller *controller = plan->controller;
-    moray_closed_loop *closed_loop = recorder->closed_loop;
+    const moray_swim_closed_loop_spec *plan = recorder->plan;
+    const moray_swim_controller *controller = plan->controller;
+    moray_swim_closed_loop *closed_loop = recorder->closed_loop;
     closed_loop->offset[closed_loop->track.n] = controller ? controller->offset(sample->t, controller->self).value : 0;
     return moray_swim_track_add(sample, &closed_loop->track) &&
            (!plan->observe || plan->observe(sample, plan->observer));
 }
 
 // The joints begin on the gait, with the offset that the controller begins with.
-static void start(const moray_closed_loop_spec *plan, const moray_swimmer *swimmer, double *x)
+static void start(const moray_swim_closed_loop_spec *plan, const moray_swimmer *swimmer, double *x)
 {
     double state[MORAY_STEERING_STATES];
     moray_gait gait = plan->straight->gait;
     moray_straight_motion_start(plan->straight, plan->heading, plan->current, state);
-    memcpy(state + 1, plan->position, sizeof plan->position);
+    memcpy(state + MORAY_STATE_P_X, plan->position, sizeof plan->position);
     if (plan->controller) {
         const moray_offset offset = plan->controller->offset(0, plan->controller->self);
         gait.offset = offset.value;
@@ -36,7 +36,8 @@ static void start(const moray_closed_loop_spec *plan, const moray_swimmer *swimm
     moray_swimmer_on_gait(swimmer, &gait, 0, state, x);
 }
 
-static moray_status sail(moray_closed_loop *closed_loop, const moray_closed_loop_spec *plan, double *times, double *x)
+static moray_status sail(moray_swim_closed_loop *closed_loop, const moray_swim_closed_loop_spec *plan, double *times,
+                         double *x)
 {
     const int n = plan->intervals + 1;
     struct recorder recorder = {closed_loop, plan};
@@ -57,11 +58,11 @@ static moray_status sail(moray_closed_loop *closed_loop, const moray_closed_loop
     return moray_swim_run(closed_loop->swimmer, &settings, &swim, x, NULL);
 }
 
-moray_status moray_closed_loop_run(moray_closed_loop *closed_loop, const moray_closed_loop_spec *plan)
+moray_status moray_swim_closed_loop_run(moray_swim_closed_loop *closed_loop, const moray_swim_closed_loop_spec *plan)
 {
     const int n = plan->intervals + 1, states = 2 * plan->robot->links + 4;
     double *scratch = calloc((size_t)(n + states), sizeof *scratch);
-    *closed_loop = (moray_closed_loop){.offset = calloc((size_t)n, sizeof *closed_loop->offset)};
+    *closed_loop = (moray_swim_closed_loop){.offset = calloc((size_t)n, sizeof *closed_loop->offset)};
     moray_status status =
         scratch && closed_loop->offset ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a closed_loop");
     if (!moray_failed(status))
@@ -74,21 +75,21 @@ moray_status moray_closed_loop_run(moray_closed_loop *closed_loop, const moray_c
     }
     free(scratch);
     if (moray_failed(status))
-        moray_closed_loop_free(closed_loop);
+        moray_swim_closed_loop_free(closed_loop);
     return status;
 }
 
-void moray_closed_loop_free(moray_closed_loop *closed_loop)
+void moray_swim_closed_loop_free(moray_swim_closed_loop *closed_loop)
 {
     moray_swimmer_free(closed_loop->swimmer);
     moray_swim_track_free(&closed_loop->track);
     free(closed_loop->offset);
-    *closed_loop = (moray_closed_loop){0};
+    *closed_loop = (moray_swim_closed_loop){0};
 }
 
-moray_heading_score moray_closed_loop_heading_score(const moray_closed_loop *closed_loop,
-                                                    const moray_straight_motion *straight,
-                                                    const moray_reference *reference)
+moray_heading_score moray_swim_closed_loop_heading_score(const moray_swim_closed_loop *closed_loop,
+                                                         const moray_straight_motion *straight,
+                                                         const moray_reference *reference)
 {
     const moray_swim_track *track = &closed_loop->track;
     const int last = track->n - 1;
@@ -107,8 +108,8 @@ moray_heading_score moray_closed_loop_heading_score(const moray_closed_loop *clo
     return score;
 }
 
-moray_path_score moray_closed_loop_path_score(const moray_closed_loop *closed_loop, const moray_path *path,
-                                              double reach)
+moray_path_score moray_swim_closed_loop_path_score(const moray_swim_closed_loop *closed_loop, const moray_path *path,
+                                                   double reach)
 {
     const moray_swim_track *track = &closed_loop->track;
     moray_path_score score = {.time = NAN};

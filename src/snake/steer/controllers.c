@@ -39,10 +39,10 @@ static void read_orbit(moray_straight_motion *straight, const moray_robot *robot
     straight->speed = found->steady.speed;
     straight->power = found->steady.power;
     moray_state_body(straight->model, robot->links, track->x, straight->body);
-    straight->body[0] -= mean;
+    straight->body[MORAY_STATE_THETA] -= mean;
     if (straight->model == MORAY_FIRST_PRINCIPLES) // else the velocity is in the body's frame
-        turn(-mean, straight->body + 4);
-    straight->body[1] = straight->body[2] = 0;
+        turn(-mean, straight->body + MORAY_STATE_V_1);
+    straight->body[MORAY_STATE_P_X] = straight->body[MORAY_STATE_P_Y] = 0;
 }
 
 moray_status moray_straight_motion_find(moray_straight_motion *straight, const moray_robot *robot, moray_model model,
@@ -85,13 +85,13 @@ void moray_straight_motion_start(const moray_straight_motion *straight, double h
     double water[2] = {current[0], current[1]};
     memset(state, 0, MORAY_STEERING_STATES * sizeof *state);
     memcpy(state, straight->body, sizeof straight->body);
-    state[0] += heading;
+    state[MORAY_STATE_THETA] += heading;
     if (straight->model == MORAY_FIRST_PRINCIPLES)
-        turn(heading, state + 4);
+        turn(heading, state + MORAY_STATE_V_1);
     else
         turn(-state[0], water);
-    state[4] += water[0];
-    state[5] += water[1];
+    state[MORAY_STATE_V_1] += water[0];
+    state[MORAY_STATE_V_2] += water[1];
 }
 
 double moray_straight_motion_heading(const moray_straight_motion *straight, double t, double heading)
@@ -116,9 +116,9 @@ static moray_offset blind(double t, const void *self)
     return moray_plan_offset(self, t);
 }
 
-moray_controller moray_plan_controller(const moray_plan *plan)
+moray_swim_controller moray_plan_controller(const moray_plan *plan)
 {
-    return (moray_controller){.offset = blind, .self = (void *)plan};
+    return (moray_swim_controller){.offset = blind, .self = (void *)plan};
 }
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------
@@ -134,7 +134,7 @@ static double clamp(double value, double limit)
     return fmin(fmax(value, -limit), limit);
 }
 
-static void look(const moray_swim_sample *sample, void *self)
+static moray_status measure(const moray_swim_sample *sample, void *self)
 {
     moray_feedback *feedback = self;
     const double t = sample->t, heading = moray_straight_motion_heading(feedback->straight, t, sample->pose.heading);
@@ -145,9 +145,12 @@ static void look(const moray_swim_sample *sample, void *self)
     feedback->from = t;
     feedback->slope =
         clamp((clamp(wanted, feedback->offset) - feedback->value) / feedback->period, feedback->offset_rate);
+    return moray_ok();
+    return moray_ok();
 }
 
-moray_controller moray_feedback_controller(moray_feedback *feedback)
+moray_swim_controller moray_feedback_controller(moray_feedback *feedback)
 {
-    return (moray_controller){.offset = straight, .look = look, .period = feedback->period, .self = feedback};
+    return (moray_swim_controller){
+        .offset = straight, .measure = measure, .period = feedback->period, .self = feedback};
 }

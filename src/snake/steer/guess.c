@@ -31,12 +31,13 @@ void moray_steering_guess_from_other(steering_guess *guess, const moray_robot *r
         guess->time[k] = t0 + (t - t0) * stretch;
         moray_solution_at(from, 0, t, x, u);
         if (straight->model != to) {
-            const double turn = to == MORAY_FIRST_PRINCIPLES ? x[0] : -x[0], v[2] = {x[4], x[5]};
-            x[4] = v[0] * cos(turn) - v[1] * sin(turn);
-            x[5] = v[0] * sin(turn) + v[1] * cos(turn);
+            const double turn = to == MORAY_FIRST_PRINCIPLES ? x[MORAY_STATE_THETA] : -x[0],
+                         v[2] = {x[MORAY_STATE_V_1], x[MORAY_STATE_V_2]};
+            x[MORAY_STATE_V_1] = v[0] * cos(turn) - v[1] * sin(turn);
+            x[MORAY_STATE_V_2] = v[0] * sin(turn) + v[1] * cos(turn);
         }
-        x[6] *= scale;
-        x[7] *= scale;
+        x[MORAY_STATE_PHI_0] *= scale;
+        x[MORAY_STATE_V_PHI_0] *= scale;
         u[0] *= scale;
     }
     moray_steering_parameters(&mapped, guess->s);

@@ -22,9 +22,17 @@ static double plan_across(const moray_guidance *guidance, double t, double *head
 {
     double x[MORAY_STEERING_STATES], u[2], across;
     moray_solution_at(guidance->plan->solution, 0, t, x, u);
-    *heading = moray_straight_motion_heading(&guidance->plan->straight, t, x[0]);
-    moray_path_project(guidance->path, x[1], x[2], &u[1], &across);
+    *heading = moray_straight_motion_heading(&guidance->plan->straight, t, x[MORAY_STATE_THETA]);
+    moray_path_project(guidance->path, x[MORAY_STATE_P_X], x[MORAY_STATE_P_Y], &u[1], &across);
     return across;
+}
+
+bool moray_path_seek(const moray_swim_sample *sample, void *self)
+{
+    moray_path_seeker *seeker = self;
+    double across;
+    moray_path_project(seeker->path, sample->pose.p_x, sample->pose.p_y, &seeker->along, &across);
+    return seeker->along < seeker->path->length;
 }
 
 double moray_guidance_target(const moray_swim_sample *sample, void *self)

@@ -21,8 +21,9 @@ static void extra(void *self, const double complex *in, double complex *out)
     const double complex *s = in + MORAY_STEERING_STATES + 1, t = s[MORAY_STEERING_PARAMETERS];
     double rate;
     const double reference = moray_reference_at(spec->reference, creal(t), &rate);
-    const double complex swing = spec->undulation[0] * ccos(s[1] * t) + spec->undulation[1] * csin(s[1] * t);
-    const double complex error = in[0] - swing - (reference + rate * (t - creal(t)));
+    const double complex swing = spec->undulation[0] * ccos(s[MORAY_STEERING_OMEGA] * t) +
+                                 spec->undulation[1] * csin(s[MORAY_STEERING_OMEGA] * t);
+    const double complex error = in[MORAY_STATE_THETA] - swing - (reference + rate * (t - creal(t)));
     const double complex steering = in[MORAY_STEERING_STATES] / spec->limits.offset;
     if (task->tube)
         *out++ = error;

@@ -20,9 +20,9 @@ static void guess_from_reference(steering_guess *guess, const moray_heading_spec
         guess->time[k] = spec->t0 + step * k;
         moray_straight_motion_start(straight, moray_reference_at(spec->reference, guess->time[k], &rate), spec->current,
                                     x);
-        memcpy(x + 1, p, sizeof p);
-        p[0] += step * (straight->speed * cos(x[0]) + spec->current[0]);
-        p[1] += step * (straight->speed * sin(x[0]) + spec->current[1]);
+        memcpy(x + MORAY_STATE_P_X, p, sizeof p);
+        p[0] += step * (straight->speed * cos(x[MORAY_STATE_THETA]) + spec->current[0]);
+        p[1] += step * (straight->speed * sin(x[MORAY_STATE_THETA]) + spec->current[1]);
     }
     moray_steering_parameters(&straight->gait, guess->s);
 }
@@ -34,8 +34,8 @@ static moray_status pose_problem(moray_heading_plan *plan, moray_heading_spec *s
     const double heading = moray_reference_at(spec->reference, 0, &rate);
     moray_straight_motion_start(&plan->straight, heading, spec->current, spec->start);
     if (spec->averaged) {
-        spec->start[0] = heading;
-        spec->start[3] = 0;
+        spec->start[MORAY_STATE_THETA] = heading;
+        spec->start[MORAY_STATE_V_THETA] = 0;
     }
     for (int k = 0; k < 2; k++)
         spec->undulation[k] = spec->averaged ? 0 : plan->straight.undulation[k];

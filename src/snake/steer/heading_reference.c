@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "moray/angle.h"
 #include "moray/snake/heading.h"
-
-static const double degree = M_PI / 180;
 
 void moray_reference_free(moray_reference *reference)
 {
@@ -38,7 +37,7 @@ static moray_status add(moray_reference *reference, int *room, double t, double 
         *room = larger;
     }
     reference->time[reference->n] = t;
-    reference->heading[reference->n++] = heading * degree;
+    reference->heading[reference->n++] = heading * MORAY_DEGREE;
     return moray_ok();
 }
 
@@ -71,7 +70,7 @@ static moray_status read_sine(moray_reference *reference, const char *text)
         !isfinite(reference->amplitude) || !isfinite(reference->period) || reference->period <= 0)
         return moray_error(MORAY_INPUT, "reference: sine:%.60s: must be AMPLITUDE,PERIOD in deg and s, PERIOD above 0",
                            text);
-    reference->amplitude *= degree;
+    reference->amplitude *= MORAY_DEGREE;
     return moray_ok();
 }
 

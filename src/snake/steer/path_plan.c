@@ -24,8 +24,8 @@ static void step(dot *d, double seconds)
     double across;
     moray_path_project(d->spec->path, d->x, d->y, &d->along, &across);
     const double course = creal(moray_path_at(d->spec->path, d->along + 0.5 * lookahead).course);
-    const double crab = asin((V[1] * cos(course) - V[0] * sin(course)) / d->speed);
-    const double error = remainder(course - crab - atan(across / lookahead) - d->heading, 2 * M_PI);
+    const double crab = moray_crab_angle(d->speed, V, course);
+    const double error = remainder(course + crab - atan(across / lookahead) - d->heading, 2 * M_PI);
     const double fastest = fabs(d->turn_rate);
     d->rate = fmin(fmax(error / settling, -fastest), fastest);
     d->x += seconds * (d->speed * cos(d->heading) + V[0]);
@@ -62,8 +62,8 @@ static moray_status guess_by_dot(steering_guess *guess, const moray_path_spec *s
     gait.offset = spec->limits.offset;
     dot d = {.spec = spec, .speed = straight->speed, .heading = heading, .along = spec->along};
     MORAY_TRY(moray_turn_rate(&spec->robot, spec->model, &gait, &d.turn_rate));
-    d.x = spec->start[1];
-    d.y = spec->start[2];
+    d.x = spec->start[MORAY_STATE_P_X];
+    d.y = spec->start[MORAY_STATE_P_Y];
     dot first = d;
     for (; first.along < spec->path->length && arrived < 3 * seconds; arrived += seconds / n)
         step(&first, seconds / n);
@@ -84,10 +84,10 @@ static moray_status pose_problem(moray_path_plan *plan, moray_path_spec *spec, c
     double across;
     moray_straight_motion_start(&plan->straight, heading, spec->current, spec->start);
     if (spec->averaged) {
-        spec->start[0] = heading;
-        spec->start[3] = 0;
+        spec->start[MORAY_STATE_THETA] = heading;
+        spec->start[MORAY_STATE_V_THETA] = 0;
     }
-    memcpy(spec->start + 1, position, 2 * sizeof *position);
+    memcpy(spec->start + MORAY_STATE_P_X, position, 2 * sizeof *position);
     spec->along = 0;
     moray_path_project(spec->path, position[0], position[1], &spec->along, &across);
     spec->t0 = spec->duration = 0;
@@ -158,7 +158,7 @@ void moray_path_plan_free(moray_path_plan *plan)
 
 // ---- Receding horizon ----------------------------------------------------------------------------------------------
 
-static moray_status make_again(void *self, double t, const double state[states], void **problem, const moray_ocp **ocp)
+static moray_status make_again(void *self, double t, const double *state, void **problem, const moray_ocp **ocp)
 {
     moray_path_replanner *r = self;
     double across;
@@ -168,7 +168,7 @@ static moray_status make_again(void *self, double t, const double state[states],
     memcpy(r->spec.start, state, sizeof r->spec.start);
     r->spec.t0 = t;
     r->spec.duration = r->horizon;
-    moray_path_project(r->spec.path, state[1], state[2], &r->spec.along, &across);
+    moray_path_project(r->spec.path, state[MORAY_STATE_P_X], state[MORAY_STATE_P_Y], &r->spec.along, &across);
     const moray_status status = moray_path_problem_new(path, &r->spec);
     if (moray_failed(status)) {
         free(path);
@@ -187,5 +187,10 @@ static void free_again(void *problem)
 
 moray_replanner moray_path_replan(moray_path_replanner *replanner)
 {
-    return (moray_replanner){.make = make_again, .free = free_again, .self = replanner, .nu = 2};
+    return (moray_replanner){.nx = states,
+                             .nu = 2,
+                             .ns = MORAY_STEERING_PARAMETERS,
+                             .make = make_again,
+                             .free = free_again,
+                             .self = replanner};
 }

@@ -38,7 +38,8 @@ static void extra(void *self, const double complex *in, double complex *out)
     const moray_path_spec *spec = &task->spec;
     const moray_num along = in[states + 1];
     const moray_path_point at = moray_path_at(spec->path, along);
-    const moray_num c = cos(at.course), s = sin(at.course), dx = in[1] - at.x, dy = in[2] - at.y;
+    const moray_num c = cos(at.course), s = sin(at.course), dx = in[MORAY_STATE_P_X] - at.x,
+                    dy = in[MORAY_STATE_P_Y] - at.y;
     const moray_num across = c * dy - s * dx, steering = in[states] / spec->limits.offset;
     *out++ = c * dx + s * dy;
     if (task->tube)
@@ -50,7 +51,7 @@ static void extra(void *self, const double complex *in, double complex *out)
 static void gain(const moray_ends *at, moray_end_values *out, const void *data)
 {
     const struct moray_path_task *task = data;
-    const moray_num *p = at->phase->xf + 1;
+    const moray_num *p = at->phase->xf + MORAY_STATE_P_X;
     out->objective = -task->rate * (task->ahead[0] * p[0] + task->ahead[1] * p[1] - task->way);
 }
 
@@ -91,7 +92,8 @@ static void set_task(struct moray_path_task *task, const moray_path_spec *spec)
                                      .tube = spec->tube < MORAY_INFINITY};
     if (spec->duration > 0)
         reward(task, spec);
-    moray_path_project(spec->path, spec->start[1], spec->start[2], &along, &task->first_across);
+    moray_path_project(spec->path, spec->start[MORAY_STATE_P_X], spec->start[MORAY_STATE_P_Y], &along,
+                       &task->first_across);
 }
 
 static void set_ends(moray_steering_spec *steering, const moray_path_spec *spec)
@@ -107,9 +109,9 @@ static void set_ends(moray_steering_spec *steering, const moray_path_spec *spec)
     if (spec->duration > 0)
         return;
     steering->tf = moray_between(spec->t0 + 0.3 * seconds, spec->t0 + 3 * seconds);
-    steering->xf[1] = moray_fixed(creal(end.x));
-    steering->xf[2] = moray_fixed(creal(end.y));
-    steering->xf[6] = steering->xf[7] = moray_fixed(0); // steering done
+    steering->xf[MORAY_STATE_P_X] = moray_fixed(creal(end.x));
+    steering->xf[MORAY_STATE_P_Y] = moray_fixed(creal(end.y));
+    steering->xf[MORAY_STATE_PHI_0] = steering->xf[MORAY_STATE_V_PHI_0] = moray_fixed(0); // steering done
 }
 
 static moray_steering_spec steering_spec(const moray_path_spec *spec, struct moray_path_task *task)

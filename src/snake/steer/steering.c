@@ -6,6 +6,8 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "snake/swim/limits.h"
+
 enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2 };
 
 struct moray_steering {
@@ -18,12 +20,15 @@ struct moray_steering {
 
 moray_gait moray_steering_gait(const double s[parameters])
 {
-    return (moray_gait){.amplitude = s[0], .omega = s[1], .delta = s[2]};
+    return (moray_gait){
+        .amplitude = s[MORAY_STEERING_AMPLITUDE], .omega = s[MORAY_STEERING_OMEGA], .delta = s[MORAY_STEERING_DELTA]};
 }
 
 void moray_steering_parameters(const moray_gait *gait, double s[parameters])
 {
-    memcpy(s, (double[]){gait->amplitude, gait->omega, gait->delta}, parameters * sizeof *s);
+    s[MORAY_STEERING_AMPLITUDE] = gait->amplitude;
+    s[MORAY_STEERING_OMEGA] = gait->omega;
+    s[MORAY_STEERING_DELTA] = gait->delta;
 }
 
 moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const moray_steering_limits *limits,
@@ -40,33 +45,18 @@ moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const 
 
 // ---- Checks --------------------------------------------------------------------------------------------------------
 
-static moray_status check_range(const char *name, moray_bounds range, double least, double most, double unit)
-{
-    if (!(range.lower <= range.upper) || range.lower < least || range.upper > most)
-        return moray_error(MORAY_INPUT, "%s = %g:%g: must be a range lo:hi within %g:%g", name, range.lower / unit,
-                           range.upper / unit, least / unit, most / unit);
-    return moray_ok();
-}
-
-static moray_status check_limit(const char *name, double value)
-{
-    if (!(value > 0))
-        return moray_error(MORAY_INPUT, "%s = %g: must be above 0, or none", name, value);
-    return moray_ok();
-}
-
 static moray_status check_spec(const moray_steering_spec *spec)
 {
-    const double degree = M_PI / 180;
     const moray_steering_limits *limits = &spec->limits;
     MORAY_TRY(moray_robot_check(&spec->robot));
-    MORAY_TRY(check_range("theta_max_deg", limits->theta_max, 0, 89 * degree, degree));
-    MORAY_TRY(check_range("omega_deg_s", limits->omega, 1e-3 * degree, 1e5 * degree, degree));
-    MORAY_TRY(check_range("delta_deg", limits->delta, 1 * degree, 179 * degree, degree));
-    MORAY_TRY(check_limit("offset limit", limits->offset));
-    MORAY_TRY(check_limit("offset rate limit", limits->offset_rate));
-    MORAY_TRY(check_limit("offset acceleration limit", limits->offset_acceleration));
-    MORAY_TRY(check_limit("power_W", limits->power));
+    MORAY_TRY(moray_limits_check_gait(limits->theta_max, limits->omega, limits->delta));
+    MORAY_TRY(moray_limits_check_above_zero("offset limit", limits->offset));
+    MORAY_TRY(moray_limits_check_above_zero("offset rate limit", limits->offset_rate));
+    MORAY_TRY(moray_limits_check_above_zero("offset acceleration limit", limits->offset_acceleration));
+    MORAY_TRY(moray_limits_check_above_zero("power_W", limits->power));
+    if (spec->task.nu < 0 || spec->task.nu >= MORAY_STEERING_CONTROLS)
+        return moray_error(MORAY_INPUT, "further controls of %s = %d: must be from 0 to %d", spec->task.name,
+                           spec->task.nu, MORAY_STEERING_CONTROLS - 1);
     if (spec->averaged && spec->model != MORAY_CONTROL_ORIENTED)
         return moray_error(MORAY_INPUT, "averaged: only the control-oriented model has an averaged plant");
     if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]))
@@ -79,8 +69,8 @@ static moray_status check_spec(const moray_steering_spec *spec)
 // a / (L cos(delta/2)) = sin theta_max of (33), or alpha / (2 sin(delta/2)) = theta_max of (27).
 static moray_num amplitude_event(const moray_steering_spec *spec, const moray_num *s)
 {
-    return spec->model == MORAY_CONTROL_ORIENTED ? s[0] / (2 * spec->robot.l * cos(s[2] / 2))
-                                                 : s[0] / (2 * sin(s[2] / 2));
+    const moray_num amplitude = s[MORAY_STEERING_AMPLITUDE], half = s[MORAY_STEERING_DELTA] / 2;
+    return amplitude / (2 * (spec->model == MORAY_CONTROL_ORIENTED ? spec->robot.l * cos(half) : sin(half)));
 }
 
 static moray_bounds amplitude_bounds(const moray_steering_spec *spec)
@@ -126,7 +116,7 @@ static moray_status make_plant(moray_steering *problem)
         problem->plant = plant;
         return moray_ok();
     }
-    double probe[states + 1 + 16 + parameters + 1] = {0};
+    double probe[states + MORAY_STEERING_CONTROLS + parameters + 1] = {0};
     memcpy(probe, typical, sizeof typical);
     for (int k = 0; k < task->nu; k++)
         probe[states + 1 + k] = 0.45 * task->u[k].lower + 0.55 * task->u[k].upper;
@@ -168,7 +158,9 @@ static moray_status make_ocp(moray_steering *problem)
     moray_bounds *x = problem->block, *x0 = x + states, *xf = x0 + states, *u = xf + states, *e = u + nu;
     const char **u_names = problem->names, **e_names = u_names + nu;
     for (int r = 0; r < states; r++)
-        x[r] = r == 6 ? within(limits->offset) : r == 7 ? within(limits->offset_rate) : moray_free();
+        x[r] = r == MORAY_STATE_PHI_0     ? within(limits->offset)
+               : r == MORAY_STATE_V_PHI_0 ? within(limits->offset_rate)
+                                          : moray_free();
     for (int r = 0; r < states; r++) {
         x0[r] = narrower(x[r], spec->x0[r]);
         xf[r] = narrower(x[r], spec->xf[r]);
@@ -261,10 +253,10 @@ double moray_steering_work(const moray_steering *problem, const moray_solution *
 
 moray_offset moray_steering_offset(const moray_solution *solution, double t)
 {
-    double t0, tf, x[states], u[16];
+    double t0, tf, x[states], u[MORAY_STEERING_CONTROLS];
     moray_solution_times(solution, 0, &t0, &tf);
     moray_solution_at(solution, 0, t, x, u);
     if (t > tf)
-        return (moray_offset){.value = x[6]};
-    return (moray_offset){x[6], x[7], u[0]};
+        return (moray_offset){.value = x[MORAY_STATE_PHI_0]};
+    return (moray_offset){x[MORAY_STATE_PHI_0], x[MORAY_STATE_V_PHI_0], u[0]};
 }

@@ -30,9 +30,9 @@ static void events(const moray_ends *at, moray_end_values *out, const void *data
 {
     const moray_turn_task *task = data;
     const double *factor = task->spec.undulation;
-    const moray_num omega = at->s[1], c = cos(omega * at->phase->tf), s = sin(omega * at->phase->tf);
-    out->e[0] = at->phase->xf[0] - factor[0] * c - factor[1] * s;
-    out->e[1] = at->phase->xf[3] - omega * (factor[1] * c - factor[0] * s);
+    const moray_num omega = at->s[MORAY_STEERING_OMEGA], c = cos(omega * at->phase->tf), s = sin(omega * at->phase->tf);
+    out->e[0] = at->phase->xf[MORAY_STATE_THETA] - factor[0] * c - factor[1] * s;
+    out->e[1] = at->phase->xf[MORAY_STATE_V_THETA] - omega * (factor[1] * c - factor[0] * s);
 }
 
 static moray_status check(const moray_turn_spec *spec)
@@ -128,10 +128,10 @@ static void guess_steady(steering_guess *guess, const moray_turn_spec *spec, con
         guess->time[k] = step * k;
         moray_straight_motion_start(straight, heading, V, x);
         if (spec->averaged)
-            x[0] = heading;
-        x[3] = rate;
-        x[6] = fmin(fmax(rate / turn_rate, -0.9), 0.9) * spec->limits.offset;
-        memcpy(x + 1, p, sizeof p);
+            x[MORAY_STATE_THETA] = heading;
+        x[MORAY_STATE_V_THETA] = rate;
+        x[MORAY_STATE_PHI_0] = fmin(fmax(rate / turn_rate, -0.9), 0.9) * spec->limits.offset;
+        memcpy(x + MORAY_STATE_P_X, p, sizeof p);
         for (int i = 0; i < 2; i++)
             p[i] += step * (spec->to_position ? spec->position[i] / seconds
                                               : straight->speed * (i ? sin(heading) : cos(heading)) + V[i]);
@@ -144,7 +144,7 @@ static moray_status pose_problem(moray_turn_plan *plan, moray_turn_spec *spec, d
     const double seconds = likely(spec, plan->straight.speed, turn_rate);
     moray_straight_motion_start(&plan->straight, 0, spec->current, spec->start);
     if (spec->averaged)
-        spec->start[0] = spec->start[3] = 0;
+        spec->start[MORAY_STATE_THETA] = spec->start[MORAY_STATE_V_THETA] = 0;
     for (int k = 0; k < 2; k++)
         spec->undulation[k] = spec->averaged ? 0 : plan->straight.undulation[k];
     spec->shortest = 0.1;

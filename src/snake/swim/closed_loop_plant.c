@@ -28,14 +28,15 @@ void moray_swim_plant_free(swim_plant *plant)
     *plant = (swim_plant){0};
 }
 
+void moray_swim_plant_steer(swim_plant *plant, const double u[SWIM_CONTROLS])
+{
+    plant->gait.offset = u[0];
+    plant->gait.offset_rate = u[1];
+    plant->gait.offset_acceleration = u[2];
+}
+
 static bool rates(swim_plant *plant, double t, const double *x, double *dx)
 {
-    if (plant->controller) {
-        const moray_offset offset = plant->controller->offset(t, plant->controller->self);
-        plant->gait.offset = offset.value;
-        plant->gait.offset_rate = offset.rate;
-        plant->gait.offset_acceleration = offset.acceleration;
-    }
     moray_swimmer_control(plant->swimmer, &plant->gait, t, x, plant->ubar);
     return moray_swimmer_rates(plant->swimmer, x, plant->ubar, dx, plant->u);
 }

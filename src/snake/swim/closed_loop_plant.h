@@ -7,9 +7,8 @@
 #include "moray/snake/swim.h"
 
 typedef struct swim_plant {
-    moray_swimmer *swimmer;             // the caller's
-    moray_gait gait;                    // followed now
-    const moray_controller *controller; // NULL: nobody steers
+    moray_swimmer *swimmer; // the caller's
+    moray_gait gait;        // followed now
     int n_states, n_joints;
     double *x;                           // n_states + 1: room for a start or end state
     double *ubar, *u, *phi, *v_phi, *dx; // scratch
@@ -21,6 +20,10 @@ void moray_swim_plant_free(swim_plant *plant);
 
 // n_states + 1 states; `self` is the plant.
 moray_ode moray_swim_plant_ode(swim_plant *plant);
+
+// Makes the gait's offset the one of u: phi_0 and its first two derivatives.
+enum { SWIM_CONTROLS = 3 };
+void moray_swim_plant_steer(swim_plant *plant, const double u[SWIM_CONTROLS]);
 
 // The sample of the state x[n_states + 1]; points into x and the plant.
 moray_swim_sample moray_swim_plant_sample(swim_plant *plant, double t, const double *x);

@@ -2,6 +2,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "moray/control/path.h"
+#include "moray/snake/orbit.h"
 #include "snake/swim/steady.h"
 
 static const double ON_COURSE = 1e-6; // [rad]
@@ -26,12 +28,12 @@ static moray_status crab_direction(const moray_swim_setup *setup, double course,
                            "the gait's speed through the water U = %.4g m/s cannot hold the course of %.4g deg against "
                            "a cross current of W = %.4g m/s",
                            U, degrees(course), W);
-    if (sqrt(U * U - W * W) + along <= 0)
+    if (moray_course_made_good(U, V, course) <= 0)
         return moray_error(MORAY_NOT_SOLVED,
                            "the gait's speed through the water U = %.4g m/s cannot make way on the course of %.4g deg "
                            "against a current of %.4g m/s along it and W = %.4g m/s across",
                            U, degrees(course), along, W);
-    *direction = course - asin(W / U);
+    *direction = course + moray_crab_angle(U, V, course);
     return moray_ok();
 }
 
@@ -47,12 +49,28 @@ static moray_status error_of(const moray_swim_setup *setup, const moray_gait *ga
     return moray_ok();
 }
 
+// In still water every direction is alike: the whole motion turned by an angle is what swims from a start heading
+// turned by it.
+static void turn(moray_steady *steady, double angle)
+{
+    const double c = cos(angle), s = sin(angle), v_x = steady->v_x, v_y = steady->v_y;
+    steady->v_x = c * v_x - s * v_y;
+    steady->v_y = s * v_x + c * v_y;
+    steady->heading += angle;
+    steady->start_heading += angle;
+}
+
 // Secant on the start heading; the slope is 1 but for what the current does to the transient from rest.
 static moray_status hold(const moray_swim_setup *setup, const moray_gait *gait, double course, double start_heading,
                          moray_steady *steady)
 {
+    const bool still = setup->current[0] == 0 && setup->current[1] == 0;
     double heading = start_heading, slope = 1, error;
     MORAY_TRY(error_of(setup, gait, course, heading, 0, steady, &error));
+    if (still) {
+        turn(steady, -error);
+        return moray_ok();
+    }
     for (int k = 0; k < MOST_STEPS && fabs(error) > ON_COURSE; k++) {
         const double step = -error / slope, before = error;
         heading += step;
@@ -80,17 +98,39 @@ typedef struct {
     bool is_power;
 } aim;
 
-static moray_status match(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
-                          moray_steady *steady)
+static double mismatch(const aim *to, const moray_steady *steady)
 {
-    if (!(to->target > 0 && isfinite(to->target)))
-        return moray_error(MORAY_INPUT, "%s to match = %g %s: must be finite and above 0", to->name, to->target,
-                           to->unit);
-    double slope = to->exponent, heading = course, step = 0, before = 0;
+    return log((to->is_power ? steady->power : steady->speed) / to->target);
+}
+
+// How a gait is swum on the course while omega changes: as the periodic orbit, or simulated from rest.
+typedef struct {
+    const moray_swim_setup *setup;
+    double course;
+    moray_orbit *orbit; // NULL: simulated
+    double heading;     // where the last simulation began
+} trier;
+
+static moray_status try_gait(trier *by, const moray_gait *gait, moray_steady *steady)
+{
+    if (by->orbit) {
+        moray_orbit_result found;
+        MORAY_TRY(moray_orbit_solve(by->orbit, gait, &found));
+        *steady = found.steady;
+        return moray_ok();
+    }
+    MORAY_TRY(hold(by->setup, gait, by->course, by->heading, steady));
+    by->heading = steady->start_heading;
+    return moray_ok();
+}
+
+static moray_status match_by(trier *by, moray_gait *gait, const aim *to, moray_steady *steady)
+{
+    double slope = to->exponent, step = 0, before = 0;
     for (int k = 0; k < MOST_STEPS; k++) {
-        MORAY_TRY(hold(setup, gait, course, heading, steady));
-        const double value = to->is_power ? steady->power : steady->speed, error = log(value / to->target);
-        if (fabs(error) <= MATCHED)
+        MORAY_TRY(try_gait(by, gait, steady));
+        const double error = mismatch(to, steady);
+        if (fabs(error) <= (by->orbit ? 0.01 : 1) * MATCHED)
             return moray_ok();
         if (!isfinite(error))
             break;
@@ -98,11 +138,40 @@ static moray_status match(const moray_swim_setup *setup, moray_gait *gait, doubl
             slope = fmax((error - before) / step, 0.2 * to->exponent);
         step = fmax(fmin(-error / slope, 1), -1);
         before = error;
-        heading = steady->start_heading;
         gait->omega *= exp(step);
     }
     return moray_error(MORAY_NOT_SOLVED, "no omega found at which the %s is %.6g %s: it is %.6g at omega = %.6g rad/s",
                        to->name, to->target, to->unit, to->is_power ? steady->power : steady->speed, gait->omega);
+}
+
+static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
+                                    moray_steady *steady)
+{
+    const moray_swimmer *swimmer = setup->swimmer;
+    moray_orbit_spec spec = moray_orbit_spec_default(moray_swimmer_robot(swimmer), moray_swimmer_model(swimmer));
+    trier by = {.setup = setup, .course = course};
+    spec.current[0] = setup->current[0];
+    spec.current[1] = setup->current[1];
+    spec.course = course;
+    MORAY_TRY(moray_orbit_new(&by.orbit, &spec));
+    const moray_status status = match_by(&by, gait, to, steady);
+    moray_orbit_free(by.orbit);
+    return status;
+}
+
+// The search goes over orbits, which take a hundredth of the time of a simulation from rest; what is returned is
+// simulated, from there on, so that it does not depend on there being an orbit or on its offset being the gait's.
+static moray_status match(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
+                          moray_steady *steady)
+{
+    if (!(to->target > 0 && isfinite(to->target)))
+        return moray_error(MORAY_INPUT, "%s to match = %g %s: must be finite and above 0", to->name, to->target,
+                           to->unit);
+    trier by = {.setup = setup, .course = course, .heading = course};
+    moray_gait tried = *gait;
+    if (!gait->series && !moray_failed(match_on_orbits(setup, &tried, course, to, steady)))
+        gait->omega = tried.omega;
+    return match_by(&by, gait, to, steady);
 }
 
 moray_status moray_swim_match_power(const moray_swim_setup *setup, moray_gait *gait, double course, double power,

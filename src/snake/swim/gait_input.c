@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/gait_input.h"
 
-static const double DEGREE = M_PI / 180;
+#include "moray/angle.h"
+
 static const double AGREE = 1e-6; // relative difference of two that say the same
 
 moray_gait_input moray_gait_input_default(void)
@@ -9,8 +10,8 @@ moray_gait_input moray_gait_input_default(void)
     return (moray_gait_input){.theta_max = NAN,
                               .a = NAN,
                               .alpha = NAN,
-                              .omega = 120 * DEGREE,
-                              .delta = 40 * DEGREE,
+                              .omega = 120 * MORAY_DEGREE,
+                              .delta = 40 * MORAY_DEGREE,
                               .phi0_m = NAN,
                               .phi0 = NAN};
 }
@@ -55,10 +56,10 @@ static moray_status amplitude_of(const moray_gait_input *input, const moray_robo
 {
     const double delta = input->delta;
     const statement said[] = {
-        {"theta_max_deg", input->theta_max / DEGREE,
+        {"theta_max_deg", input->theta_max / MORAY_DEGREE,
          moray_amplitude_from_theta_max(robot, model, input->theta_max, delta)},
         {"a_m", input->a, convert(robot, MORAY_CONTROL_ORIENTED, model, input->a, delta)},
-        {"alpha_deg", input->alpha / DEGREE, convert(robot, MORAY_FIRST_PRINCIPLES, model, input->alpha, delta)},
+        {"alpha_deg", input->alpha / MORAY_DEGREE, convert(robot, MORAY_FIRST_PRINCIPLES, model, input->alpha, delta)},
     };
     for (int i = 0; i < 3; i++)
         if (!isnan(said[i].given) && isnan(said[i].value))
@@ -66,9 +67,9 @@ static moray_status amplitude_of(const moray_gait_input *input, const moray_robo
                 MORAY_INPUT,
                 "%s = %.10g: no link-angle amplitude below 90 deg belongs to it at delta_deg = %.10g, so "
                 "it cannot be mapped to the %s model",
-                said[i].key, said[i].given, delta / DEGREE,
+                said[i].key, said[i].given, delta / MORAY_DEGREE,
                 model == MORAY_CONTROL_ORIENTED ? "control-oriented" : "first-principles");
-    return agree(said, 3, moray_amplitude_from_theta_max(robot, model, 20 * DEGREE, delta), amplitude);
+    return agree(said, 3, moray_amplitude_from_theta_max(robot, model, 20 * MORAY_DEGREE, delta), amplitude);
 }
 
 // The offset in the other model of one in the model whose gait has this amplitude.
@@ -83,7 +84,8 @@ static double offset_from(const moray_robot *robot, moray_model model, const mor
 static moray_status offset_of(const moray_gait_input *input, const moray_robot *robot, moray_model model,
                               const moray_gait *gait, double *offset)
 {
-    statement said[] = {{"phi0_m", input->phi0_m, input->phi0_m}, {"phi0_deg", input->phi0 / DEGREE, input->phi0}};
+    statement said[] = {{"phi0_m", input->phi0_m, input->phi0_m},
+                        {"phi0_deg", input->phi0 / MORAY_DEGREE, input->phi0}};
     statement *other = &said[model == MORAY_CONTROL_ORIENTED];
     const double given = other->value;
     if (!isnan(given) && given != 0) {

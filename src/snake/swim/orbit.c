@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Newton's method on the whole orbit at once. Shooting would need the orbit of a start state before it knew anything
-// of the closing conditions; here every node has its own state, a guess as crude as a straight glide will do, and the
-// discrete orbit is to the last digit the one of the optimal-gait problem on the same mesh.
+// The discrete orbit is to the last digit the one of the optimal-gait problem on the same mesh.
 #include "snake/swim/orbit.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ITERATIONS = 40, MOST_HALVINGS = 8 };
-static const double CLOSED = 1e-11; // largest defect that counts as none
-static const double SETTLED = 1e-8; // largest step after which the next is lost in rounding
+#include "moray/snake/plant.h"
 
 moray_orbit_spec moray_orbit_spec_default(const moray_robot *robot, moray_model model)
 {
@@ -31,30 +27,43 @@ static moray_status check_spec(const moray_orbit_spec *spec)
 
 static moray_status make_memory(moray_orbit *orbit)
 {
-    const size_t n = (size_t)orbit->system.unknowns, points = (size_t)orbit->system.scheme.points;
-    const size_t states = (size_t)moray_swimmer_states(orbit->swimmer), joints = (size_t)orbit->system.plant.n_out;
-    const size_t slope = (size_t)orbit->system.outputs * ORBIT_INPUTS;
-    double *memory = calloc(4 * n + 2 * states + 4 * joints + 2 * points + slope, sizeof *memory);
-    if (!memory)
-        return moray_error(MORAY_MEMORY, "no memory for an orbit of %d nodes", orbit->system.nodes);
-    orbit->z = memory;
-    orbit->F = orbit->z + n;
-    orbit->step = orbit->F + n;
-    orbit->trial = orbit->step + n;
-    orbit->x = orbit->trial + n;
+    const size_t states = (size_t)moray_swimmer_states(orbit->swimmer), joints = (size_t)orbit->spec.robot.links - 1;
+    orbit->x = calloc(2 * states + 4 * joints, sizeof *orbit->x);
+    if (!orbit->x)
+        return moray_error(MORAY_MEMORY, "no memory for an orbit of %d links", orbit->spec.robot.links);
     orbit->dx = orbit->x + states;
     orbit->u = orbit->dx + states;
     orbit->phi = orbit->u + joints;
-    orbit->ell = orbit->phi + 3 * joints;
-    orbit->integral = orbit->ell + points;
-    orbit->slope = orbit->integral + points;
     return moray_ok();
 }
 
-static moray_status make(moray_orbit *orbit, const moray_orbit_spec *spec)
+static moray_status make_plant(moray_orbit *orbit)
 {
-    MORAY_TRY(moray_orbit_system_new(&orbit->system, spec));
-    MORAY_TRY(moray_sparse_lu_new(&orbit->lu, orbit->system.unknowns, &orbit->system.jacobian.pattern));
+    const moray_orbit_spec *spec = &orbit->spec;
+    const moray_plant_spec plant = {.robot = spec->robot,
+                                    .joints = MORAY_JOINTS_ON_GAIT,
+                                    .current = {spec->current[0], spec->current[1]},
+                                    .path_forces = true};
+    return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&orbit->plant, &plant)
+                                                 : moray_fp_plant(&orbit->plant, &plant);
+}
+
+static moray_status make(moray_orbit *orbit, const char *scheme)
+{
+    static const int found[] = {ORBIT_OFFSET};
+    const moray_orbit_spec *spec = &orbit->spec;
+    MORAY_TRY(make_plant(orbit));
+    MORAY_TRY(moray_orbit_closing(orbit));
+    const moray_periodic_orbit_spec engine = {.nx = ORBIT_STATES,
+                                              .ns = ORBIT_GAIT,
+                                              .nw = !spec->steered,
+                                              .plant = &orbit->plant,
+                                              .closing = &orbit->closing,
+                                              .found = found,
+                                              .n_found = spec->steered,
+                                              .scheme = scheme,
+                                              .intervals = spec->intervals};
+    MORAY_TRY(moray_periodic_orbit_new(&orbit->engine, &engine));
     MORAY_TRY(moray_swimmer_new(&orbit->swimmer, &spec->robot, spec->model));
     moray_swimmer_set_current(orbit->swimmer, spec->current[0], spec->current[1]);
     return make_memory(orbit);
@@ -67,7 +76,9 @@ moray_status moray_orbit_new(moray_orbit **result, const moray_orbit_spec *spec)
     moray_orbit *orbit = calloc(1, sizeof *orbit);
     if (!orbit)
         return moray_error(MORAY_MEMORY, "no memory for an orbit");
-    moray_status status = make(orbit, spec);
+    orbit->spec = *spec;
+    orbit->spec.scheme = NULL;
+    const moray_status status = make(orbit, spec->scheme);
     if (moray_failed(status))
         moray_orbit_free(orbit);
     else
@@ -79,83 +90,26 @@ void moray_orbit_free(moray_orbit *orbit)
 {
     if (!orbit)
         return;
-    moray_orbit_system_free(&orbit->system);
-    moray_sparse_lu_free(orbit->lu);
+    moray_periodic_orbit_free(orbit->engine);
+    moray_map_release(&orbit->plant);
+    moray_map_release(&orbit->closing);
     moray_swimmer_free(orbit->swimmer);
-    free(orbit->z);
+    free(orbit->x);
     free(orbit);
 }
 
-// ---- Newton's method -----------------------------------------------------------------------------------------------
-
-static double largest(const double *values, int n)
-{
-    double most = 0;
-    for (int k = 0; k < n; k++)
-        most = fmax(most, fabs(values[k]));
-    return most;
-}
-
-// z + scale step into trial, and its residual; false where that is not finite.
-static bool try_step(moray_orbit *orbit, double scale, double *residual)
-{
-    const int n = orbit->system.unknowns;
-    for (int k = 0; k < n; k++)
-        orbit->trial[k] = orbit->z[k] - scale * orbit->step[k];
-    const bool finite = moray_orbit_residual(&orbit->system, orbit->trial, orbit->F);
-    *residual = largest(orbit->F, n);
-    return finite;
-}
-
-// A whole step, or the longest of its halves that brings the residual down unless it is down already.
-static bool advance(moray_orbit *orbit, double *residual)
-{
-    const double before = *residual;
-    double scale = 1;
-    for (int k = 0; k < MOST_HALVINGS; k++, scale /= 2)
-        if (try_step(orbit, scale, residual) && (*residual < before || *residual <= CLOSED)) {
-            memcpy(orbit->z, orbit->trial, (size_t)orbit->system.unknowns * sizeof *orbit->z);
-            return true;
-        }
-    return false;
-}
-
-static moray_status newton(moray_orbit *orbit, int *iterations, double *residual)
-{
-    orbit_system *system = &orbit->system;
-    const size_t size = (size_t)system->unknowns * sizeof(double);
-    if (!moray_orbit_residual(system, orbit->z, orbit->F))
-        return moray_error(MORAY_NOT_SOLVED, "the model is not finite where the search for an orbit starts");
-    *residual = largest(orbit->F, system->unknowns);
-    for (int k = 0; k < MOST_ITERATIONS; k++) {
-        moray_orbit_slopes(system, orbit->z);
-        MORAY_TRY(moray_sparse_lu_factor(orbit->lu, system->values));
-        memcpy(orbit->step, orbit->F, size);
-        MORAY_TRY(moray_sparse_lu_solve(orbit->lu, 1, orbit->step));
-        if (!advance(orbit, residual))
-            break;
-        (*iterations)++;
-        if (*residual <= CLOSED && largest(orbit->step, system->unknowns) <= SETTLED)
-            return moray_ok();
-    }
-    return moray_error(MORAY_NOT_SOLVED, "defects of %.2g are left after %d steps of Newton's method", *residual,
-                       *iterations);
-}
+// ---- Solving -------------------------------------------------------------------------------------------------------
 
 // A straight glide along the course, at a link length a second through the water.
-static void glide(moray_orbit *orbit)
+static void glide(double t, double *x, const void *self)
 {
-    const moray_orbit_spec *spec = &orbit->system.spec;
+    const moray_orbit_spec *spec = self;
     const bool control = spec->model == MORAY_CONTROL_ORIENTED;
     const double c = cos(spec->course), s = sin(spec->course), pace = 2 * spec->robot.l;
     const double v_x = spec->current[0] + pace * c, v_y = spec->current[1] + pace * s;
-    for (int node = 0; node < orbit->system.nodes; node++) {
-        const double t = moray_orbit_time(&orbit->system, node);
-        const double x[ORBIT_STATES] = {
-            spec->course, v_x * t, v_y * t, 0, control ? v_x * c + v_y * s : v_x, control ? v_y * c - v_x * s : v_y};
-        memcpy(orbit->z + node * ORBIT_STATES, x, sizeof x);
-    }
-    orbit->z[orbit->system.unknowns - 1] = spec->steered ? orbit->gait.offset : 0;
+    const double state[ORBIT_STATES] = {
+        spec->course, v_x * t, v_y * t, 0, control ? v_x * c + v_y * s : v_x, control ? v_y * c - v_x * s : v_y};
+    memcpy(x, state, sizeof state);
 }
 
 static moray_status check_gait(const moray_gait *gait)
@@ -174,53 +128,51 @@ static moray_status no_orbit(const moray_orbit *orbit, const moray_status *why)
     return moray_error(MORAY_NOT_SOLVED,
                        "no periodic orbit found for amplitude = %.5g, omega = %.5g, delta = %.5g in a current of "
                        "(%g, %g) m/s on the course of %.5g: %.120s",
-                       gait->amplitude, gait->omega, gait->delta, orbit->system.spec.current[0],
-                       orbit->system.spec.current[1], orbit->system.spec.course, why->text);
+                       gait->amplitude, gait->omega, gait->delta, orbit->spec.current[0], orbit->spec.current[1],
+                       orbit->spec.course, why->text);
 }
 
 // From the orbit found before, if there is one, then from a glide.
-static moray_status search(moray_orbit *orbit, int *iterations, double *residual)
+static moray_status search(moray_orbit *orbit, const double p[ORBIT_PARAMETERS], moray_orbit_result *result)
 {
+    static const double no_turn = 0;
+    const moray_periodic_orbit_guess straight = {.state = glide, .self = &orbit->spec, .w = &no_turn};
     moray_status status = moray_error(MORAY_NOT_SOLVED, "no orbit to start from");
-    if (orbit->found)
-        status = newton(orbit, iterations, residual);
-    if (status.code == MORAY_NOT_SOLVED || status.code == MORAY_NUMERIC) {
-        glide(orbit);
-        status = newton(orbit, iterations, residual);
+    for (int from_glide = !orbit->found; from_glide <= 1; from_glide++) {
+        moray_periodic_orbit_info info;
+        status = moray_periodic_orbit_solve(orbit->engine, p, from_glide ? &straight : NULL, &info);
+        result->iterations += info.iterations;
+        result->residual = info.residual;
+        if (status.code != MORAY_NOT_SOLVED && status.code != MORAY_NUMERIC)
+            return status;
     }
-    if (status.code == MORAY_NOT_SOLVED || status.code == MORAY_NUMERIC)
-        return no_orbit(orbit, &status);
-    return status;
+    return no_orbit(orbit, &status);
 }
 
 moray_status moray_orbit_solve(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result)
 {
-    const double parameters[] = {gait->amplitude, gait->omega, gait->delta, gait->offset, gait->taper};
     *result = (moray_orbit_result){.gait = *gait};
     MORAY_TRY(check_gait(gait));
+    const double p[ORBIT_PARAMETERS] = {gait->amplitude, gait->omega, gait->delta,
+                                        gait->offset,    gait->taper, 2 * M_PI / gait->omega};
     orbit->gait = *gait;
-    orbit->factored = false;
-    memcpy(orbit->system.parameters, parameters, sizeof parameters);
-    moray_status status = search(orbit, &result->iterations, &result->residual);
+    moray_status status = search(orbit, p, result);
     orbit->found = !moray_failed(status);
     if (moray_failed(status))
         return status;
-    if (orbit->system.spec.steered)
-        orbit->gait.offset = orbit->z[orbit->system.unknowns - 1];
+    orbit->gait.offset = moray_periodic_orbit_parameters(orbit->engine)[ORBIT_OFFSET];
     result->gait = orbit->gait;
     status = moray_orbit_measure(orbit, &result->steady);
     orbit->found = !moray_failed(status);
     return status;
 }
 
-moray_status moray_orbit_factor(moray_orbit *orbit)
+double moray_orbit_turn(const moray_orbit *orbit)
 {
-    if (!orbit->found)
-        return moray_error(MORAY_INPUT, "no orbit has been found yet");
-    if (orbit->factored)
-        return moray_ok();
-    moray_orbit_slopes(&orbit->system, orbit->z);
-    MORAY_TRY(moray_sparse_lu_factor(orbit->lu, orbit->system.values));
-    orbit->factored = true;
-    return moray_ok();
+    return orbit->spec.steered ? 0 : moray_periodic_orbit_unknowns(orbit->engine)[0];
+}
+
+moray_status moray_orbit_check_found(const moray_orbit *orbit)
+{
+    return orbit->found ? moray_ok() : moray_error(MORAY_INPUT, "no orbit has been found yet");
 }

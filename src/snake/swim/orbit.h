@@ -2,8 +2,14 @@
 #ifndef SRC_SNAKE_SWIM_ORBIT_H
 #define SRC_SNAKE_SWIM_ORBIT_H
 
-#include "snake/swim/orbit_system.h"
-#include "nlp/klu.h"
+#include "moray/control/periodic_orbit.h"
+#include "moray/snake/orbit.h"
+
+// States of the plant with its joints on a gait, and parameters p of its orbit: those of the gait, then the period.
+// What is found is the offset where the heading returns, else the turn a period, the w of the orbit.
+enum { ORBIT_STATES = 6, ORBIT_GAIT = 5, ORBIT_PARAMETERS = ORBIT_GAIT + 1 };
+enum { ORBIT_OMEGA = 1, ORBIT_OFFSET = 3, ORBIT_PERIOD = ORBIT_GAIT };
+enum { ORBIT_ENDS = 2 * ORBIT_STATES + ORBIT_PARAMETERS }; // inputs of the closing conditions, without w
 
 // Where the largest joint effort was sampled.
 typedef struct orbit_peak {
@@ -13,35 +19,28 @@ typedef struct orbit_peak {
 } orbit_peak;
 
 struct moray_orbit {
-    orbit_system system;
-    sparse_lu *lu;
-    double *z;                // [unknowns], the orbit
-    double *F, *step, *trial; // [unknowns], Newton's; step serves the adjoint solves too
+    moray_orbit_spec spec; // without the scheme's name
+    moray_map plant;       // with joint efforts and, last, their power
+    moray_map closing;
+    moray_periodic_orbit *engine;
     moray_swimmer *swimmer;   // shows the orbit as simulations do
     double *x, *dx, *u, *phi; // the swimmer's state and rates, efforts; phi, v_phi, ubar of the gait
-    double *ell, *integral;   // [points] basis of the scheme
-    double *slope;            // [outputs][ORBIT_INPUTS] of the plant between the nodes
     moray_gait gait;
     bool found;
-    bool factored; // slopes and factors are those of the orbit
     orbit_peak peak;
 };
 
-// Slopes and factors at the orbit, where Newton's method has left those of the step before. Error: MORAY_NUMERIC,
-// MORAY_MEMORY; MORAY_INPUT without an orbit.
-moray_status moray_orbit_factor(moray_orbit *orbit);
+// How the orbit closes: p(0) = 0; heading, rate of turn and velocity through the water return, turned; no displacement
+// across the course. Uses orbit->spec. Error: MORAY_MEMORY.
+moray_status moray_orbit_closing(moray_orbit *orbit);
 
-// The interval of time t; the scheme's basis there into `integral`.
-int moray_orbit_locate(moray_orbit *orbit, double t);
+// The turn a period, 0 where the heading returns.
+double moray_orbit_turn(const moray_orbit *orbit);
 
-// Component `row` of the plant's output integrated from the interval's start to where moray_orbit_locate was asked for.
-double moray_orbit_integral(const moray_orbit *orbit, int interval, int row);
+// Error: MORAY_INPUT when there is no orbit.
+moray_status moray_orbit_check_found(const moray_orbit *orbit);
 
-// The orbit's state there.
-void moray_orbit_state(const moray_orbit *orbit, int interval, double x[ORBIT_STATES]);
-
-// The swimmer on the orbit at time t; points into the orbit. Energy counts from t = 0 when it is called for ascending
-// times.
+// The swimmer on the orbit at time t; points into the orbit. Energy counts from t = 0. Error: MORAY_NUMERIC.
 moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample *sample);
 
 // Means over the period and peaks over samples of every degree; sets orbit->peak. Error: MORAY_NUMERIC.

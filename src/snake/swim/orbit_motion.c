@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The orbit as a motion: states between the nodes, the swimmer on it, means and peaks.
+// The orbit as a motion: the swimmer on it, means and peaks.
 #include <math.h>
 #include <string.h>
 
@@ -8,50 +8,16 @@
 #include "snake/swim/steady.h"
 #include "snake/model/fp_model.h"
 
-int moray_orbit_locate(moray_orbit *orbit, double t)
+static double period_of(const moray_orbit *orbit)
 {
-    const orbit_system *system = &orbit->system;
-    const double h = moray_orbit_step(system), last = system->spec.intervals - 1;
-    const double interval = fmax(0, fmin(floor(t / h), last));
-    moray_scheme_basis(&system->scheme, t / h - interval, orbit->ell, orbit->integral);
-    return (int)interval;
-}
-
-double moray_orbit_integral(const moray_orbit *orbit, int interval, int row)
-{
-    const orbit_system *system = &orbit->system;
-    const int points = system->scheme.points;
-    const double *out = system->out + interval * (points - 1) * system->outputs + row;
-    double sum = 0;
-    for (int j = 0; j < points; j++)
-        sum += orbit->integral[j] * out[j * system->outputs];
-    return moray_orbit_step(system) * sum;
-}
-
-void moray_orbit_state(const moray_orbit *orbit, int interval, double x[ORBIT_STATES])
-{
-    const double *start = orbit->z + interval * (orbit->system.scheme.points - 1) * ORBIT_STATES;
-    for (int r = 0; r < ORBIT_STATES; r++)
-        x[r] = start[r] + moray_orbit_integral(orbit, interval, r);
-}
-
-// Joint work of the intervals before this one.
-static double work_before(const moray_orbit *orbit, int interval)
-{
-    const orbit_system *system = &orbit->system;
-    const moray_scheme *scheme = &system->scheme;
-    double sum = 0;
-    for (int k = 0; k < interval; k++)
-        for (int j = 0; j < scheme->points; j++)
-            sum += scheme->b[j] * system->out[(k * (scheme->points - 1) + j) * system->outputs + system->power];
-    return moray_orbit_step(system) * sum;
+    return moray_periodic_orbit_parameters(orbit->engine)[ORBIT_PERIOD];
 }
 
 // The swimmer's state from the plant's, with the joints on the gait (phi, then v_phi).
 static void swimmer_state(moray_orbit *orbit, const double plant[ORBIT_STATES])
 {
-    const int N = orbit->system.spec.robot.links, joints = N - 1;
-    const bool control = orbit->system.spec.model == MORAY_CONTROL_ORIENTED;
+    const int N = orbit->spec.robot.links, joints = N - 1;
+    const bool control = orbit->spec.model == MORAY_CONTROL_ORIENTED;
     for (int half = 0; half < 2; half++) {
         double *x = orbit->x + half * (N + 2);
         const double *phi = orbit->phi + half * joints, *rigid = plant + 3 * half;
@@ -67,9 +33,9 @@ static void swimmer_state(moray_orbit *orbit, const double plant[ORBIT_STATES])
 
 moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample *sample)
 {
-    const int joints = orbit->system.spec.robot.links - 1, interval = moray_orbit_locate(orbit, t);
+    const int joints = orbit->spec.robot.links - 1, power = orbit->plant.n_out - 1;
     double x[ORBIT_STATES], *phi = orbit->phi;
-    moray_orbit_state(orbit, interval, x);
+    moray_periodic_orbit_state(orbit->engine, t, x);
     moray_gait_reference(&orbit->gait, joints, t, phi, phi + joints, phi + 2 * joints);
     swimmer_state(orbit, x);
     if (!moray_swimmer_rates(orbit->swimmer, orbit->x, phi + 2 * joints, orbit->dx, orbit->u))
@@ -78,8 +44,7 @@ moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample 
                                   .x = orbit->x,
                                   .u = orbit->u,
                                   .pose = moray_swimmer_pose(orbit->swimmer, orbit->x),
-                                  .energy = work_before(orbit, interval) +
-                                            moray_orbit_integral(orbit, interval, orbit->system.power)};
+                                  .energy = moray_periodic_orbit_integral(orbit->engine, power, t)};
     return moray_ok();
 }
 
@@ -94,12 +59,12 @@ static void keep_peak(orbit_peak *peak, const moray_swim_sample *sample, int joi
 // Both ends are one sample.
 static moray_status measure_samples(moray_orbit *orbit, moray_steady *steady)
 {
-    const double T = moray_orbit_period(&orbit->system);
+    const double T = period_of(orbit);
     moray_swim_sample sample;
     orbit->peak = (orbit_peak){0};
     for (int k = 0; k <= FINEST; k++) {
         MORAY_TRY(moray_orbit_sample(orbit, T * k / FINEST, &sample));
-        keep_peak(&orbit->peak, &sample, orbit->system.spec.robot.links - 1);
+        keep_peak(&orbit->peak, &sample, orbit->spec.robot.links - 1);
         steady->peak_link_angle = fmax(steady->peak_link_angle, sample.pose.link_angle);
         steady->heading += (k == 0 || k == FINEST ? 0.5 : 1) * sample.pose.heading / FINEST;
     }
@@ -109,23 +74,24 @@ static moray_status measure_samples(moray_orbit *orbit, moray_steady *steady)
 
 moray_status moray_orbit_measure(moray_orbit *orbit, moray_steady *steady)
 {
-    const orbit_system *system = &orbit->system;
-    const double T = moray_orbit_period(system), *V = system->spec.current;
-    const double *last = orbit->z + (system->nodes - 1) * ORBIT_STATES;
-    *steady = (moray_steady){.v_x = (last[1] - orbit->z[1]) / T,
-                             .v_y = (last[2] - orbit->z[2]) / T,
-                             .power = work_before(orbit, system->spec.intervals) / T,
-                             .heading_drift = (last[0] - orbit->z[0]) / T,
-                             .start_heading = orbit->z[0]};
+    const double T = period_of(orbit), *V = orbit->spec.current;
+    double first[ORBIT_STATES], last[ORBIT_STATES];
+    moray_periodic_orbit_state(orbit->engine, 0, first);
+    moray_periodic_orbit_state(orbit->engine, T, last);
+    *steady = (moray_steady){.v_x = (last[1] - first[1]) / T,
+                             .v_y = (last[2] - first[2]) / T,
+                             .power = moray_periodic_orbit_integral(orbit->engine, orbit->plant.n_out - 1, T) / T,
+                             .heading_drift = (last[0] - first[0]) / T,
+                             .start_heading = first[0]};
     steady->speed = hypot(steady->v_x - V[0], steady->v_y - V[1]);
     steady->cost_of_transport = steady->speed > 0 ? steady->power / steady->speed : INFINITY;
-    steady->turning = fabs(last[0] - orbit->z[0]) > TURNING;
+    steady->turning = fabs(last[0] - first[0]) > TURNING;
     return measure_samples(orbit, steady);
 }
 
 static moray_status fill_track(moray_orbit *orbit, int points, moray_swim_track *track)
 {
-    const double T = moray_orbit_period(&orbit->system);
+    const double T = period_of(orbit);
     moray_swim_sample sample;
     for (int k = 0; k < points; k++) {
         MORAY_TRY(moray_orbit_sample(orbit, T * k / (points - 1), &sample));
@@ -139,8 +105,7 @@ moray_status moray_orbit_track(moray_orbit *orbit, int points, moray_swim_track 
     *track = (moray_swim_track){0};
     if (points < 2)
         return moray_error(MORAY_INPUT, "points = %d: an orbit has at least 2", points);
-    if (!orbit->found)
-        return moray_error(MORAY_INPUT, "no orbit has been found yet");
+    MORAY_TRY(moray_orbit_check_found(orbit));
     MORAY_TRY(moray_swim_track_new(track, orbit->swimmer, points));
     const moray_status status = fill_track(orbit, points, track);
     if (moray_failed(status))

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
+//
+// The swimmer as the plant of a closed loop: its gait jumps with the schedule, its control is the offset phi_0 with its
+// derivatives, and who steers is shown the swimmer.
 #include "moray/snake/swim.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "moray/control/closed_loop.h"
 #include "snake/swim/closed_loop_plant.h"
-#include "sim/times.h"
 
 static moray_status check_plan(const moray_swim_plan *plan)
 {
-    MORAY_TRY(moray_sim_check_times(plan->t0, plan->t1, plan->times, plan->n_times));
     if (plan->n_changes < 1 || !(plan->schedule[0].t <= plan->t0))
         return moray_error(MORAY_INPUT, "the schedule needs a gait that begins not after t0 = %g", plan->t0);
     for (int i = 1; i < plan->n_changes; i++) {
@@ -17,90 +20,111 @@ static moray_status check_plan(const moray_swim_plan *plan)
             return moray_error(MORAY_INPUT, "schedule[%d].t = %g: must lie after that of the gait before, %g", i,
                                plan->schedule[i].t, plan->schedule[i - 1].t);
     }
-    if (plan->controller && plan->controller->look && !(plan->controller->period > 0))
-        return moray_error(MORAY_INPUT, "period of the controller = %g: must be above 0", plan->controller->period);
     return moray_ok();
 }
 
-// A simulation on its way: the first change of gait not yet made, the looks of the controller so far.
-typedef struct {
+typedef struct swim_run {
     const moray_swim_plan *plan;
-    swim_plant *plant;
-    moray_sim *sim;
-    int change, looks;
-} closed_loop;
+    swim_plant plant;
+    moray_ode ode;
+    double *change; // [n_changes] times
+} swim_run;
 
-static double next_change(const closed_loop *v)
+static bool rates(double t, const double *x, const double *u, double *dx, void *self)
 {
-    return v->change < v->plan->n_changes ? v->plan->schedule[v->change].t : INFINITY;
+    swim_run *r = self;
+    if (r->plan->controller)
+        moray_swim_plant_steer(&r->plant, u);
+    return r->ode.rhs(t, x, dx, r->ode.self);
 }
 
-static double next_look(const closed_loop *v)
+static void change_gait(int k, void *self)
 {
-    const moray_controller *controller = v->plan->controller;
-    return controller && controller->look ? v->plan->t0 + v->looks * controller->period : INFINITY;
+    swim_run *r = self;
+    r->plant.gait = r->plan->schedule[k].gait;
 }
 
-// Advances to t with every change and look up to and at t made on the way.
-static moray_status advance(closed_loop *v, double t)
+static moray_swim_sample sample_of(swim_run *r, const moray_closed_loop_sample *sample)
 {
-    const moray_controller *controller = v->plan->controller;
-    for (double stop; (stop = fmin(next_change(v), next_look(v))) <= t;) {
-        if (stop > moray_sim_time(v->sim))
-            MORAY_TRY(moray_sim_advance(v->sim, stop));
-        if (next_change(v) <= stop)
-            v->plant->gait = v->plan->schedule[v->change++].gait;
-        if (next_look(v) <= stop) {
-            const moray_swim_sample sample = moray_swim_plant_sample(v->plant, stop, moray_sim_state(v->sim));
-            controller->look(&sample, controller->self);
-            v->looks++;
-        }
-        MORAY_TRY(moray_sim_start(v->sim, moray_sim_time(v->sim), moray_sim_state(v->sim)));
+    if (r->plan->controller)
+        moray_swim_plant_steer(&r->plant, sample->u);
+    return moray_swim_plant_sample(&r->plant, sample->t, sample->x);
+}
+
+static void steer(double t, double *u, const void *self)
+{
+    const moray_swim_controller *controller = ((const swim_run *)self)->plan->controller;
+    const moray_offset offset = controller->offset(t, controller->self);
+    u[0] = offset.value;
+    u[1] = offset.rate;
+    u[2] = offset.acceleration;
+}
+
+static moray_status measure(const moray_closed_loop_sample *sample, void *self)
+{
+    swim_run *r = self;
+    const moray_swim_sample shown = sample_of(r, sample);
+    return r->plan->controller->measure(&shown, r->plan->controller->self);
+}
+
+static bool observe(const moray_closed_loop_sample *sample, void *self)
+{
+    swim_run *r = self;
+    const moray_swim_sample shown = sample_of(r, sample);
+    return r->plan->observe(&shown, r->plan->observer);
+}
+
+static moray_status run(swim_run *r, const moray_sim_settings *settings)
+{
+    const moray_swim_plan *plan = r->plan;
+    const moray_swim_controller *steering = plan->controller;
+    moray_controller controller = {.nu = SWIM_CONTROLS, .control = steer, .self = r};
+    if (steering && steering->measure) {
+        controller.measure = measure;
+        controller.period = steering->period;
     }
-    return moray_sim_advance(v->sim, t);
+    const moray_closed_loop_spec loop = {
+        .plant = {.nx = r->ode.n, .nu = steering ? SWIM_CONTROLS : 0, .rates = rates, .self = r},
+        .controller = steering ? &controller : NULL,
+        .jumps = {.times = r->change, .n = plan->n_changes, .change = change_gait, .self = r},
+        .t0 = plan->t0,
+        .t1 = plan->t1,
+        .times = plan->times,
+        .n_times = plan->n_times,
+        .observe = plan->observe ? observe : NULL,
+        .observer = r,
+        .settings = *settings,
+        .statistics = plan->statistics};
+    return moray_closed_loop_run(&loop, r->plant.x);
 }
 
-static moray_status follow(closed_loop *v)
+static moray_status prepare(swim_run *r, moray_swimmer *swimmer, const double *x)
 {
-    const moray_swim_plan *plan = v->plan;
-    for (int i = 0; i < plan->n_times; i++) {
-        MORAY_TRY(advance(v, plan->times[i]));
-        const moray_swim_sample sample = moray_swim_plant_sample(v->plant, plan->times[i], moray_sim_state(v->sim));
-        if (!plan->observe(&sample, plan->observer))
-            return moray_ok();
-    }
-    return advance(v, plan->t1);
-}
-
-// From the plant's state x to the plant's state x.
-static moray_status run_plant(swim_plant *plant, const moray_sim_settings *settings, const moray_swim_plan *plan)
-{
-    closed_loop v = {.plan = plan, .plant = plant};
-    const moray_ode ode = moray_swim_plant_ode(plant);
-    MORAY_TRY(moray_sim_new(&v.sim, &ode, settings));
-    moray_status status = moray_sim_start(v.sim, plan->t0, plant->x);
-    if (!moray_failed(status)) {
-        status = follow(&v);
-        memcpy(plant->x, moray_sim_state(v.sim), (size_t)ode.n * sizeof *plant->x);
-        if (plan->statistics)
-            *plan->statistics = moray_sim_get_statistics(v.sim);
-    }
-    moray_sim_free(v.sim);
-    return status;
+    const moray_swim_plan *plan = r->plan;
+    MORAY_TRY(moray_swim_plant_new(&r->plant, swimmer, &plan->schedule[0].gait));
+    r->ode = moray_swim_plant_ode(&r->plant);
+    r->change = calloc((size_t)plan->n_changes, sizeof *r->change);
+    if (!r->change)
+        return moray_error(MORAY_MEMORY, "no memory for %d changes of gait", plan->n_changes);
+    for (int k = 0; k < plan->n_changes; k++)
+        r->change[k] = plan->schedule[k].t;
+    memcpy(r->plant.x, x, (size_t)r->plant.n_states * sizeof *x);
+    return moray_ok();
 }
 
 moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings, const moray_swim_plan *plan,
                             double *x, double *energy)
 {
     MORAY_TRY(check_plan(plan));
-    swim_plant plant;
-    MORAY_TRY(moray_swim_plant_new(&plant, swimmer, &plan->schedule[0].gait));
-    plant.controller = plan->controller;
-    memcpy(plant.x, x, (size_t)plant.n_states * sizeof *x);
-    const moray_status status = run_plant(&plant, settings, plan);
-    memcpy(x, plant.x, (size_t)plant.n_states * sizeof *x);
-    if (energy)
-        *energy = plant.x[plant.n_states];
-    moray_swim_plant_free(&plant);
+    swim_run r = {.plan = plan};
+    moray_status status = prepare(&r, swimmer, x);
+    if (!moray_failed(status)) {
+        status = run(&r, settings);
+        memcpy(x, r.plant.x, (size_t)r.plant.n_states * sizeof *x);
+        if (energy)
+            *energy = r.plant.x[r.plant.n_states];
+    }
+    free(r.change);
+    moray_swim_plant_free(&r.plant);
     return status;
 }

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "moray/angle.h"
+
 moray_status moray_test_rig_new(moray_test_rig *rig, const moray_robot *robot, const double current[2], double course)
 {
     *rig = (moray_test_rig){
@@ -35,9 +37,10 @@ moray_swim_setup moray_test_rig_setup(const moray_test_rig *rig, moray_model mod
 
 moray_gait moray_gait_paper(const moray_robot *robot)
 {
-    const double degree = M_PI / 180, delta = 40 * degree;
-    return (moray_gait){.amplitude = moray_amplitude_from_theta_max(robot, MORAY_CONTROL_ORIENTED, 20 * degree, delta),
-                        .omega = 120 * degree,
+    const double delta = 40 * MORAY_DEGREE;
+    return (moray_gait){.amplitude =
+                            moray_amplitude_from_theta_max(robot, MORAY_CONTROL_ORIENTED, 20 * MORAY_DEGREE, delta),
+                        .omega = 120 * MORAY_DEGREE,
                         .delta = delta};
 }
 

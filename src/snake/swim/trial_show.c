@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <math.h>
 
+#include "moray/angle.h"
 #include "moray/snake/trial.h"
-
-static const double degree = M_PI / 180;
 
 static double theta_max_of(const moray_robot *robot, const moray_gait *gait)
 {
@@ -12,7 +11,7 @@ static double theta_max_of(const moray_robot *robot, const moray_gait *gait)
 
 static double end_angle(const moray_robot *robot, const moray_gait *gait, int link)
 {
-    return moray_theta_max_of_link(robot, MORAY_FIRST_PRINCIPLES, gait, link) / degree;
+    return moray_theta_max_of_link(robot, MORAY_FIRST_PRINCIPLES, gait, link) / MORAY_DEGREE;
 }
 
 void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *robot, const moray_gait gait[2])
@@ -20,12 +19,12 @@ void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *ro
     const moray_gait *control = &gait[MORAY_CONTROL_ORIENTED], *revolute = &gait[MORAY_FIRST_PRINCIPLES];
     moray_json_open(json, key);
     moray_json_number(json, "a_m", control->amplitude);
-    moray_json_number(json, "alpha_deg", revolute->amplitude / degree);
-    moray_json_number(json, "theta_max_deg", theta_max_of(robot, control) / degree);
-    moray_json_number(json, "omega_deg_s", control->omega / degree);
-    moray_json_number(json, "delta_deg", control->delta / degree);
+    moray_json_number(json, "alpha_deg", revolute->amplitude / MORAY_DEGREE);
+    moray_json_number(json, "theta_max_deg", theta_max_of(robot, control) / MORAY_DEGREE);
+    moray_json_number(json, "omega_deg_s", control->omega / MORAY_DEGREE);
+    moray_json_number(json, "delta_deg", control->delta / MORAY_DEGREE);
     moray_json_number(json, "phi0_m", control->offset);
-    moray_json_number(json, "phi0_deg", revolute->offset / degree);
+    moray_json_number(json, "phi0_deg", revolute->offset / MORAY_DEGREE);
     moray_json_number(json, "taper", control->taper);
     moray_json_close(json);
 }
@@ -49,7 +48,7 @@ void moray_steady_to_json(moray_json *json, const char *key, moray_model model, 
     moray_json_number(json, "cost_of_transport_J_m", steady->cost_of_transport);
     moray_json_number(json, "course_cost_J_m", course_cost(&trial->steady[model], trial->held[model], course));
     moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", steady->peak_effort);
-    moray_json_number(json, "max_link_angle_deg", steady->peak_link_angle / degree);
+    moray_json_number(json, "max_link_angle_deg", steady->peak_link_angle / MORAY_DEGREE);
     if (!trial->held[model])
         moray_json_text(json, "course_not_held", trial->why[model].text);
     moray_json_close(json);
@@ -75,13 +74,13 @@ int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *tri
     for (int k = 0; k < n; k++) {
         const moray_gait *control = &trials[k]->gait[MORAY_CONTROL_ORIENTED];
         const moray_gait *revolute = &trials[k]->gait[MORAY_FIRST_PRINCIPLES];
-        const double values[count] = {theta_max_of(robot, control) / degree,
-                                      control->omega / degree,
-                                      control->delta / degree,
+        const double values[count] = {theta_max_of(robot, control) / MORAY_DEGREE,
+                                      control->omega / MORAY_DEGREE,
+                                      control->delta / MORAY_DEGREE,
                                       100 * control->amplitude,
-                                      revolute->amplitude / degree,
+                                      revolute->amplitude / MORAY_DEGREE,
                                       fabs(control->offset) < 1e-9 ? 0 : 100 * control->offset,
-                                      fabs(revolute->offset) < 1e-9 ? 0 : revolute->offset / degree,
+                                      fabs(revolute->offset) < 1e-9 ? 0 : revolute->offset / MORAY_DEGREE,
                                       fabs(control->taper) < 1e-6 ? 0 : control->taper,
                                       end_angle(robot, revolute, robot->links),
                                       end_angle(robot, revolute, 1)};
@@ -116,7 +115,7 @@ int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, 
                                       steady->power,
                                       steady->cost_of_transport,
                                       steady->peak_effort,
-                                      steady->peak_link_angle / degree,
+                                      steady->peak_link_angle / MORAY_DEGREE,
                                       course_cost(steady, held, course)};
         for (int i = 0; i < count; i++)
             rows[i].value[k] = values[i];

@@ -2,6 +2,7 @@
 //
 // The optimal-gait problem: its hand-derived ends, the default optimum, its independence of mesh, scheme and form, its
 // limits.
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -9,8 +10,6 @@
 
 #include "snake/gait/endpoint.h"
 #include "moray/snake/trial.h"
-
-#define DEG (M_PI / 180)
 
 // Squares of the ends' link-angle amplitudes, mean power, rate amplitudes, speed; in: [x0, t0, xf, tf, q, s].
 static void check_optional_events(const struct gait_endpoint *ends, const double *in, const double *out)

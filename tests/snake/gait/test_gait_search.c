@@ -2,14 +2,13 @@
 //
 // Gaits found by searching over solved orbits against those of collocation with Ipopt, which has derivatives, linear
 // algebra and method of its own and shares the plants and the mesh.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
 
 #include "moray/snake/gait_search.h"
 #include "moray/snake/trial.h"
-
-#define DEG (M_PI / 180)
 
 // What the paper's gait uses (paper-notes, section 5).
 static const double paper_power[] = {0.3972, 0.2646};

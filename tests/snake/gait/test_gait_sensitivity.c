@@ -2,6 +2,7 @@
 //
 // How the fastest gait moves with robot, current and limits: slopes beside solving again, the change of the active set
 // where it is foretold, the prediction's error falling with the square of the step.
+#include "degree.h"
 #include "tap.h"
 
 #include <stddef.h>
@@ -10,8 +11,6 @@
 
 #include "moray/snake/gait_problem.h"
 #include "moray/snake/orbit.h"
-
-#define DEG (M_PI / 180)
 
 // In a current across the course, so that every part of the gait moves.
 static moray_gait_problem_spec spec_of(moray_model model)

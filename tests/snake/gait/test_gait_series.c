@@ -2,6 +2,7 @@
 //
 // The optimal-gait problem with its joints on a Fourier series: its ends, its derivatives, its limits, and its optimum
 // against gaits and against simulated neighbours.
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -9,8 +10,6 @@
 
 #include "snake/gait/endpoint.h"
 #include "moray/snake/trial.h"
-
-#define DEG (M_PI / 180)
 
 enum { LINKS = 5, JOINTS = LINKS - 1, HARMONICS = 2, COEFFICIENTS = JOINTS * (1 + 2 * HARMONICS) };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
@@ -6,8 +7,6 @@
 #include <complex.h>
 
 #include "moray/snake/model.h"
-
-#define DEG (M_PI / 180)
 
 static void test_printed_coefficients(void)
 {

@@ -2,6 +2,7 @@
 //
 // The period-averaged plant against means over periods of the model it is derived from, simulated by a Runge-Kutta
 // integration of its own.
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -9,8 +10,6 @@
 
 #include "moray/snake/plant.h"
 #include "rk4.h"
-
-#define DEG (M_PI / 180)
 
 typedef struct closed_loop {
     const moray_map *map;

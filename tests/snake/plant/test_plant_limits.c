@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "moray/angle.h"
 #include "moray/snake/plant.h"
 #include "rk4.h"
 
@@ -216,14 +217,14 @@ static void swim_five_periods(const swim *self, double moved[2], double *work)
 static void test_paper_gaits(void)
 {
     static const double theta_max_deg[] = {10, 15, 20, 30}, v_x[] = {0.2127, 0.2931, 0.3573, 0.4373};
-    const double degree = M_PI / 180, delta = 40 * degree;
+    const double delta = 40 * MORAY_DEGREE;
     moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_ON_GAIT, .current = {0.1, 0.1}};
     moray_map map;
     CHECK_OK(moray_control_plant(&map, &spec), "plant of the paper");
     for (int k = 0; k < 4; k++) {
         const double a =
-            moray_amplitude_from_theta_max(&spec.robot, MORAY_CONTROL_ORIENTED, theta_max_deg[k] * degree, delta);
-        const swim self = {.map = &map, .gait = {a, 120 * degree, delta, 0}};
+            moray_amplitude_from_theta_max(&spec.robot, MORAY_CONTROL_ORIENTED, theta_max_deg[k] * MORAY_DEGREE, delta);
+        const swim self = {.map = &map, .gait = {a, 120 * MORAY_DEGREE, delta, 0}};
         double moved[2], work;
         swim_five_periods(&self, moved, &work);
         CHECK_NEAR(moved[0] / 15, v_x[k], 5e-5, "mean v_x of the paper's gaits");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Cruises, feedback laws and scores against simulation from rest, numbers worked out by hand and closed forms.
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -9,8 +10,6 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/closed_loop.h"
-
-#define DEG (M_PI / 180)
 
 static const moray_model models[] = {MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES};
 
@@ -21,20 +20,20 @@ static moray_gait paper_gait(moray_model model)
     return moray_gait_map(&robot, &paper, MORAY_CONTROL_ORIENTED, model);
 }
 
-static moray_closed_loop sail(const moray_straight_motion *straight, double heading, const double current[2],
-                              const moray_controller *controller, double duration, int intervals)
+static moray_swim_closed_loop sail(const moray_straight_motion *straight, double heading, const double current[2],
+                                   const moray_swim_controller *controller, double duration, int intervals)
 {
     const moray_robot robot = moray_robot_paper();
-    const moray_closed_loop_spec plan = {.robot = &robot,
-                                         .straight = straight,
-                                         .heading = heading,
-                                         .current = {current[0], current[1]},
-                                         .controller = controller,
-                                         .duration = duration,
-                                         .intervals = intervals,
-                                         .tolerance = 1e-9};
-    moray_closed_loop closed_loop;
-    CHECK_OK(moray_closed_loop_run(&closed_loop, &plan), "closed_loop");
+    const moray_swim_closed_loop_spec plan = {.robot = &robot,
+                                              .straight = straight,
+                                              .heading = heading,
+                                              .current = {current[0], current[1]},
+                                              .controller = controller,
+                                              .duration = duration,
+                                              .intervals = intervals,
+                                              .tolerance = 1e-9};
+    moray_swim_closed_loop closed_loop;
+    CHECK_OK(moray_swim_closed_loop_run(&closed_loop, &plan), "closed_loop");
     return closed_loop;
 }
 
@@ -66,7 +65,7 @@ static void test_start(const moray_straight_motion *straight, double V_x, double
 {
     enum { n = 720 };
     const double heading = 0.7, V[2] = {V_x, V_y}, period = 2 * M_PI / straight->gait.omega;
-    moray_closed_loop closed_loop = sail(straight, heading, V, NULL, period, n);
+    moray_swim_closed_loop closed_loop = sail(straight, heading, V, NULL, period, n);
     const moray_pose *first = closed_loop.track.pose, *last = &first[n];
     double mean = 0, harmonic[2] = {0, 0}, swing = 0;
     for (int k = 0; k < n; k++) {
@@ -89,8 +88,8 @@ static void test_start(const moray_straight_motion *straight, double V_x, double
                "drift along y [m/s]");
     CHECK_NEAR(last->v_x, first->v_x, tolerance, "velocity at both ends [m/s]");
     CHECK(closed_loop.offset[0] == 0 && closed_loop.offset[n] == 0, "nobody steers");
-    moray_closed_loop_free(&closed_loop);
-    moray_closed_loop_free(&closed_loop);
+    moray_swim_closed_loop_free(&closed_loop);
+    moray_swim_closed_loop_free(&closed_loop);
     CHECK(!closed_loop.offset && !closed_loop.swimmer, "freed twice");
 }
 
@@ -109,14 +108,14 @@ static void test_turn_rate(const moray_straight_motion *straight)
     const double way = straight->model == MORAY_CONTROL_ORIENTED ? 1 : -1; // erratum E3
     moray_gait gait = straight->gait;
     gait.offset = gait.amplitude / 8;
-    const moray_controller controller = {.offset = held, .self = &gait.offset};
+    const moray_swim_controller controller = {.offset = held, .self = &gait.offset};
     double rate;
     CHECK_OK(moray_turn_rate(&robot, straight->model, &gait, &rate), "turn rate");
-    moray_closed_loop closed_loop = sail(straight, 0, still, &controller, periods * period, n);
+    moray_swim_closed_loop closed_loop = sail(straight, 0, still, &controller, periods * period, n);
     const double swum = (closed_loop.track.pose[n].heading - closed_loop.track.pose[n - 10].heading) / period;
     CHECK_NEAR(rate / DEG, swum / DEG, 1e-3, "turn rate [deg/s]");
     CHECK(way * rate > 0.5 * DEG, "the way that erratum E3 says");
-    moray_closed_loop_free(&closed_loop);
+    moray_swim_closed_loop_free(&closed_loop);
 }
 
 // ---- Feedback laws
@@ -146,31 +145,31 @@ static void test_feedback(void)
                                .offset = 0.02,
                                .offset_rate = 0.03,
                                .period = 0.5};
-    const moray_controller controller = moray_feedback_controller(&feedback);
+    const moray_swim_controller controller = moray_feedback_controller(&feedback);
     moray_swim_sample sample = {.t = 0, .pose = {.heading = 10 * DEG}};
     CHECK(controller.period == 0.5, "looks every period");
-    controller.look(&sample, controller.self);
+    controller.measure(&sample, controller.self);
     CHECK_NEAR(controller.offset(0.25, controller.self).value, 0.5 * 0.1 * 5 * DEG, 1e-15,
                "half-way to what is wanted");
     CHECK_NEAR(controller.offset(0.5, controller.self).value, 0.1 * 5 * DEG, 1e-15, "and there at the next look");
     target = 100 * DEG; // 0.157 wanted, 0.02 allowed, 0.015 possible
     sample.t = 0.5;
-    controller.look(&sample, controller.self);
+    controller.measure(&sample, controller.self);
     CHECK_NEAR(controller.offset(0.5, controller.self).value, 0.1 * 5 * DEG, 1e-15, "no jump");
     CHECK_NEAR(controller.offset(0.6, controller.self).rate, (0.02 - 0.1 * 5 * DEG) / 0.5, 1e-15, "limited in range");
     sample.t = 1;
     target = -170 * DEG; // the short way round: -180 is +180
     sample.pose.heading = 175 * DEG;
-    controller.look(&sample, controller.self);
+    controller.measure(&sample, controller.self);
     CHECK_NEAR(controller.offset(1.5, controller.self).value, 0.02, 1e-15, "the short way round, as far as the limit");
     sample.t = 1.5;
     sample.pose.heading = -165 * DEG;
-    controller.look(&sample, controller.self);
+    controller.measure(&sample, controller.self);
     CHECK_NEAR(controller.offset(1.7, controller.self).rate, -0.03, 1e-15, "back, limited in rate");
     feedback.feed = feed_of;
     feedback.gain = 0;
     sample.t = 2;
-    controller.look(&sample, controller.self);
+    controller.measure(&sample, controller.self);
     CHECK_NEAR(controller.offset(2.5, controller.self).value, 0.02, 1e-12, "what is fed, 0.025, as far as the limit");
 }
 
@@ -186,10 +185,10 @@ static void test_undulation(void)
                                .offset = 1,
                                .offset_rate = 1,
                                .period = 0.1};
-    const moray_controller controller = moray_feedback_controller(&feedback);
+    const moray_swim_controller controller = moray_feedback_controller(&feedback);
     moray_swim_sample sample = {.t = 0.4};
     sample.pose.heading = 0.1 + 0.04 * cos(1.2) - 0.05 * sin(1.2);
-    controller.look(&sample, controller.self);
+    controller.measure(&sample, controller.self);
     CHECK_NEAR(controller.offset(0.5, controller.self).value, 0.1 * 0.1, 1e-15, "error without undulation");
 }
 
@@ -208,8 +207,8 @@ static void test_score(void)
         energy[k] = 0.25 * k;
         pose[k] = (moray_pose){.heading = 0.1 * k + 0.03 * cos(2.0 * k) + 0.02 * sin(2.0 * k)};
     }
-    const moray_closed_loop closed_loop = {.track = {.n = n + 1, .t = t, .energy = energy, .pose = pose}};
-    const moray_heading_score score = moray_closed_loop_heading_score(&closed_loop, &straight, &reference);
+    const moray_swim_closed_loop closed_loop = {.track = {.n = n + 1, .t = t, .energy = energy, .pose = pose}};
+    const moray_heading_score score = moray_swim_closed_loop_heading_score(&closed_loop, &straight, &reference);
     // mean of (0.1 t)^2 over [0, 4] and of (0.1 t - 0.5)^2 over [4, 10]
     const double mean = (0.01 * 64 / 3 + 0.01 * (125 + 1) / 3) / 10;
     CHECK_NEAR(score.rms, sqrt(mean), 1e-14, "root of the mean square, across the jump");

@@ -2,6 +2,7 @@
 //
 // Heading references against what their texts say; plans against a simulation of the whole swimmer under the offset
 // found, which shares with them the model alone.
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -11,8 +12,6 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/closed_loop.h"
-
-#define DEG (M_PI / 180)
 
 // ---- References ----------------------------------------------------------------------------------------------------
 
@@ -195,23 +194,24 @@ static double steering_effort(const moray_heading_plan *plan, double limit)
 static void test_objective(const moray_heading_plan *plan, const moray_heading_spec *spec)
 {
     const moray_plan steer = {plan->solution, 1};
-    const moray_controller controller = moray_plan_controller(&steer);
-    moray_closed_loop closed_loop;
-    const moray_closed_loop_spec how = {.robot = &spec->robot,
-                                        .straight = &plan->straight,
-                                        .current = {spec->current[0], spec->current[1]},
-                                        .controller = &controller,
-                                        .duration = HORIZON,
-                                        .intervals = 2400,
-                                        .tolerance = 1e-9};
-    CHECK_OK(moray_closed_loop_run(&closed_loop, &how), "closed_loop");
-    const moray_heading_score score = moray_closed_loop_heading_score(&closed_loop, &plan->straight, spec->reference);
+    const moray_swim_controller controller = moray_plan_controller(&steer);
+    moray_swim_closed_loop closed_loop;
+    const moray_swim_closed_loop_spec how = {.robot = &spec->robot,
+                                             .straight = &plan->straight,
+                                             .current = {spec->current[0], spec->current[1]},
+                                             .controller = &controller,
+                                             .duration = HORIZON,
+                                             .intervals = 2400,
+                                             .tolerance = 1e-9};
+    CHECK_OK(moray_swim_closed_loop_run(&closed_loop, &how), "closed_loop");
+    const moray_heading_score score =
+        moray_swim_closed_loop_heading_score(&closed_loop, &plan->straight, spec->reference);
     const double swum = spec->weight.heading * score.rms * score.rms + spec->weight.power * score.power +
                         spec->weight.steering * steering_effort(plan, spec->limits.offset);
     const double predicted = moray_solution_objective(plan->solution);
     CHECK_NEAR(predicted / swum, 1, 2e-6, "objective predicted, of that swum");
     CHECK(score.rms > 1 * DEG && score.rms < 10 * DEG, "RMS error %g deg", score.rms / DEG);
-    moray_closed_loop_free(&closed_loop);
+    moray_swim_closed_loop_free(&closed_loop);
 }
 
 static void test_plan(moray_model model, const moray_reference *reference, const moray_heading_plan *from)

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // The fastest turn: derivatives, ends, and a turn on the averaged plant against bounds by hand.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
 
 #include "moray/snake/trial.h"
 #include "moray/snake/turn.h"
-
-#define DEG (M_PI / 180)
 
 static moray_turn_spec spec_of(moray_model model, bool averaged, int links)
 {
@@ -86,7 +85,7 @@ static void test_turn(void)
         moray_solution_at(plan.solution, 0, took[side], x, u);
         CHECK_NEAR(x[0], spec.heading, 1e-7, "heading at the end");
         CHECK_NEAR(x[3], 0, 1e-7, "turning at the end");
-        CHECK_NEAR(x[6], 0, 1e-7, "offset at the end");
+        CHECK_NEAR(x[MORAY_STATE_PHI_0], 0, 1e-7, "offset at the end");
         moray_turn_plan_free(&plan);
     }
     CHECK_RELATIVE(took[0], took[1], 1e-4, "as long to the right as to the left");

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "degree.h"
 #include "tap.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "moray/snake/gait_input.h"
-
-#define DEG (M_PI / 180)
 
 static moray_robot robot;
 

@@ -2,14 +2,13 @@
 //
 // Periodic orbits against steady swimming as simulated from rest, in closed loop and with all states, which shares the
 // models' rates with them but not the plants, the collocation or Newton's method.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
 
 #include "moray/snake/trial.h"
 #include "moray/snake/orbit.h"
-
-#define DEG (M_PI / 180)
 
 static const moray_model models[] = {MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES};
 static const char *const names[] = {"control-oriented", "first-principles"};

@@ -2,6 +2,7 @@
 //
 // Floquet multipliers against differences of the period map that a classical Runge-Kutta method makes of the swimmer's
 // rates; gradients against differences of orbits solved again.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
@@ -10,7 +11,6 @@
 
 #include "rk4.h"
 
-#define DEG (M_PI / 180)
 enum { MOST_STATES = 24 };
 
 static const char *const names[] = {"control-oriented", "first-principles"};

@@ -2,6 +2,7 @@
 //
 // References: the table and the numbers of paper-notes, section 5, and a classical Runge-Kutta integration at fixed
 // step of the swimmer's rates, which shares nothing with src/sim and src/app.
+#include "degree.h"
 #include "tap.h"
 
 #include <string.h>
@@ -10,7 +11,6 @@
 
 #include "rk4.h"
 
-#define DEG (M_PI / 180)
 enum { LINKS = 10, STATES = 2 * LINKS + 4, JOINTS = LINKS - 1 };
 
 static const moray_model models[] = {MORAY_FIRST_PRINCIPLES, MORAY_CONTROL_ORIENTED};

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include <stdlib.h>
+
+#include "steer.h"
+
+static moray_status drawn(const steer_job *job, moray_status status)
+{
+    if (status.code != MORAY_IO)
+        return status;
+    if (!job->common.quiet)
+        fprintf(stderr, "%s: %s\n", job->name, status.text);
+    return moray_ok();
+}
+
+moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure)
+{
+    return drawn(job, moray_output_figure(job->common.output, figure));
+}
+
+// ---- Over time -----------------------------------------------------------------------------------------------------
+
+static moray_status draw_offsets(const steer_job *job, const moray_curve *curves)
+{
+    return steer_draw_figure(job, &(moray_figure){.name = "offset",
+                                                  .title = "Joint offset, first-principles model",
+                                                  .x_label = "time [s]",
+                                                  .y_label = "phi_0 [deg]",
+                                                  .curves = curves,
+                                                  .n_curves = STEER_CURVES});
+}
+
+static moray_status draw_over_time(const steer_job *job, const steer_trial *const *trials,
+                                   const moray_swim_closed_loop *closed_loops)
+{
+    moray_curve values[STEER_CURVES + 1], offset[STEER_CURVES];
+    moray_figure figure = job->program->over_time;
+    int most = 0;
+    for (int i = 0; i < STEER_CURVES; i++)
+        most = closed_loops[i].track.n > most ? closed_loops[i].track.n : most;
+    double *data = malloc((size_t)(most * (2 * STEER_CURVES + 1)) * sizeof *data);
+    if (!data)
+        return moray_error(MORAY_MEMORY, "no memory for figures");
+    for (int i = 0; i < STEER_CURVES; i++) {
+        const moray_swim_track *track = &closed_loops[i].track;
+        double *value = data + 2 * i * most, *phi = value + most;
+        job->program->values(job, trials[i], track, value);
+        for (int k = 0; k < track->n; k++)
+            phi[k] = closed_loops[i].offset[k] / DEG;
+        values[i] = (moray_curve){.label = trials[i]->name, .x = track->t, .y = value, .n = track->n};
+        offset[i] = (moray_curve){.label = trials[i]->name, .x = track->t, .y = phi, .n = track->n};
+    }
+    double *reference = data + 2 * STEER_CURVES * most;
+    const moray_swim_track *track = &closed_loops->track;
+    values[STEER_CURVES] = (moray_curve){.label = "reference", .x = track->t, .y = reference, .n = track->n};
+    figure.x_label = "time [s]";
+    figure.curves = values;
+    figure.n_curves = STEER_CURVES + job->program->values(job, NULL, track, reference);
+    moray_status status = steer_draw_figure(job, &figure);
+    if (!moray_failed(status))
+        status = draw_offsets(job, offset);
+    free(data);
+    return status;
+}
+
+// ---- All -----------------------------------------------------------------------------------------------------------
+
+static moray_status draw_path(const steer_job *job, const steer_trial *const *trials,
+                              const moray_swim_closed_loop *closed_loops)
+{
+    const char *labels[STEER_CURVES];
+    double x[STEER_POINTS], y[STEER_POINTS];
+    const moray_curve path = {.label = "path", .x = x, .y = y, .n = STEER_POINTS};
+    for (int k = 0; k < STEER_CURVES; k++)
+        labels[k] = trials[k]->name;
+    if (job->program->path)
+        job->program->path(job, x, y);
+    return drawn(job, moray_swim_closed_loop_draw_path(job->common.output, closed_loops, labels, STEER_CURVES,
+                                                       job->common.current, job->program->path ? &path : NULL));
+}
+
+static moray_status draw_shown(const steer_job *job, const steer_trial *const *trials,
+                               const moray_swim_closed_loop *closed_loops)
+{
+    const moray_swim_closed_loop *last = &closed_loops[STEER_CURVES - 1];
+    MORAY_TRY(draw_over_time(job, trials, closed_loops));
+    MORAY_TRY(draw_path(job, trials, closed_loops));
+    MORAY_TRY(drawn(job, moray_swim_closed_loop_draw_joints(job->common.output, last)));
+    MORAY_TRY(moray_swim_closed_loop_write(job->common.output, last));
+    return job->program->draw ? job->program->draw(job) : moray_ok();
+}
+
+moray_status steer_draw(const steer_job *job)
+{
+    const steer_trial *trials[STEER_CURVES] = {NULL};
+    moray_swim_closed_loop closed_loops[STEER_CURVES] = {{0}};
+    moray_status status = moray_ok();
+    for (int k = 0; k < job->n_trials; k++)
+        if (job->trial[k].law->curve > 0)
+            trials[job->trial[k].law->curve - 1] = &job->trial[k];
+    for (int k = 0; k < STEER_CURVES && !moray_failed(status); k++)
+        status = steer_swim(job, trials[k], &closed_loops[k]);
+    if (!moray_failed(status))
+        status = draw_shown(job, trials, closed_loops);
+    for (int k = 0; k < STEER_CURVES; k++)
+        moray_swim_closed_loop_free(&closed_loops[k]);
+    return status;
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "steer.h"
+
+static const char *const model_keys[] = {"control", "fp"};
+
+static void json_scores(const steer_job *job, moray_json *json, const char *key, const double *score)
+{
+    moray_json_open(json, key);
+    for (int k = 0; k < job->program->n_scores; k++)
+        moray_json_number(json, job->program->scores[k].key, score[k] / job->program->scores[k].unit);
+    moray_json_close(json);
+}
+
+static void json_receding(const steer_job *job, moray_json *json, const steer_trial *trial)
+{
+    const moray_receding_horizon_record *record = &trial->record[MORAY_FIRST_PRINCIPLES];
+    moray_json_open(json, "receding");
+    moray_json_number(json, "plans", record->plans);
+    moray_json_number(json, "not_solved", record->failures);
+    moray_json_number(json, "iterations", record->iterations);
+    moray_json_number(json, "time_s", record->seconds);
+    moray_json_number(json, "longest_s", record->longest);
+    moray_json_number(json, "times_real_time", job->program->swum(job, trial) / record->seconds);
+    moray_json_close(json);
+}
+
+static void json_trial(const steer_job *job, moray_json *json, const steer_trial *trial)
+{
+    const steer_program *program = job->program;
+    const char *gait = trial->gait == 0 ? "paper" : steer_gait_given(job) ? "given" : "found";
+    moray_json_open(json, NULL);
+    if (program->tells_name)
+        moray_json_text(json, "name", trial->name);
+    moray_json_text(json, "law", trial->law->key);
+    if (!program->one_gait)
+        moray_json_text(json, "gait", gait);
+    moray_json_text(json, "plan", trial->law->kind == STEER_UNPLANNED ? NULL : model_keys[trial->plan]);
+    if (program->tells_preview)
+        moray_json_bool(json, "reference_known_ahead", trial->law->preview);
+    for (int k = 0; k < program->n_numbers; k++)
+        moray_json_number(json, job->number[k].key, trial->number[k]);
+    json_scores(job, json, "predicted", trial->score[MORAY_CONTROL_ORIENTED]);
+    json_scores(job, json, "validated", trial->score[MORAY_FIRST_PRINCIPLES]);
+    if (trial->law->kind == STEER_RECEDING)
+        json_receding(job, json, trial);
+    moray_json_close(json);
+}
+
+static void json_plan(const steer_job *job, moray_json *json, const char *key, moray_model model)
+{
+    moray_json_open(json, key);
+    job->program->json_plan(job, json, model);
+    moray_solver_to_json(json, job->plan[model].solution);
+    moray_json_close(json);
+    moray_certificate_to_json(json, &job->certificate[model]);
+    moray_json_close(json);
+}
+
+void steer_json_gait(const steer_job *job, moray_json *json, int gait)
+{
+    const moray_gait gaits[2] = {job->straight[gait][0].gait, job->straight[gait][1].gait};
+    moray_gait_to_json(json, "gait", &job->common.robot, gaits);
+}
+
+void steer_json_saturation(const steer_job *job, moray_json *json, moray_model model)
+{
+    const steer_saturation share = steer_saturation_of(job, model);
+    moray_json_number(json, "offset_at_limit_percent", 100 * share.offset);
+    moray_json_number(json, "offset_rate_at_limit_percent", 100 * share.rate);
+}
+
+moray_json *steer_json(const steer_job *job)
+{
+    moray_json *json = moray_json_new();
+    moray_json_text(json, "problem", job->name);
+    moray_json_text(json, "version", moray_version());
+    moray_json_text(json, "model", model_keys[job->common.model]);
+    moray_json_open(json, "robot");
+    moray_json_number(json, "links", job->common.robot.links);
+    moray_json_close(json);
+    moray_json_numbers(json, "current_m_s", job->common.current, 2);
+    job->program->json_head(job, json);
+    json_plan(job, json, "control_oriented_plan", MORAY_CONTROL_ORIENTED);
+    if (job->common.model == MORAY_FIRST_PRINCIPLES)
+        json_plan(job, json, "first_principles_plan", MORAY_FIRST_PRINCIPLES);
+    moray_json_open_list(json, "steering");
+    for (int k = 0; k < job->n_trials; k++)
+        json_trial(job, json, &job->trial[k]);
+    moray_json_close(json);
+    if (job->program->json_tail)
+        job->program->json_tail(job, json);
+    return json;
+}

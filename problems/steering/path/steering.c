@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "path.h"
+
+static const double look_every = 0.1; // of a feedback [s]
+static const double patience = 1.5;   // times the duration of the plan, before the end is given up
+
+// ---- Laws ----------------------------------------------------------------------------------------------------------
+
+enum { LOS, ILOS, PLAN, BOTH, RECEDING }; // line of sight, without and with integral action
+enum { GAIN, LOOKAHEAD, AHEAD, INTEGRAL, NUMBERS };
+enum { RMS, SETTLED_RMS, SETTLED_LARGEST, TIME, POWER, COST, SCORES }; // as of moray_path_score; what tuning minimises
+
+static const steer_number numbers[NUMBERS] = {
+    [GAIN] = {"gain_m_rad", "gain, cm/deg", 100 * DEG, .logarithmic = true, .lower = 0.002, .upper = 2},
+    [LOOKAHEAD] = {"lookahead_m", "lookahead, m", 1, .logarithmic = true, .lower = 0.1, .upper = 20},
+    [AHEAD] = {"ahead_m", "ahead, m", 1, .upper = 5},
+    [INTEGRAL] = {"integral_gain_m_s", "integral, cm/s", 100, .upper = 0.3},
+};
+
+static moray_status set_guidance(steer_steersman *h)
+{
+    const path_job *job = (const path_job *)h->job;
+    const bool planned = h->trial->law->kind == STEER_PLANNED;
+    const double *number = h->trial->number;
+    h->own.guidance = (moray_guidance){.path = &job->path,
+                                       .plan = planned ? &job->plan[h->trial->plan] : NULL,
+                                       .plan_scale = h->plan.scale,
+                                       .lookahead = number[LOOKAHEAD],
+                                       .ahead = planned ? 0 : number[AHEAD],
+                                       .gain = planned ? 0 : number[INTEGRAL],
+                                       .period = look_every};
+    steer_set_feedback(h, number[GAIN], moray_guidance_target, planned ? moray_guidance_feed : NULL, &h->own.guidance);
+    return moray_ok();
+}
+
+static moray_status set_receding(steer_steersman *h)
+{
+    const path_job *job = (const path_job *)h->job;
+    const moray_straight_motion *straight = &h->job->straight[h->trial->gait][h->trial->plan];
+    moray_path_replanner *replanner = &h->own.path;
+    *replanner = (moray_path_replanner){.spec = path_spec(job, h->trial->plan, false),
+                                        .horizon = h->job->look_ahead_periods * 2 * M_PI / straight->gait.omega};
+    replanner->spec.tube = MORAY_INFINITY;
+    replanner->spec.speed =
+        job->path.length / moray_path_duration(&job->path, 0, straight->speed, h->job->common.current);
+    return steer_set_receding(h, "radau4", moray_path_replan(replanner), &replanner->spec.limits, 0, h->plan.solution);
+}
+
+enum { SIGHT = 1 << GAIN | 1 << LOOKAHEAD | 1 << AHEAD };
+
+static const steer_law laws[] = {
+    [LOS] = {"line of sight", .set = set_guidance, .tuned = SIGHT, .start = {0.06, 0.4, 0.4, 0}, .afresh = true,
+             .curve = 1},
+    [ILOS] = {"line of sight", .set = set_guidance, .tuned = SIGHT | 1 << INTEGRAL, .start = {0.06, 0.4, 0.4, 0.02},
+              .afresh = true, .curve = 2},
+    [PLAN] = {"plan", STEER_PLANNED, .start = {NAN, NAN, NAN, NAN}},
+    [BOTH] = {"plan and feedback", STEER_PLANNED, .set = set_guidance, .tuned = 1 << GAIN | 1 << LOOKAHEAD,
+              .start = {0.06, 1.5, NAN, NAN}, .curve = 3},
+    [RECEDING] = {"receding", STEER_RECEDING, .set = set_receding, .start = {NAN, NAN, NAN, NAN}},
+};
+
+static void choose_trials(steer_job *job)
+{
+    const int found = 1 + (int)job->common.model;
+    steer_trial *paper = steer_add(job, "ILOS, paper's gait", &laws[ILOS], 0, MORAY_CONTROL_ORIENTED);
+    steer_trial *sight = steer_add(job, "LOS, gait found", &laws[LOS], found, MORAY_CONTROL_ORIENTED);
+    sight->like = paper;
+    steer_add(job, "ILOS, gait found", &laws[ILOS], found, MORAY_CONTROL_ORIENTED)->like = sight;
+    steer_add_plans(job, &laws[PLAN], &laws[BOTH]);
+    steer_add_receding(job, &laws[RECEDING]);
+}
+
+// ---- Swimming ------------------------------------------------------------------------------------------------------
+
+static void start(steer_steersman *h, moray_swim_closed_loop_spec *spec)
+{
+    const path_job *job = (const path_job *)h->job;
+    h->seeker = (moray_path_seeker){&job->path, 0};
+    spec->heading = job->heading;
+    spec->position[0] = job->start[0];
+    spec->position[1] = job->start[1];
+    spec->duration = patience * steer_duration(steer_last_plan(h->job)->solution);
+    spec->observe = moray_path_seek;
+    spec->observer = &h->seeker;
+}
+
+static double judge(const steer_trial *trial, const steer_steersman *h, const moray_swim_closed_loop *closed_loop,
+                    double *score)
+{
+    const path_job *job = (const path_job *)h->job;
+    const moray_path_score s = moray_swim_closed_loop_path_score(closed_loop, &job->path, job->reach);
+    const double seconds = isnan(s.time) ? 2 * closed_loop->track.t[closed_loop->track.n - 1] : s.time;
+    (void)trial;
+    score[RMS] = s.rms;
+    score[SETTLED_RMS] = s.settled_rms;
+    score[SETTLED_LARGEST] = s.settled_largest;
+    score[TIME] = s.time;
+    score[POWER] = s.power;
+    score[COST] = 100 * s.rms * s.rms * seconds + job->weight_time * seconds;
+    return score[COST];
+}
+
+static double swum(const steer_job *job, const steer_trial *trial)
+{
+    const double period = 2 * M_PI / job->straight[trial->gait][trial->plan].gait.omega;
+    return trial->record[MORAY_FIRST_PRINCIPLES].plans * job->replan_periods * period;
+}
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+static const steer_score scores[SCORES] = {{"rms_m", 1},  {"settled_rms_m", 1}, {"settled_largest_m", 1},
+                                           {"time_s", 1}, {"power_W", 1},       {"cost", 1}};
+
+static const steer_column score_columns[] = {{"control: RMS", MORAY_CONTROL_ORIENTED, RMS, .unit = 0.01},
+                                             {"time", MORAY_CONTROL_ORIENTED, TIME, .unit = 1},
+                                             {"first-pr.: RMS", MORAY_FIRST_PRINCIPLES, RMS, .unit = 0.01},
+                                             {"settled", MORAY_FIRST_PRINCIPLES, SETTLED_RMS, .unit = 0.01},
+                                             {"largest", MORAY_FIRST_PRINCIPLES, SETTLED_LARGEST, .unit = 0.01},
+                                             {"time", MORAY_FIRST_PRINCIPLES, TIME, .unit = 1},
+                                             {"cost", MORAY_FIRST_PRINCIPLES, COST, .unit = 1},
+                                             {"power", MORAY_FIRST_PRINCIPLES, POWER, .unit = 1}};
+
+static void leg_table(const path_job *job, steer_tables *tables)
+{
+    moray_table table = {.title = "Path; crab angle: heading less course, asked for by the current and planned",
+                         .columns = {"length, m", "course, deg", "crab, deg", "planned", "turning, deg/s"},
+                         .n_columns = 5};
+    for (int k = 0; k < job->path.n && k < STEER_ROWS; k++) {
+        const moray_path_piece *piece = &job->path.piece[k];
+        const bool leg = piece->curvature == 0;
+        double asked = NAN, planned = NAN;
+        if (leg)
+            path_crab(job, piece, &asked, &planned);
+        snprintf(tables->label[k], sizeof *tables->label, leg ? "leg %d" : "corner behind leg %d", piece->leg);
+        tables->rows[tables->n][table.n_rows++] =
+            (moray_table_row){.label = tables->label[k],
+                              .value = {piece->length, piece->course / DEG, asked / DEG, planned / DEG,
+                                        leg ? NAN : path_turning(job, piece) / DEG}};
+    }
+    steer_add_table(tables, &table);
+}
+
+static void tables(const steer_job *job, steer_tables *tables)
+{
+    steer_gait_table(job, tables, 0);
+    leg_table((const path_job *)job, tables);
+    steer_score_table(job, tables, sizeof score_columns / sizeof *score_columns);
+    steer_tuning_table(job, tables);
+}
+
+// ---- In words ------------------------------------------------------------------------------------------------------
+
+static void headline(const steer_job *steer, FILE *file)
+{
+    const path_job *job = (const path_job *)steer;
+    fprintf(file, "path %s, radius %g m, from (%g, %g)", job->path_text, job->radius, job->start[0], job->start[1]);
+}
+
+static void conclude(const steer_job *job, char *text, size_t size)
+{
+    const steer_trial *ours = steer_best(job, 1 << PLAN | 1 << BOTH | 1 << RECEDING, COST);
+    const steer_trial *theirs = steer_best(job, 1 << LOS | 1 << ILOS, COST);
+    const double *a = ours->score[1], *b = theirs->score[1];
+    snprintf(text, size,
+             "First-principles model, same limits: the best optimised steering (%s) takes %.2f s with a settled RMS "
+             "cross-track error of %.2f cm, the best tuned guidance (%s) %.2f s and %.2f cm; in what both were to "
+             "minimise %.2f against %.2f%s.",
+             ours->name, a[TIME], 100 * a[SETTLED_RMS], theirs->name, b[TIME], 100 * b[SETTLED_RMS], a[COST], b[COST],
+             a[COST] < b[COST] ? "" : ": the optimised one LOSES");
+}
+
+// ---- JSON, figures -------------------------------------------------------------------------------------------------
+
+static void json_head(const steer_job *steer, moray_json *json)
+{
+    const path_job *job = (const path_job *)steer;
+    moray_json_text(json, "path", job->path_text);
+    moray_json_number(json, "length_m", job->path.length);
+    moray_json_text(json, "scheme", steer->common.scheme);
+    moray_json_open_list(json, "legs");
+    for (int k = 0; k < job->path.n; k++) {
+        const moray_path_piece *leg = &job->path.piece[k];
+        double asked, planned;
+        if (leg->curvature != 0)
+            continue;
+        path_crab(job, leg, &asked, &planned);
+        moray_json_open(json, NULL);
+        moray_json_number(json, "leg", leg->leg);
+        moray_json_number(json, "course_deg", leg->course / DEG);
+        moray_json_number(json, "crab_by_triangle_deg", asked / DEG);
+        moray_json_number(json, "crab_planned_deg", planned / DEG);
+        moray_json_close(json);
+    }
+    moray_json_close(json);
+}
+
+static void json_plan(const steer_job *job, moray_json *json, moray_model model)
+{
+    moray_json_number(json, "time_s", steer_duration(job->plan[model].solution));
+    steer_json_gait(job, json, 1 + (int)model);
+}
+
+static void json_tail(const steer_job *steer, moray_json *json)
+{
+    const path_job *job = (const path_job *)steer;
+    double turning = 0;
+    for (int k = 0; k < job->path.n; k++)
+        turning = fmax(turning, path_turning(job, &job->path.piece[k]));
+    moray_json_open(json, "limits");
+    moray_json_number(json, "turn_rate_deg_s", fabs(steer->turn_rate[steer->common.model]) / DEG);
+    moray_json_number(json, "corner_turn_rate_deg_s", turning / DEG);
+    steer_json_saturation(steer, json, steer->common.model);
+    moray_json_close(json);
+}
+
+static bool values(const steer_job *job, const steer_trial *trial, const moray_swim_track *track, double *values)
+{
+    double along = 0;
+    for (int k = 0; trial && k < track->n; k++) {
+        const moray_pose *pose = &track->pose[k];
+        moray_path_project(&((const path_job *)job)->path, pose->p_x, pose->p_y, &along, &values[k]);
+        values[k] *= 100;
+    }
+    return trial != NULL;
+}
+
+static void points(const steer_job *steer, double x[STEER_POINTS], double y[STEER_POINTS])
+{
+    const moray_path *path = &((const path_job *)steer)->path;
+    for (int k = 0; k < STEER_POINTS; k++) {
+        const moray_path_point at = moray_path_at(path, path->length * k / (STEER_POINTS - 1));
+        x[k] = creal(at.x);
+        y[k] = creal(at.y);
+    }
+}
+
+// ---- The program ---------------------------------------------------------------------------------------------------
+
+static moray_status work(steer_job *steer)
+{
+    path_job *job = (path_job *)steer;
+    MORAY_TRY(moray_path_read(&job->path, job->path_text, job->radius));
+    MORAY_TRY(path_make_plans(job));
+    choose_trials(steer);
+    return steer_run_trials(steer);
+}
+
+static void release(steer_job *steer)
+{
+    path_job *job = (path_job *)steer;
+    moray_path_plan_free(&job->averaged);
+    for (int model = 0; model < 2; model++)
+        moray_path_plan_free(&job->plan[model]);
+    moray_path_free(&job->path);
+}
+
+const steer_program path_steering = {
+    .work = work,
+    .release = release,
+    .laws = laws,
+    .numbers = numbers,
+    .n_numbers = NUMBERS,
+    .x_tolerance = 1e-3,
+    .f_tolerance = 1e-4,
+    .rough_per_second = 20,
+    .start = start,
+    .judge = judge,
+    .scores = scores,
+    .n_scores = SCORES,
+    .score_title = "Cross-track error, cm (settled: without the first way to the path); time to the end, s; cost as in "
+                   "the objective; power, W",
+    .columns = score_columns,
+    .tables = tables,
+    .headline = headline,
+    .conclude = conclude,
+    .explain = path_explain,
+    .swum = swum,
+    .tells_name = true,
+    .json_head = json_head,
+    .json_plan = json_plan,
+    .json_tail = json_tail,
+    .over_time = {.name = "across",
+                  .title = "Cross-track error, first-principles model",
+                  .y_label = "to the left of the path [cm]"},
+    .values = values,
+    .path = points,
+};

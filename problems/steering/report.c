@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+//
+// Tables, words and files of a program that steers.
+#include "steer.h"
+
+const char *const steer_model_names[2] = {"control-oriented", "first-principles"};
+
+// ---- Tables --------------------------------------------------------------------------------------------------------
+
+void steer_add_table(steer_tables *tables, const moray_table *table)
+{
+    tables->table[tables->n] = *table;
+    tables->table[tables->n].rows = tables->rows[tables->n];
+    tables->n++;
+}
+
+void steer_gait_table(const steer_job *job, steer_tables *tables, int first)
+{
+    static const char *const labels[][2] = {{"theta_max, amplitude of (24)", "deg"},
+                                            {"omega, frequency", "deg/s"},
+                                            {"delta, phase shift", "deg"},
+                                            {"a, by (33)", "cm"},
+                                            {"alpha, by (27)", "deg"},
+                                            {"speed, control-oriented", "m/s"},
+                                            {"speed, first-principles", "m/s"},
+                                            {"power straight ahead there", "W"}};
+    enum { count = sizeof labels / sizeof *labels };
+    moray_table_row *rows = tables->rows[tables->n];
+    for (int i = 0; i < count; i++)
+        rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
+    for (int g = first; g <= 1 + (int)job->common.model; g++) {
+        const moray_straight_motion *control = &job->straight[g][0], *revolute = &job->straight[g][1];
+        const moray_gait *gait = &control->gait;
+        const double values[count] = {
+            moray_theta_max_from_amplitude(&job->common.robot, MORAY_CONTROL_ORIENTED, gait->amplitude, gait->delta) /
+                DEG,
+            gait->omega / DEG,
+            gait->delta / DEG,
+            100 * gait->amplitude,
+            revolute->gait.amplitude / DEG,
+            control->speed,
+            revolute->speed,
+            revolute->power};
+        for (int i = 0; i < count; i++)
+            rows[i].value[g - first] = values[i];
+    }
+    moray_table table = {.title = "Gait",
+                         .columns = {"paper's", "control opt.", "first-pr. opt."},
+                         .n_columns = 2 + (int)job->common.model,
+                         .n_rows = count};
+    if (first > 0) {
+        table.columns[0] = "given";
+        table.n_columns = 1;
+    }
+    steer_add_table(tables, &table);
+}
+
+static double cell(const steer_trial *trial, const steer_column *column)
+{
+    if (column->score == STEER_SPENT)
+        return trial->evaluations ? (double)trial->evaluations : NAN;
+    const double value = trial->score[column->model][column->score] / column->unit;
+    return column->rounded && fabs(value) < 5e-4 ? 0 : value;
+}
+
+void steer_score_table(const steer_job *job, steer_tables *tables, int n_columns)
+{
+    const steer_column *columns = job->program->columns;
+    moray_table_row *rows = tables->rows[tables->n];
+    moray_table table = {.title = job->program->score_title, .n_columns = n_columns, .n_rows = job->n_trials};
+    for (int i = 0; i < n_columns; i++)
+        table.columns[i] = columns[i].title;
+    for (int k = 0; k < job->n_trials; k++) {
+        rows[k] = (moray_table_row){.label = job->trial[k].name};
+        for (int i = 0; i < n_columns; i++)
+            rows[k].value[i] = cell(&job->trial[k], &columns[i]);
+    }
+    steer_add_table(tables, &table);
+}
+
+void steer_tuning_table(const steer_job *job, steer_tables *tables)
+{
+    const int n = job->program->n_numbers;
+    moray_table_row *rows = tables->rows[tables->n];
+    moray_table table = {.title = "Tuned on the first-principles model", .n_columns = n + 1};
+    for (int i = 0; i < n; i++)
+        table.columns[i] = job->number[i].column;
+    table.columns[n] = "simulations";
+    for (int k = 0; k < job->n_trials; k++) {
+        const steer_trial *trial = &job->trial[k];
+        if (trial->evaluations == 0)
+            continue;
+        moray_table_row *row = &rows[table.n_rows++];
+        *row = (moray_table_row){.label = trial->name};
+        for (int i = 0; i < n; i++) // what is known ahead has a lead, if only 0
+            row->value[i] =
+                trial->law->tuned & 1u << i || trial->law->preview ? job->number[i].unit * trial->number[i] : NAN;
+        row->value[n] = trial->evaluations;
+    }
+    steer_add_table(tables, &table);
+}
+
+// ---- In words ------------------------------------------------------------------------------------------------------
+
+const steer_trial *steer_best(const steer_job *job, unsigned laws, int score)
+{
+    const steer_trial *best = NULL;
+    for (int k = 0; k < job->n_trials; k++) {
+        const steer_trial *trial = &job->trial[k];
+        const bool wanted = laws & 1u << (trial->law - job->program->laws) && !trial->barred;
+        if (wanted && (!best || trial->score[1][score] < best->score[1][score]))
+            best = trial;
+    }
+    return best;
+}
+
+static void print_receding(const steer_job *job, const steer_trial *trial)
+{
+    const moray_receding_horizon_record *r = &trial->record[MORAY_FIRST_PRINCIPLES];
+    printf(
+        "%s: %d plans of %.3g periods, each %.2g s of processor time on average (the longest after the first %.2g s) "
+        "and %.1f iterations; %.1f times faster than real time on one core%s%s\n",
+        trial->name, r->plans, job->look_ahead_periods, r->seconds / r->plans, r->longest,
+        (double)r->iterations / r->plans, job->program->swum(job, trial) / r->seconds,
+        r->failures ? "; not solved at first: " : "", r->failures ? r->first_failure : "");
+}
+
+static void print_solver(const steer_job *job, int number)
+{
+    char line[300];
+    int meshes;
+    const moray_solution *solution = job->plan[number].solution;
+    const moray_mesh_record *record = moray_solution_history(solution, &meshes);
+    const bool averaged = number == STEER_AVERAGED;
+    moray_solver_line(solution, averaged ? STEER_AVERAGED_SCHEME : job->common.scheme, record[meshes - 1].intervals,
+                      line, sizeof line);
+    printf("%s: ", averaged ? "period-averaged plan" : steer_model_names[number]);
+    if (job->program->duration)
+        printf("%s %.3f s, ", job->program->duration, steer_duration(solution));
+    printf("%s\n", line);
+    if (averaged)
+        return;
+    moray_certificate_line(&job->certificate[number], line, sizeof line);
+    printf("    %s\n", line);
+}
+
+static void print_all(const steer_job *job, const steer_tables *tables)
+{
+    const steer_program *program = job->program;
+    char text[STEER_TEXT];
+    printf("%d links, current (%g, %g) m/s, ", job->common.robot.links, job->common.current[0], job->common.current[1]);
+    program->headline(job, stdout);
+    printf("\n\n");
+    for (int k = 0; k < tables->n; k++) {
+        moray_table_print(&tables->table[k], stdout);
+        printf("\n");
+    }
+    program->conclude(job, text, sizeof text);
+    printf("%s\n\n", text);
+    program->explain(job, text, sizeof text);
+    printf("%s\n\n", text);
+    if (program->notes)
+        program->notes(job, stdout);
+    for (int k = 0; k < job->n_trials; k++)
+        if (job->trial[k].law->kind == STEER_RECEDING)
+            print_receding(job, &job->trial[k]);
+    print_solver(job, STEER_AVERAGED);
+    for (int model = 0; model <= (int)job->common.model; model++)
+        print_solver(job, model);
+}
+
+// ---- Files ---------------------------------------------------------------------------------------------------------
+
+static moray_status write_files(const steer_job *job, const steer_tables *tables, const moray_json *json)
+{
+    moray_output *output = job->common.output;
+    char text[STEER_TEXT];
+    FILE *file;
+    MORAY_TRY(moray_output_file(output, "summary.json", &file));
+    MORAY_TRY(moray_json_write(json, file));
+    MORAY_TRY(steer_draw(job));
+    job->program->conclude(job, text, sizeof text);
+    const moray_report report = {.title = job->name,
+                                 .text = text,
+                                 .tables = tables->table,
+                                 .n_tables = tables->n,
+                                 .argc = job->common.argc,
+                                 .argv = job->common.argv};
+    MORAY_TRY(moray_output_report(output, &report));
+    return moray_output_commit(output);
+}
+
+moray_status steer_report(const steer_job *job)
+{
+    steer_tables tables = {0};
+    job->program->tables(job, &tables);
+    moray_json *json = steer_json(job);
+    moray_status status = job->common.output ? write_files(job, &tables, json) : moray_ok();
+    if (!moray_failed(status) && job->common.json)
+        status = moray_json_write(json, stdout);
+    else if (!moray_failed(status))
+        print_all(job, &tables);
+    moray_json_free(json);
+    return status;
+}

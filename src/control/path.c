@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "moray/angle.h"
+#include "moray/control/path.h"
+
+#include <stdlib.h>
+#include <tgmath.h>
+
+// ---- Legs and arcs -------------------------------------------------------------------------------------------------
+
+typedef struct waypoints {
+    const double (*at)[2];
+    int n;
+} waypoints;
+
+static moray_status check(const waypoints *through, double radius)
+{
+    if (!(radius > 0 && isfinite(radius)))
+        return moray_error(MORAY_INPUT, "radius_m = %g: must be above 0", radius);
+    for (int k = 0; k < through->n; k++) {
+        const double x = through->at[k][0], y = through->at[k][1];
+        if (!isfinite(x) || !isfinite(y))
+            return moray_error(MORAY_INPUT, "path: waypoint %d is (%g, %g): must be finite", k + 1, x, y);
+        if (k > 0 && hypot(x - through->at[k - 1][0], y - through->at[k - 1][1]) < 1e-9)
+            return moray_error(MORAY_INPUT, "path: waypoint %d is where the one before is, (%g, %g)", k + 1, x, y);
+    }
+    if (through->n < 2)
+        return moray_error(MORAY_INPUT, "path: %d waypoint%s: must be at least 2", through->n,
+                           through->n == 1 ? "" : "s");
+    return moray_ok();
+}
+
+static void add_piece(moray_path *path, int leg, double x, double y, double course, double length, double curvature)
+{
+    if (length <= 0)
+        return;
+    path->piece[path->n++] = (moray_path_piece){leg, path->length, x, y, course, length, curvature};
+    path->length += length;
+}
+
+static double course_between(const double *from, const double *to)
+{
+    return atan2(to[1] - from[1], to[0] - from[0]);
+}
+
+// The turn at waypoint k, to the left, and what it takes of the legs on either side.
+static double turn_at(const waypoints *through, int k, double radius, double *taken)
+{
+    double turn = 0;
+    if (k > 0 && k < through->n - 1)
+        turn = remainder(course_between(through->at[k], through->at[k + 1]) -
+                             course_between(through->at[k - 1], through->at[k]),
+                         2 * M_PI);
+    *taken = radius * tan(fabs(turn) / 2);
+    return turn;
+}
+
+static moray_status lay(moray_path *path, const waypoints *through, double radius)
+{
+    double before = 0, taken, course = course_between(through->at[0], through->at[1]);
+    for (int k = 0; k + 1 < through->n; k++) {
+        const double *from = through->at[k], *to = through->at[k + 1];
+        const double leg = hypot(to[0] - from[0], to[1] - from[1]);
+        const double c = cos(course), s = sin(course), turn = turn_at(through, k + 1, radius, &taken);
+        if (before + taken > leg * (1 + 1e-12))
+            return moray_error(MORAY_INPUT,
+                               "path: leg %d is %.4g m long, too short for arcs of radius %.4g m that turn by %.4g deg "
+                               "at its end",
+                               k + 1, leg, radius, turn / MORAY_DEGREE);
+        add_piece(path, k + 1, from[0] + before * c, from[1] + before * s, course, leg - before - taken, 0);
+        if (turn != 0)
+            add_piece(path, k + 1, to[0] - taken * c, to[1] - taken * s, course, radius * fabs(turn),
+                      turn > 0 ? 1 / radius : -1 / radius);
+        before = taken;
+        course += turn; // without jumps by a whole turn
+    }
+    return moray_ok();
+}
+
+moray_status moray_path_through(moray_path *path, const double (*waypoint)[2], int n, double radius)
+{
+    const waypoints through = {waypoint, n};
+    *path = (moray_path){.radius = radius};
+    MORAY_TRY(check(&through, radius));
+    path->piece = calloc(2 * (size_t)n, sizeof *path->piece);
+    if (!path->piece)
+        return moray_error(MORAY_MEMORY, "no memory for a path of %d waypoints", n);
+    const moray_status status = lay(path, &through, radius);
+    if (moray_failed(status))
+        moray_path_free(path);
+    return status;
+}
+
+void moray_path_free(moray_path *path)
+{
+    free(path->piece);
+    *path = (moray_path){0};
+}
+
+// ---- Points --------------------------------------------------------------------------------------------------------
+
+moray_path_point moray_path_at(const moray_path *path, moray_num along)
+{
+    const double where = creal(along);
+    int k = 0;
+    while (k + 1 < path->n && where >= path->piece[k + 1].start)
+        k++;
+    const moray_path_piece *piece = &path->piece[k];
+    const bool outside = where < 0 || where > path->length; // straight on
+    const double from = where < 0 ? 0 : outside ? piece->length : 0, kappa = outside ? 0 : piece->curvature;
+    const double course = piece->course + piece->curvature * from;
+    double x = piece->x, y = piece->y;
+    if (from > 0) {
+        const double bend = piece->curvature;
+        x += bend != 0 ? (sin(course) - sin(piece->course)) / bend : from * cos(course);
+        y -= bend != 0 ? (cos(course) - cos(piece->course)) / bend : -from * sin(course);
+    }
+    const moray_num s = along - piece->start - from, turned = course + kappa * s;
+    if (kappa == 0)
+        return (moray_path_point){x + s * cos(course), y + s * sin(course), turned, 0};
+    return (moray_path_point){x + (sin(turned) - sin(course)) / kappa, y - (cos(turned) - cos(course)) / kappa, turned,
+                              kappa};
+}
+
+void moray_path_project(const moray_path *path, double x, double y, double *along, double *across)
+{
+    enum { most = 100 };
+    const double longest = path->radius / 2; // beyond, the course at the step's start says little of its end
+    for (int k = 0; k < most; k++) {
+        const moray_path_point at = moray_path_at(path, *along);
+        const double c = cos(creal(at.course)), s = sin(creal(at.course));
+        const double dx = x - creal(at.x), dy = y - creal(at.y), ahead = c * dx + s * dy;
+        *across = c * dy - s * dx;
+        const double step = ahead / fmax(1 - at.curvature * *across, 0.2);
+        *along += fmin(fmax(step, -longest), longest);
+        if (fabs(step) < 1e-10 * path->radius)
+            break;
+    }
+}
