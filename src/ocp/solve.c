@@ -219,11 +219,13 @@ static moray_status solve_mesh(struct campaign *c, const moray_guess *guess, mor
         moray_status status = moray_widen_patterns(old->transcription, &found);
         if (!moray_failed(status) && found == 0)
             return status;
-        c->widenings++;
-        record(c, old, NAN, found);
-        const moray_guess here = moray_guess_from_solution(old);
-        if (!moray_failed(status))
+        *result = NULL;
+        if (!moray_failed(status)) {
+            const moray_guess here = moray_guess_from_solution(old);
+            c->widenings++;
+            record(c, old, NAN, found);
             status = solve_once(c, &here, result);
+        }
         drop(old);
         MORAY_TRY(status);
     }
