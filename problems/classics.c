@@ -69,6 +69,7 @@ static moray_status solve(classics_run *run, struct line *line)
         line->settings.intervals = run->common.intervals;
     if (!isnan(run->common.tol))
         line->settings.tolerance = run->common.tol;
+    line->settings.linear_solver = run->common.linear_solver;
     if (run->refinements >= 0)
         line->settings.max_refinements = run->refinements;
     line->settings.progress = show_iteration;

@@ -40,13 +40,19 @@ typedef struct moray_progress {
 } moray_progress;
 typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
 
+// Which factorisation Ipopt works with: our own, MUMPS, or an MA57 that it finds in libhsl.so (then no other thread may
+// be solving with our own).
+typedef enum { MORAY_LINEAR_OWN, MORAY_LINEAR_MUMPS, MORAY_LINEAR_MA57 } moray_linear_solver;
+const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
+
 typedef struct moray_nlp_settings {
     double tolerance;   // 1e-8: scaled KKT error at which the solver stops
     int max_iterations; // 1000
     double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
     bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
     int print_level;    // 0: Ipopt's own log on standard output, 0..12
-    bool timing;        // false: true has the linear solver timed, which goes through a temporary file
+    moray_linear_solver linear_solver; // our own, with MUMPS to fall back on
+    bool timing;                       // false: true has MUMPS or MA57 timed, which goes through a temporary file
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;
@@ -70,9 +76,11 @@ typedef struct moray_nlp_info {
     double seconds;            // whole solve, by the clock on the wall
     double cpu_seconds;        // whole solve, of the processor
     double evaluation_seconds; // of cpu_seconds, in the callbacks
-    double linear_seconds;     // of cpu_seconds, in the linear solver, to 1e-3; NaN unless asked for
+    double linear_seconds;     // of cpu_seconds, in the linear solver; of MUMPS and MA57 to 1e-3, NaN unless asked for
     int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
     double evaluation_by[5];   // evaluation_seconds of each
+    moray_linear_solver linear_solver; // that the result is from
+    bool linear_fallback;              // our own was not accurate enough, so that MUMPS solved it from the start
 } moray_nlp_info;
 
 // Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there; where it was

@@ -209,7 +209,8 @@ typedef struct moray_settings {
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log
-    bool timing;           // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
+    moray_linear_solver linear_solver; // our own
+    bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
     moray_progress_fn *progress;
     void *observer;
 } moray_settings;

@@ -77,6 +77,7 @@ moray_settings steer_settings(steer_job *job, bool averaged, int intervals, doub
     settings.scheme = averaged ? STEER_AVERAGED_SCHEME : job->common.scheme;
     settings.intervals = !averaged && job->common.intervals > 0 ? job->common.intervals : intervals;
     settings.tolerance = job->common.tol;
+    settings.linear_solver = job->common.linear_solver;
     settings.mesh_tolerance = mesh_tolerance;
     settings.max_refinements = averaged ? 0 : job->refinements;
     settings.barrier = averaged ? 0.1 : barrier;

@@ -3,7 +3,7 @@
 #define SRC_CONTROL_PERIODIC_ORBIT_H
 
 #include "control/orbit_system.h"
-#include "nlp/klu.h"
+#include "linear/klu.h"
 
 struct moray_periodic_orbit {
     orbit_system system;

@@ -36,6 +36,7 @@ bool moray_closed_loop_record_add(const moray_closed_loop_sample *sample, void *
     const size_t k = (size_t)record->n++, nx = (size_t)record->nx, nu = (size_t)record->nu;
     record->t[k] = sample->t;
     memcpy(record->x + k * nx, sample->x, nx * sizeof *record->x);
-    memcpy(record->u + k * nu, sample->u, nu * sizeof *record->u);
+    if (nu > 0) // a sample without controls may point nowhere
+        memcpy(record->u + k * nu, sample->u, nu * sizeof *record->u);
     return true;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The one file that knows Ipopt. Written for 3.11 (char * options) and kept valid for 3.14.
+// The one file that calls Ipopt. Written for 3.11 (char * options) and kept valid for 3.14.
 #include "moray/nlp.h"
 
 #include <IpStdCInterface.h> // the folder (coin or coin-or) is the package's business
@@ -9,6 +9,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "nlp/ipopt_linear.h"
+#include "nlp/ipopt_options.h"
 #include "nlp/ipopt_timing.h"
 
 struct session {
@@ -134,49 +136,6 @@ static Bool on_iteration(Index mode, Index iteration, Number objective, Number i
     return session->settings->progress(session->settings->observer, &progress);
 }
 
-// Whether several variables stand in a quarter of all constraints or more, as parameters and end times do. work[n].
-static bool has_dense_columns(const moray_nlp *nlp, double *work)
-{
-    enum { several = 3 };
-    int dense = 0;
-    memset(work, 0, (size_t)nlp->n * sizeof *work);
-    for (int k = 0; k < nlp->nnz_jac; k++)
-        dense += (int)++work[nlp->jac_col[k]] == nlp->m / 4;
-    return dense >= several;
-}
-
-static bool set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_nlp_settings *settings, double *work)
-{
-    // 3.11 declares its option texts as char * but only reads them.
-    bool ok = AddIpoptNumOption(problem, (char *)"tol", settings->tolerance);
-    ok = ok && AddIpoptIntOption(problem, (char *)"max_iter", settings->max_iterations);
-    ok = ok && AddIpoptIntOption(problem, (char *)"print_level", settings->print_level);
-    ok = ok && AddIpoptStrOption(problem, (char *)"sb", (char *)"yes"); // no banner
-    if (settings->barrier > 0)
-        ok = ok && AddIpoptNumOption(problem, (char *)"mu_init", settings->barrier);
-    ok = ok && AddIpoptStrOption(problem, (char *)"linear_solver", (char *)"mumps");
-    // MUMPS's own choice moves large entries of long programmes to the diagonal and fills the factor: 60 times slower.
-    ok = ok && AddIpoptIntOption(problem, (char *)"mumps_permuting_scaling", 0);
-    // Its nested dissection cannot cut what a few variables hold together: 30 times slower than minimum degree that
-    // sets dense rows apart.
-    if (has_dense_columns(nlp, work))
-        ok = ok && AddIpoptIntOption(problem, (char *)"mumps_pivot_order", 6);
-    if (nlp->x_scale || nlp->g_scale || nlp->f_scale != 0) {
-        ok = ok && AddIpoptStrOption(problem, (char *)"nlp_scaling_method", (char *)"user-scaling");
-        ok = ok && SetIpoptProblemScaling(problem, nlp->f_scale != 0 ? nlp->f_scale : 1, (double *)nlp->x_scale,
-                                          (double *)nlp->g_scale);
-    }
-    if (settings->warm) {
-        static const char *const pushes[] = {"warm_start_bound_push", "warm_start_bound_frac",
-                                             "warm_start_slack_bound_push", "warm_start_slack_bound_frac",
-                                             "warm_start_mult_bound_push"};
-        ok = ok && AddIpoptStrOption(problem, (char *)"warm_start_init_point", (char *)"yes");
-        for (unsigned i = 0; i < sizeof pushes / sizeof *pushes; i++)
-            ok = ok && AddIpoptNumOption(problem, (char *)pushes[i], 1e-9);
-    }
-    return ok && SetIntermediateCallback(problem, on_iteration);
-}
-
 static moray_nlp_outcome outcome_of(enum ApplicationReturnStatus code)
 {
     switch (code) {
@@ -222,10 +181,11 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
                         struct ipopt_timing *timing)
 {
     const moray_nlp_settings *settings = session->settings;
-    if (!set_options(problem, session->nlp, settings, session->last))
+    if (!moray_ipopt_set_options(problem, session->nlp, settings, session->info->linear_solver, session->last) ||
+        !SetIntermediateCallback(problem, on_iteration))
         return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
                            settings->tolerance, settings->max_iterations, settings->print_level);
-    if (settings->timing && moray_ipopt_timing_open(timing) &&
+    if (settings->timing && session->info->linear_solver != MORAY_LINEAR_OWN && moray_ipopt_timing_open(timing) &&
         OpenIpoptOutputFile(problem, timing->path, ipopt_timing_level))
         AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
     session->info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective,
@@ -234,32 +194,87 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
     return moray_ok();
 }
 
-moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
-                               moray_nlp_info *info)
+// With the linear solver that session->info names.
+static moray_status solve_with(struct session *session, moray_iterate *iterate)
 {
-    *info = (moray_nlp_info){0};
-    if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
-        return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
-    const double start = now(CLOCK_MONOTONIC), cpu_start = cpu();
-    double *block = calloc(2 * (size_t)nlp->n + 1, sizeof *block);
-    if (!block)
-        return moray_error(MORAY_MEMORY, "no memory for %d variables", nlp->n);
-    struct session session = {nlp, settings, info, block, block + nlp->n, INFINITY, INFINITY};
+    const moray_nlp *nlp = session->nlp;
+    struct ipopt_timing timing = {0};
+    moray_status status =
+        moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
     // Ipopt copies the bounds.
     IpoptProblem problem = CreateIpoptProblem(
         nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
         nlp->nnz_jac, nlp->nnz_hess, 0, on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
-    struct ipopt_timing timing = {0};
-    moray_status status =
-        moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
     if (problem) {
-        status = run(problem, &session, iterate, &timing);
+        status = run(problem, session, iterate, &timing);
         FreeIpoptProblem(problem); // writes the rest of the log
     }
+    session->info->linear_seconds = moray_ipopt_timing_close(&timing);
+    return status;
+}
+
+static moray_status solve_own(struct session *session, moray_iterate *iterate, bool *doubtful)
+{
+    struct ipopt_linear linear;
+    moray_ipopt_linear_open(&linear);
+    moray_status status = solve_with(session, iterate);
+    moray_ipopt_linear_close(&linear);
+    session->info->linear_seconds = linear.seconds;
+    *doubtful = stopped_early(session->info->outcome) && linear.doubtful;
+    return moray_failed(status) ? status : linear.failure;
+}
+
+static void copy_iterate(const moray_nlp *nlp, const moray_iterate *from, moray_iterate *to)
+{
+    const size_t n = (size_t)nlp->n * sizeof *from->x, m = (size_t)nlp->m * sizeof *from->x;
+    memcpy(to->x, from->x, n);
+    memcpy(to->z_lower, from->z_lower, n);
+    memcpy(to->z_upper, from->z_upper, n);
+    memcpy(to->lambda, from->lambda, m);
+}
+
+// With our own factorisation, and from the start once more with MUMPS where that was the trouble.
+static moray_status solve(struct session *session, moray_iterate *iterate, const moray_iterate *start)
+{
+    const moray_nlp_settings *settings = session->settings;
+    moray_nlp_info *info = session->info;
+    bool doubtful = false;
+    info->linear_solver = settings->linear_solver;
+    if (info->linear_solver == MORAY_LINEAR_OWN && !moray_ipopt_linear_available())
+        info->linear_solver = MORAY_LINEAR_MUMPS;
+    if (info->linear_solver == MORAY_LINEAR_MA57)
+        moray_ipopt_linear_stand_back();
+    if (info->linear_solver != MORAY_LINEAR_OWN)
+        return solve_with(session, iterate);
+    MORAY_TRY(solve_own(session, iterate, &doubtful));
+    if (!doubtful)
+        return moray_ok();
+    copy_iterate(session->nlp, start, iterate);
+    session->best_violation = session->best_objective = INFINITY;
+    info->linear_solver = MORAY_LINEAR_MUMPS;
+    info->linear_fallback = true;
+    return solve_with(session, iterate);
+}
+
+moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
+                               moray_nlp_info *info)
+{
+    const size_t n = (size_t)nlp->n, m = (size_t)nlp->m;
+    *info = (moray_nlp_info){0};
+    if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
+        return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
+    const double wall_start = now(CLOCK_MONOTONIC), cpu_start = cpu();
+    double *block = calloc(5 * n + m + 1, sizeof *block);
+    if (!block)
+        return moray_error(MORAY_MEMORY, "no memory for %d variables", nlp->n);
+    struct session session = {nlp, settings, info, block, block + n, INFINITY, INFINITY};
+    moray_iterate start = {
+        .x = block + 2 * n, .z_lower = block + 3 * n, .z_upper = block + 4 * n, .lambda = block + 5 * n};
+    copy_iterate(nlp, iterate, &start);
+    const moray_status status = solve(&session, iterate, &start);
     free(block);
-    info->seconds = now(CLOCK_MONOTONIC) - start;
+    info->seconds = now(CLOCK_MONOTONIC) - wall_start;
     info->cpu_seconds = cpu() - cpu_start;
-    info->linear_seconds = moray_ipopt_timing_close(&timing);
     return status;
 }
 
@@ -278,4 +293,10 @@ const char *moray_nlp_outcome_text(moray_nlp_outcome outcome)
                                         "stalled",
                                         "not a number, or too few degrees of freedom"};
     return (unsigned)outcome < sizeof texts / sizeof *texts ? texts[outcome] : "unknown";
+}
+
+const char *moray_linear_solver_text(moray_linear_solver solver)
+{
+    static const char *const texts[] = {"moray", "mumps", "ma57"};
+    return (unsigned)solver < sizeof texts / sizeof *texts ? texts[solver] : "unknown";
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "nlp/klu.h"
+#include "linear/klu.h"
 
 static const double least_square = 1e-8; // of singular values: rounding enters divided by it
 enum { iterations = 8 };

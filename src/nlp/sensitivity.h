@@ -5,7 +5,7 @@
 #define SRC_NLP_SENSITIVITY_H
 
 #include "moray/nlp.h"
-#include "nlp/klu.h"
+#include "linear/klu.h"
 
 enum activity { INACTIVE, AT_LOWER, AT_UPPER, EQUAL };
 

@@ -93,6 +93,7 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
                                 .barrier = warm ? settings->tolerance : settings->barrier,
                                 .warm = warm,
                                 .print_level = settings->print_level,
+                                .linear_solver = settings->linear_solver,
                                 .timing = settings->timing,
                                 .progress = settings->progress,
                                 .observer = settings->observer};

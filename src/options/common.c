@@ -4,7 +4,10 @@
 #include <math.h>
 
 static const char *const models[] = {[MORAY_CONTROL_ORIENTED] = "control", [MORAY_FIRST_PRINCIPLES] = "fp", NULL};
-_Static_assert(sizeof(moray_model) == sizeof(int), "choices are stored as int");
+static const char *const linear_solvers[] = {
+    [MORAY_LINEAR_OWN] = "moray", [MORAY_LINEAR_MUMPS] = "mumps", [MORAY_LINEAR_MA57] = "ma57", NULL};
+_Static_assert(sizeof(moray_model) == sizeof(int) && sizeof(moray_linear_solver) == sizeof(int),
+               "choices are stored as int");
 
 #define SPAN(low, high) .min = (low), .max = (high)
 #define ABOVE(low) .min = (low), .max = INFINITY, .open = true
@@ -90,6 +93,12 @@ static const moray_option solver_rows[] = {
      SPAN(1, 100000),
      .help = "number of collocation intervals"},
     {REAL("solver", "tol", tol), .flag = "tol", SPAN(0, 1), .open = true, .help = "tolerance of the solver"},
+    {.section = "solver",
+     .key = "linear_solver",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(moray_common, linear_solver),
+     .choices = linear_solvers,
+     .help = "factorisation inside Ipopt: our own, MUMPS, or an MA57 in libhsl.so"},
     {.flag = "json",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(moray_common, json),

@@ -64,6 +64,7 @@ static void start_from_defaults(app_run *run)
     snprintf(run->common.scheme, sizeof run->common.scheme, "%s", settings.scheme);
     run->common.intervals = settings.intervals;
     run->common.tol = settings.tolerance;
+    run->common.linear_solver = settings.linear_solver;
     run->mesh_tol = settings.mesh_tolerance;
     run->refinements = settings.max_refinements;
     run->max_iterations = settings.max_iterations;
@@ -88,6 +89,7 @@ static moray_settings settings_of(app_run *run)
     settings.scheme = run->common.scheme;
     settings.intervals = run->common.intervals;
     settings.tolerance = run->common.tol;
+    settings.linear_solver = run->common.linear_solver;
     settings.mesh_tolerance = run->mesh_tol;
     settings.max_refinements = run->refinements;
     settings.max_iterations = run->max_iterations;

@@ -17,7 +17,7 @@ void moray_solver_to_json(moray_json *json, const moray_solution *solution)
     moray_json_number(json, "nnz_hess", size.nnz_hess);
     moray_json_number(json, "time_s", info->seconds);
     moray_json_number(json, "eval_time_s", info->evaluation_seconds);
-    moray_json_text(json, "linear_solver", "mumps");
+    moray_json_text(json, "linear_solver", moray_linear_solver_text(info->linear_solver));
 }
 
 void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate)

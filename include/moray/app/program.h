@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "moray/app/results.h"
+#include "moray/nlp.h"
 #include "moray/snake/model.h"
 
 // ---- Options -------------------------------------------------------------------------------------------------------
@@ -52,6 +53,7 @@ typedef struct moray_common {
     char scheme[MORAY_SCHEME_SIZE];
     int intervals;
     double tol;
+    moray_linear_solver linear_solver;
     bool json, quiet;
     char robot_file[MORAY_PATH_SIZE], out[MORAY_PATH_SIZE]; // empty: none
     moray_output *output;                                   // of --out, from moray_app_start; NULL without

@@ -58,6 +58,7 @@ moray_settings gait_job_settings(gait_job *job)
     return (moray_settings){.scheme = job->common.scheme,
                             .intervals = job->common.intervals,
                             .tolerance = job->common.tol,
+                            .linear_solver = job->common.linear_solver,
                             .mesh_tolerance = 1e-6,
                             .max_refinements = job->refinements,
                             .max_iterations = 1000,

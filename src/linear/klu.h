@@ -2,8 +2,8 @@
 //
 // Sparse LU factors of square matrices of one pattern: ordered once, factored for every set of values, solved with the
 // matrix or its transpose.
-#ifndef SRC_NLP_KLU_H
-#define SRC_NLP_KLU_H
+#ifndef SRC_LINEAR_KLU_H
+#define SRC_LINEAR_KLU_H
 
 #include "moray/map.h"
 

@@ -7,7 +7,7 @@
 
 #include "dense.h"
 #include "moray/dense.h"
-#include "nlp/klu.h"
+#include "linear/klu.h"
 
 enum { MOST = 40 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The one file that knows KLU.
-#include "nlp/klu.h"
+#include "linear/klu.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "linear/ldl.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "linear/parts.h"
+
+double moray_ldl_clock(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static moray_status no_memory(int n)
+{
+    return moray_error(MORAY_MEMORY, "no memory for a sparse symmetric matrix of %d rows", n);
+}
+
+static moray_status check_pattern(int n, const moray_pattern *pattern)
+{
+    for (int k = 0; k < pattern->nnz; k++)
+        if (pattern->row[k] < 0 || pattern->row[k] >= n || pattern->col[k] < 0 || pattern->col[k] >= n)
+            return moray_error(MORAY_INPUT, "entry %d stands at (%d, %d): outside a matrix of %d rows", k,
+                               pattern->row[k], pattern->col[k], n);
+    return moray_ok();
+}
+
+moray_status moray_ldl_new(moray_ldl **result, int n, const moray_pattern *pattern)
+{
+    *result = NULL;
+    MORAY_TRY(check_pattern(n, pattern));
+    moray_ldl *ldl = calloc(1, sizeof *ldl);
+    if (!ldl)
+        return no_memory(n);
+    ldl->n = n;
+    const moray_status status = moray_pattern_new(&ldl->pattern, pattern->nnz);
+    if (moray_failed(status)) {
+        moray_ldl_free(ldl);
+        return status;
+    }
+    memcpy(ldl->pattern.row, pattern->row, (size_t)pattern->nnz * sizeof *pattern->row);
+    memcpy(ldl->pattern.col, pattern->col, (size_t)pattern->nnz * sizeof *pattern->col);
+    *result = ldl;
+    return moray_ok();
+}
+
+static void forget_plan(moray_ldl *ldl)
+{
+    moray_ldl_plan_free(&ldl->plan);
+    free(ldl->front);
+    free(ldl->value);
+    free(ldl->update);
+    free(ldl->panel);
+    free(ldl->kept);
+    free(ldl->pivot);
+    free(ldl->index);
+    free(ldl->local);
+    ldl->front = NULL;
+    ldl->value = ldl->update = ldl->panel = ldl->kept = ldl->pivot = ldl->local = NULL;
+    ldl->index = NULL;
+    ldl->planned = ldl->factored = false;
+}
+
+void moray_ldl_free(moray_ldl *ldl)
+{
+    if (!ldl)
+        return;
+    forget_plan(ldl);
+    moray_pattern_free(&ldl->pattern);
+    free(ldl);
+}
+
+// ---- Ordering
+// --------------------------------------------------------------------------------------------------------
+
+static moray_status make_plan(moray_ldl *ldl, const double *values)
+{
+    struct graph graph;
+    moray_status status = moray_ldl_graph_new(&graph, ldl->n, &ldl->pattern, values);
+    if (!moray_failed(status)) {
+        moray_ldl_graph_equilibrate(&graph);
+        status = moray_ldl_plan_new(&ldl->plan, &graph, &ldl->pattern);
+    }
+    moray_ldl_graph_free(&graph);
+    return status;
+}
+
+static moray_status make_room(moray_ldl *ldl)
+{
+    const struct plan *plan = &ldl->plan;
+    const size_t n = (size_t)plan->n, slots = (size_t)plan->slots;
+    ldl->panel_room = plan->panel_room + 1;
+    ldl->index_room = n + 1;
+    ldl->kept_room = (size_t)plan->tallest * (size_t)plan->widest + 1;
+    ldl->local_room = (size_t)plan->tallest + 1;
+    ldl->front = calloc((size_t)plan->nodes + 1, sizeof *ldl->front);
+    ldl->value = malloc((2 * slots + 5 * n + 1) * sizeof *ldl->value);
+    ldl->update = malloc((plan->update_room + 1) * sizeof *ldl->update);
+    ldl->panel = malloc(ldl->panel_room * sizeof *ldl->panel);
+    ldl->kept = malloc(ldl->kept_room * sizeof *ldl->kept);
+    ldl->pivot = malloc(2 * ldl->index_room * sizeof *ldl->pivot);
+    ldl->index = malloc(ldl->index_room * sizeof *ldl->index);
+    ldl->local = malloc(ldl->local_room * sizeof *ldl->local);
+    if (!ldl->front || !ldl->value || !ldl->update || !ldl->panel || !ldl->kept || !ldl->pivot || !ldl->index ||
+        !ldl->local)
+        return no_memory(ldl->n);
+    ldl->scaled = ldl->value + slots;
+    ldl->scale = ldl->scaled + slots;
+    ldl->peak = ldl->scale + n;
+    ldl->permuted = ldl->peak + n;
+    ldl->rhs = ldl->permuted + n;
+    ldl->solution = ldl->rhs + n;
+    for (size_t i = 0; i < n; i++)
+        ldl->scale[i] = 1;
+    return moray_ok();
+}
+
+static moray_status order(moray_ldl *ldl, const double *values)
+{
+    const double start = moray_ldl_clock();
+    moray_status status = make_plan(ldl, values);
+    if (!moray_failed(status))
+        status = make_room(ldl);
+    ldl->planned = !moray_failed(status);
+    if (!ldl->planned)
+        forget_plan(ldl);
+    ldl->statistics.orders++;
+    ldl->statistics.fronts = ldl->plan.nodes;
+    ldl->statistics.pairs = ldl->plan.pairs;
+    ldl->statistics.largest = ldl->plan.tallest;
+    ldl->statistics.planned = ldl->plan.flops;
+    ldl->statistics.entries = (double)ldl->plan.panel_room;
+    ldl->statistics.order_seconds += moray_ldl_clock() - start;
+    return status;
+}
+
+// ---- Factorisation
+// ---------------------------------------------------------------------------------------------------
+
+static moray_status factor(moray_ldl *ldl)
+{
+    ldl->panel_used = ldl->index_used = 0;
+    for (int s = 0; s < ldl->plan.nodes; s++) {
+        MORAY_TRY(moray_ldl_front_assemble(ldl, s));
+        moray_ldl_front_eliminate(ldl, s);
+    }
+    return moray_ok();
+}
+
+moray_status moray_ldl_factor(moray_ldl *ldl, const double *values, double threshold)
+{
+    ldl->factored = false;
+    ldl->inertia = (moray_ldl_inertia){0};
+    if (!ldl->planned)
+        MORAY_TRY(order(ldl, values));
+    const double start = moray_ldl_clock();
+    ldl->threshold = threshold;
+    ldl->statistics.delayed = ldl->statistics.pivots_2x2 = 0;
+    ldl->statistics.done = 0;
+    if (!moray_ldl_load(ldl, values))
+        return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows is not finite", ldl->n);
+    const moray_status status = factor(ldl);
+    ldl->factored = !moray_failed(status);
+    ldl->statistics.factors++;
+    ldl->statistics.factor_seconds += moray_ldl_clock() - start;
+    return status;
+}
+
+moray_ldl_inertia moray_ldl_inertia_of(const moray_ldl *ldl)
+{
+    return ldl->factored ? ldl->inertia : (moray_ldl_inertia){0};
+}
+
+moray_ldl_statistics moray_ldl_statistics_of(const moray_ldl *ldl)
+{
+    return ldl->statistics;
+}
+
+bool moray_ldl_has_pattern(const moray_ldl *ldl, int n, const moray_pattern *pattern)
+{
+    const size_t size = (size_t)pattern->nnz * sizeof *pattern->row;
+    return ldl->n == n && ldl->pattern.nnz == pattern->nnz && memcmp(ldl->pattern.row, pattern->row, size) == 0 &&
+           memcmp(ldl->pattern.col, pattern->col, size) == 0;
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+//
+// Substitution, front by front: the part of the right-hand side that a front sees is gathered, worked on in full, and
+// put back.
+#include <math.h>
+#include <string.h>
+
+#include "linear/parts.h"
+
+static const double accurate = 1e-13; // backward error that refinement would hardly better
+
+struct part {
+    const double *P, *D;
+    const int *index, *rows; // positions of the front's columns, of its rows
+    int height, width, pivots;
+    double *x; // [height]
+};
+
+static struct part gather(moray_ldl *ldl, int s)
+{
+    const struct node *node = &ldl->plan.node[s];
+    const struct front *f = &ldl->front[s];
+    const struct part part = {ldl->panel + f->panel,
+                              ldl->pivot + 2 * f->index,
+                              ldl->index + f->index,
+                              ldl->plan.rows + node->structure,
+                              f->height,
+                              f->width,
+                              f->pivots,
+                              ldl->local};
+    for (int k = 0; k < f->width; k++)
+        part.x[k] = ldl->permuted[part.index[k]];
+    for (int k = 0; k < node->rows; k++)
+        part.x[f->width + k] = ldl->permuted[part.rows[k]];
+    return part;
+}
+
+static void forward(moray_ldl *ldl, int s)
+{
+    const struct part p = gather(ldl, s);
+    for (int k = 0; k + 1 < p.pivots; k++)
+        moray_ldl_kernel_subtract(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height, p.x + k,
+                                  p.x + k + 1);
+    moray_ldl_kernel_subtract(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x, p.x + p.pivots);
+    for (int k = 0; k < p.pivots; k++)
+        ldl->permuted[p.index[k]] = p.x[k];
+    for (int k = p.pivots; k < p.width; k++)
+        ldl->permuted[p.index[k]] = p.x[k];
+    for (int k = p.width; k < p.height; k++)
+        ldl->permuted[p.rows[k - p.width]] = p.x[k];
+}
+
+static void divide(const struct part *p)
+{
+    for (int k = 0; k < p->pivots; k++) {
+        const double coupling = p->D[2 * k + 1], here = p->x[k];
+        p->x[k] *= p->D[2 * k];
+        if (coupling == 0)
+            continue;
+        p->x[k] += coupling * p->x[k + 1];
+        p->x[k + 1] = coupling * here + p->D[2 * k + 2] * p->x[k + 1];
+        k++;
+    }
+}
+
+static void backward(moray_ldl *ldl, int s)
+{
+    const struct part p = gather(ldl, s);
+    divide(&p);
+    moray_ldl_kernel_subtract_transposed(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x + p.pivots, p.x);
+    for (int k = p.pivots - 2; k >= 0; k--)
+        moray_ldl_kernel_subtract_transposed(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height,
+                                             p.x + k + 1, p.x + k);
+    for (int k = 0; k < p.pivots; k++)
+        ldl->permuted[p.index[k]] = p.x[k];
+}
+
+static void substitute(moray_ldl *ldl)
+{
+    for (int s = 0; s < ldl->plan.nodes; s++)
+        forward(ldl, s);
+    for (int s = ldl->plan.nodes - 1; s >= 0; s--)
+        backward(ldl, s);
+}
+
+// permuted <- rhs - A solution, all in the scale of the factors. Returns its largest entry over those of both sides.
+static double find_residual(moray_ldl *ldl)
+{
+    const struct plan *plan = &ldl->plan;
+    double *r = ldl->permuted, worst = 0, size = 0;
+    const double *x = ldl->solution;
+    memcpy(r, ldl->rhs, (size_t)plan->n * sizeof *r);
+    for (int c = 0; c < plan->n; c++) {
+        double sum = 0;
+        for (int k = plan->start[c]; k < plan->start[c + 1]; k++) {
+            const int row = plan->row[k];
+            const double value = ldl->scaled[k];
+            sum += value * x[row];
+            r[row] -= row == c ? 0 : value * x[c];
+        }
+        r[c] -= sum;
+    }
+    for (int c = 0; c < plan->n; c++) {
+        worst = fabs(r[c]) <= worst ? worst : fabs(r[c]); // keeps a NaN
+        size = fabs(x[c]) > size ? fabs(x[c]) : size;
+        size = fabs(ldl->rhs[c]) > size ? fabs(ldl->rhs[c]) : size;
+    }
+    return size > 0 ? worst / size : worst;
+}
+
+static void add_solution(moray_ldl *ldl)
+{
+    for (int c = 0; c < ldl->n; c++)
+        ldl->solution[c] += ldl->permuted[c];
+}
+
+// Small pivots that the threshold let pass may have cost digits: then once more with the residual.
+static double solve_one(moray_ldl *ldl, double *b)
+{
+    const struct plan *plan = &ldl->plan;
+    for (int c = 0; c < plan->n; c++) {
+        ldl->permuted[c] = ldl->rhs[c] = b[plan->order[c]] * ldl->scale[c];
+        ldl->solution[c] = 0;
+    }
+    substitute(ldl);
+    add_solution(ldl);
+    double error = find_residual(ldl);
+    if (error > accurate) {
+        substitute(ldl);
+        add_solution(ldl);
+        error = find_residual(ldl);
+    }
+    for (int c = 0; c < plan->n; c++)
+        b[plan->order[c]] = ldl->solution[c] * ldl->scale[c];
+    return error;
+}
+
+moray_status moray_ldl_solve(moray_ldl *ldl, int columns, double *B)
+{
+    if (!ldl->factored)
+        return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", ldl->n);
+    const double start = moray_ldl_clock();
+    double error = 0;
+    for (int j = 0; j < columns; j++)
+        error = fmax(error, solve_one(ldl, B + (size_t)j * (size_t)ldl->n));
+    ldl->statistics.error = error;
+    ldl->statistics.solves += columns;
+    ldl->statistics.solve_seconds += moray_ldl_clock() - start;
+    return moray_ok();
+}

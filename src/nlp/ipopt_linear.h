@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+//
+// Our factorisation behind Ipopt: Ipopt calls its MA57 through function pointers that a program may set.
+#ifndef SRC_NLP_IPOPT_LINEAR_H
+#define SRC_NLP_IPOPT_LINEAR_H
+
+#include "linear/ldl.h"
+
+// What one solve of Ipopt asks for; Ipopt analyses the same pattern again at each restoration.
+enum { ipopt_linear_patterns = 4 };
+struct ipopt_linear {
+    moray_ldl *ldl[ipopt_linear_patterns];
+    int patterns;
+    double seconds; // of the processor
+    moray_status failure;
+    bool doubtful;              // a solution was not accurate
+    struct ipopt_linear *outer; // of a solve within a callback of another one
+};
+
+// Whether Ipopt has such pointers (3.14 has none).
+bool moray_ipopt_linear_available(void);
+
+// Between the two, calls of Ipopt in this thread come to `linear`. Close frees its factors, not what it has found out.
+void moray_ipopt_linear_open(struct ipopt_linear *linear);
+void moray_ipopt_linear_close(struct ipopt_linear *linear);
+
+// Lets Ipopt look for an MA57 of its own in libhsl.so.
+void moray_ipopt_linear_stand_back(void);
+
+#endif
