@@ -57,7 +57,6 @@ static const moray_program program = {
     .options = options,
     .n_options = sizeof options / sizeof *options,
     .without = unused,
-    .no_robot = true,
 };
 
 #define ON_GAIT(plant) .model = plant, .joints = MORAY_JOINTS_ON_GAIT, .scheme = "lobatto5", .intervals = 12

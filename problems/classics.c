@@ -70,6 +70,8 @@ static moray_status solve(classics_run *run, struct line *line)
     if (!isnan(run->common.tol))
         line->settings.tolerance = run->common.tol;
     line->settings.linear_solver = run->common.linear_solver;
+    line->settings.ipopt = run->common.ipopt.at;
+    line->settings.n_ipopt = run->common.ipopt.n;
     if (run->refinements >= 0)
         line->settings.max_refinements = run->refinements;
     line->settings.progress = show_iteration;
@@ -160,7 +162,21 @@ static void line_to_json(moray_json *json, const struct line *line)
     moray_json_close(json);
 }
 
-static moray_status write_report(const classics_run *run, const struct line *lines, int n)
+struct lines {
+    const struct line *line;
+    int n;
+};
+
+static void summarise(const void *found, moray_json *json)
+{
+    const struct lines *lines = found;
+    moray_json_open(json, "problems");
+    for (int i = 0; i < lines->n; i++)
+        line_to_json(json, &lines->line[i]);
+    moray_json_close(json);
+}
+
+static moray_status report_all(const classics_run *run, const struct line *lines, int n)
 {
     moray_table_row rows[most];
     char text[most][60];
@@ -177,37 +193,11 @@ static moray_status write_report(const classics_run *run, const struct line *lin
                                .n_columns = 5,
                                .rows = rows,
                                .n_rows = n};
-    return moray_output_report(run->common.output, &(moray_report){.title = "Textbook problems",
-                                                                   .tables = &table,
-                                                                   .n_tables = 1,
-                                                                   .argc = run->common.argc,
-                                                                   .argv = run->common.argv});
-}
-
-static moray_status write_results(const classics_run *run, const struct line *lines, int n)
-{
-    moray_json *json = moray_json_new();
-    moray_status status = moray_ok();
-    moray_json_text(json, "problem", "classics");
-    moray_json_text(json, "version", moray_version());
-    moray_json_open(json, "problems");
-    for (int i = 0; i < n; i++)
-        line_to_json(json, &lines[i]);
-    moray_json_close(json);
-    if (run->common.output) {
-        FILE *file;
-        status = moray_output_file(run->common.output, "summary.json", &file);
-        if (!moray_failed(status))
-            status = moray_json_write(json, file);
-        if (!moray_failed(status))
-            status = write_report(run, lines, n);
-        if (!moray_failed(status))
-            status = moray_output_commit(run->common.output);
-    }
-    if (!moray_failed(status) && run->common.json)
-        status = moray_json_write(json, stdout);
-    moray_json_free(json);
-    return status;
+    const moray_report report = {.title = "Textbook problems", .tables = &table, .n_tables = 1};
+    return moray_app_show(&run->common, &(moray_results){.name = "classics",
+                                                         .found = &(struct lines){lines, n},
+                                                         .summary = summarise,
+                                                         .report = &report});
 }
 
 // ---- The program ---------------------------------------------------------------------------------------------------
@@ -244,7 +234,7 @@ static moray_status work(classics_run *run, struct line *lines)
         n++;
     }
     moray_interrupt_end();
-    MORAY_TRY(write_results(run, lines, n));
+    MORAY_TRY(report_all(run, lines, n));
     return judge(lines, n);
 }
 
@@ -263,8 +253,7 @@ int main(int argc, char **argv)
                    "intervals and tolerance are each problem's own unless given.",
         .options = options,
         .n_options = sizeof options / sizeof *options,
-        .words = &words,
-        .no_robot = true};
+        .words = &words};
     classics_run run = defaults();
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;

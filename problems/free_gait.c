@@ -32,12 +32,12 @@ static const moray_option options[] = {
 
 static int coefficients_of(const free_gait *run, int harmonics)
 {
-    return (run->job.common.robot.links - 1) * (1 + 2 * harmonics);
+    return (run->job.snake.robot.links - 1) * (1 + 2 * harmonics);
 }
 
 static moray_status make_problem(const free_gait *run, motion *m)
 {
-    moray_gait_problem_spec spec = gait_job_spec(&run->job, &m->at, MORAY_GAIT_FASTEST, run->job.common.current);
+    moray_gait_problem_spec spec = gait_job_spec(&run->job, &m->at, MORAY_GAIT_FASTEST, run->job.snake.current);
     if (m->harmonics > 0) {
         spec.joints = MORAY_JOINTS_SERIES;
         spec.harmonics = m->harmonics;
@@ -49,7 +49,7 @@ static moray_status make_problem(const free_gait *run, motion *m)
 // symmetry even ones could not begin by themselves.
 static void guess_parameters(const free_gait *run, const motion *m, const moray_gait *gait, double share, double *s)
 {
-    const int n = run->job.common.robot.links - 1, last = 1 + coefficients_of(run, m->harmonics);
+    const int n = run->job.snake.robot.links - 1, last = 1 + coefficients_of(run, m->harmonics);
     if (m->harmonics == 0) {
         moray_gait_to_parameters(gait, s);
         return;
@@ -103,8 +103,8 @@ static moray_status solve(free_gait *run, motion *m, bool *found)
 // The motion as series of both models, or as a gait of both.
 static moray_status keep_motion(const free_gait *run, motion *m)
 {
-    const int n = run->job.common.robot.links - 1, count = coefficients_of(run, m->harmonics);
-    const moray_robot *robot = &run->job.common.robot;
+    const int n = run->job.snake.robot.links - 1, count = coefficients_of(run, m->harmonics);
+    const moray_robot *robot = &run->job.snake.robot;
     m->at.prediction = moray_gait_problem_prediction(m->at.problem, m->at.solution);
     if (m->harmonics == 0) {
         for (int model = 0; model < 2; model++)
@@ -202,7 +202,7 @@ static moray_status work(gait_job *job)
     run->limit = isnan(run->link_angle) ? fmax(job->theta_max[1], best->trial.steady[best->model].peak_link_angle)
                                         : run->link_angle;
     MORAY_TRY(find_gait(run));
-    if (job->common.robot.links > 2)
+    if (job->snake.robot.links > 2)
         MORAY_TRY(free_further(run, 0, 1));
     for (int k = 1; k <= run->harmonics && run->vainly == 0; k++)
         MORAY_TRY(free_further(run, k, 0));

@@ -24,12 +24,15 @@ static const moray_option options[] = {
     STEER_TUNING_OPTION(heading_job, "simulations spent on tuning each gain, twice as many for a gain and a lead"),
 };
 
+static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(heading_job, steer.snake)}};
 static const moray_program program = {
     .name = "heading_tracking",
     .summary = "Optimises gait and joint offset of an underwater snake robot to follow a heading in a current, "
                "and proves them on the first-principles model against tuned feedback.",
     .options = options,
-    .n_options = sizeof options / sizeof *options};
+    .n_options = sizeof options / sizeof *options,
+    .groups = groups,
+    .n_groups = 1};
 
 int main(int argc, char **argv)
 {

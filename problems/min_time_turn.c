@@ -19,13 +19,16 @@ static const moray_option options[] = {
     STEER_TUNING_OPTION(turn_job, "simulations spent on tuning, for every number that is tuned"),
 };
 
+static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(turn_job, steer.snake)}};
 static const moray_program program = {
     .name = "min_time_turn",
     .summary = "Optimises the joint offset of an underwater snake robot for the fastest change of heading, or "
                "from pose to pose, and proves it on the first-principles model against tuned bang-bang "
                "steering.",
     .options = options,
-    .n_options = sizeof options / sizeof *options};
+    .n_options = sizeof options / sizeof *options,
+    .groups = groups,
+    .n_groups = 1};
 
 // The paper's gait.
 int main(int argc, char **argv)
@@ -35,7 +38,7 @@ int main(int argc, char **argv)
     job.steer.weight_steering = 0.001;
     job.steer.intervals_per_period = 6;
     job.steer.evaluations = 30;
-    job.steer.common.current[0] = job.steer.common.current[1] = 0.1;
+    job.steer.snake.current[0] = job.steer.snake.current[1] = 0.1;
     job.steer.input.theta_max[0] = job.steer.input.theta_max[1] = theta_max;
     job.steer.input.omega[0] = job.steer.input.omega[1] = omega;
     job.steer.input.delta[0] = job.steer.input.delta[1] = delta;

@@ -54,9 +54,12 @@ static const moray_option options[] = {
 
 static paper_settings defaults(void)
 {
-    paper_settings settings = {
-        .common = moray_common_defaults(), .theta_max = 20 * DEG, .omega = 120 * DEG, .delta = NAN};
-    settings.common.current[0] = settings.common.current[1] = 0.1;
+    paper_settings settings = {.common = moray_common_defaults(),
+                               .snake = moray_snake_options_default(),
+                               .theta_max = 20 * DEG,
+                               .omega = 120 * DEG,
+                               .delta = NAN};
+    settings.snake.current[0] = settings.snake.current[1] = 0.1;
     return settings;
 }
 
@@ -74,7 +77,7 @@ static moray_status complete(paper_settings *settings)
 {
     if (settings->as_printed)
         settings->reading = PAPER_PRINTED;
-    const int N = settings->common.robot.links;
+    const int N = settings->snake.robot.links;
     if (!isnan(settings->delta))
         return moray_ok();
     settings->delta = 2 * M_PI / (N - 1);
@@ -88,19 +91,19 @@ static moray_status complete(paper_settings *settings)
 static moray_status prepare(paper *p, const paper_settings *settings)
 {
     *p = (paper){.settings = settings,
-                 .robot = &settings->common.robot,
+                 .robot = &settings->snake.robot,
                  .output = settings->common.output,
                  .ticker = moray_ticker_start(stderr, settings->common.quiet)};
     for (int model = 0; model < 2; model++) {
         p->gait[model] = (moray_gait){.omega = settings->omega, .delta = settings->delta};
         p->gait[model] = paper_gait(p, (moray_model)model, settings->theta_max);
     }
-    MORAY_TRY(moray_test_rig_new(&p->rig, p->robot, settings->common.current, 0));
+    MORAY_TRY(moray_test_rig_new(&p->rig, p->robot, settings->snake.current, 0));
     moray_swimmer_free(p->rig.swimmer[MORAY_CONTROL_ORIENTED]); // the rig reads no misprints
     MORAY_TRY(paper_reading_swimmer(&p->rig.swimmer[MORAY_CONTROL_ORIENTED], p->robot, MORAY_CONTROL_ORIENTED,
                                     settings->reading));
-    moray_swimmer_set_current(p->rig.swimmer[MORAY_CONTROL_ORIENTED], settings->common.current[0],
-                              settings->common.current[1]);
+    moray_swimmer_set_current(p->rig.swimmer[MORAY_CONTROL_ORIENTED], settings->snake.current[0],
+                              settings->snake.current[1]);
     p->rig.settings.sim.max_steps = 20000; // between samples; a misprint can make motion without end
     p->json = moray_json_new();
     paper_json_head(p->json, settings);
@@ -133,10 +136,7 @@ static moray_status finish(const paper *p, const paper_chapter *chapters, int n)
     int failed = 0;
     for (int i = 0; i < n; i++)
         failed += moray_failed(chapters[i].status);
-    if (p->output)
-        MORAY_TRY(paper_write(p, chapters, n));
-    if (p->settings->common.json)
-        MORAY_TRY(moray_json_write(p->json, stdout));
+    MORAY_TRY(paper_report(p, chapters, n));
     if (failed)
         return moray_error(MORAY_NOT_SOLVED, "%d of %d studies failed", failed, n);
     return moray_ok();
@@ -161,12 +161,15 @@ int main(int argc, char **argv)
         word[i] = (moray_word){.name = studies[i].name, .help = studies[i].summary};
     const moray_words words = {
         .noun = "study", .word = word, .n = N_STUDIES, .all = "all", .offset = offsetof(paper_settings, chosen)};
+    static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(paper_settings, snake)}};
     static const char *const without[] = {"model", "course", "scheme", "intervals", "tol", NULL};
     const moray_program program = {
         .name = "paper",
         .summary = "Runs studies of the paper on both of its models and shows them beside what it claims.",
         .options = options,
         .n_options = sizeof options / sizeof *options,
+        .groups = groups,
+        .n_groups = 1,
         .words = &words,
         .without = without};
     paper_settings settings = defaults();

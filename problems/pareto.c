@@ -8,7 +8,6 @@
 #include <string.h>
 
 const char *const pareto_kinds[PARETO_KINDS] = {"lateral", "eel-like", "free taper"};
-const char *const pareto_models[2] = {"control-oriented", "first-principles"};
 
 static const moray_option options[] = {
     {.section = "problem",
@@ -49,7 +48,7 @@ static bool solved(const stage *at)
 
 static void show(pareto *run, const pareto_front *front, int k, const char *what)
 {
-    moray_ticker_show(&run->job.ticker, "pareto: %s model, %s, point %d of %d: %s", pareto_models[front->model],
+    moray_ticker_show(&run->job.ticker, "pareto: %s model, %s, point %d of %d: %s", moray_model_name(front->model),
                       pareto_kinds[front->kind], k + 1, front->n, what);
 }
 
@@ -125,9 +124,9 @@ static moray_status work(gait_job *job)
     pareto *run = (pareto *)job;
     const int kinds = job->taper[0] < job->taper[1] ? PARETO_KINDS : PARETO_KINDS - 1;
     if (isnan(run->eel_taper))
-        run->eel_taper = (2.0 - job->common.robot.links) / job->common.robot.links;
+        run->eel_taper = (2.0 - job->snake.robot.links) / job->snake.robot.links;
     MORAY_TRY(gait_job_prepare(job));
-    for (int model = 0; model <= (int)job->common.model; model++)
+    for (int model = 0; model <= (int)job->snake.model; model++)
         for (int kind = 0; kind < kinds; kind++)
             MORAY_TRY(make_front(run, (moray_model)model, kind));
     return moray_ok();

@@ -29,12 +29,15 @@ static const moray_option options[] = {
     STEER_TUNING_OPTION(path_job, "simulations spent on tuning, for every number that is tuned"),
 };
 
+static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(path_job, steer.snake)}};
 static const moray_program program = {
     .name = "path_following",
     .summary = "Optimises gait and joint offset of an underwater snake robot to follow a path in a current, "
                "and proves them on the first-principles model against tuned line-of-sight guidance.",
     .options = options,
-    .n_options = sizeof options / sizeof *options};
+    .n_options = sizeof options / sizeof *options,
+    .groups = groups,
+    .n_groups = 1};
 
 int main(int argc, char **argv)
 {
@@ -49,7 +52,7 @@ int main(int argc, char **argv)
                     .find_gait = true};
     job.steer.weight_steering = 0.3;
     job.steer.evaluations = 10;
-    job.steer.common.current[0] = -0.05;
-    job.steer.common.current[1] = 0.1;
+    job.steer.snake.current[0] = -0.05;
+    job.steer.snake.current[1] = 0.1;
     return steer_main(&program, &path_steering, argc, argv, &job.steer);
 }

@@ -21,5 +21,5 @@ shift
 
 program=problems/$name
 [ "$name" != benchmark ] || program=problems/moray-benchmark # Meson keeps the short name to itself
-install_packages && configure "$root/build" && quietly ninja -C "$root/build" "$program" || exit 1
+install_packages && configure "$root/build" && build "$root/build" "$program" || exit 1
 exec "$root/build/$program" "$@"

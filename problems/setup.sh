@@ -55,11 +55,46 @@ install_packages() {
     quietly $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 }
 
+# locked DIRECTORY COMMAND...: runs it while no other script of ours works on DIRECTORY. The lock is a folder with the
+# holder's process in it; one whose holder is gone is taken over.
+locked() {
+    lock=$1.lock
+    shift
+    told=
+    until mkdir "$lock" 2>/dev/null; do
+        holder=$(cat "$lock/holder" 2>/dev/null)
+        if [ -n "$holder" ] && ! kill -0 "$holder" 2>/dev/null && [ ! -d "/proc/$holder" ]; then
+            rm -rf "$lock"
+            continue
+        fi
+        [ -n "$told" ] || say "Waiting for process ${holder:-?}, which builds here too (${lock##*/})"
+        told=yes
+        [ -w "$(dirname "$lock")" ] || { say "failed: $lock cannot be made"; return 1; }
+        sleep 1
+    done
+    trap 'rm -rf "$lock"; exit 130' INT HUP TERM
+    echo $$ >"$lock/holder"
+    "$@"
+    status=$?
+    rm -rf "$lock"
+    trap - INT HUP TERM
+    return $status
+}
+
 # configure DIRECTORY [MESON OPTIONS]
 configure() {
-    [ -f "$1/build.ninja" ] && return 0
+    [ -f "$1/build.ninja" ] || locked "$1" configure_now "$@"
+}
+
+configure_now() {
+    [ -f "$1/build.ninja" ] && return 0 # by another, while this one waited
     say "Configuring $1"
     directory=$1
     shift
     quietly meson setup "$directory" "$root" "$@"
+}
+
+# build DIRECTORY TARGET...
+build() {
+    locked "$1" quietly ninja -C "$@"
 }

@@ -84,17 +84,21 @@ static const moray_option options[] = {
 };
 
 static const char *const without[] = {"scheme", "intervals", "tol", NULL};
+static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(simulate, snake)}};
 static const moray_program program = {
     .name = "simulate",
     .summary = "Swims an underwater snake robot: any gait or schedule of gaits, on either model, in any current.",
     .options = options,
     .n_options = sizeof options / sizeof *options,
+    .groups = groups,
+    .n_groups = 1,
     .without = without,
 };
 
 int main(int argc, char **argv)
 {
     simulate run = {.common = moray_common_defaults(),
+                    .snake = moray_snake_options_default(),
                     .gait = moray_gait_input_default(),
                     .duration = NAN,
                     .output_step = 0.05,

@@ -19,7 +19,9 @@ static double draw(double low, double high)
 
 static moray_plant_spec random_spec(int links, moray_joints joints, bool forces, bool angles)
 {
-    return (moray_plant_spec){.robot = random_robot(&derivatives_seed, links),
+    moray_robot robot = random_robot(&derivatives_seed, links);
+    robot.hydro.frame = draw(0, 1) < 0.5 ? MORAY_FRAME_PAPER : MORAY_FRAME_INVARIANT;
+    return (moray_plant_spec){.robot = robot,
                               .joints = joints,
                               .current = {draw(-1, 1), draw(-1, 1)},
                               .path_forces = forces,

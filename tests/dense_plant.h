@@ -145,6 +145,10 @@ static dense_rates dense_dynamics(const dense_plant *self, const dense_state *x)
                          .dv_t = h_1 * (h_2 * v_nr + h_3 * v_tr - c_p * N * mt * by_v - mu_p * N * mt * by_ubar),
                          .dv_n = h_1 *
                                  (h_4 * v_tr + h_5 * v_nr - 2 * c_p * mu_p * s * by_v - 2 * mu_p * mu_p * s * by_ubar)};
+    if (r->hydro.frame == MORAY_FRAME_INVARIANT) { // erratum E7
+        rates.dv_t += x->v_theta * x->v_n;
+        rates.dv_n -= x->v_theta * x->v_t;
+    }
     const num K = 2 * N * mu_p * h_1 * s * (r->c_n * mu_p - mt * c_p) * v_nr +
                   N * mt * h_1 * (N * mu_p * r->c_t + ch * mu_p * squares - N * m * c_p) * v_tr;
     num force[DENSE_LINKS] = {0};

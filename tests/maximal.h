@@ -2,7 +2,7 @@
 //
 // The first-principles robot in maximal coordinates: x_i, y_i, theta_i of every link, pin joints as constraints with
 // multipliers, one dense linear system. Shares nothing with the reduced form but the force laws (2)-(4), written here
-// as the matrices of (3).
+// as the matrices of (3) at places along the links.
 #ifndef TESTS_MAXIMAL_H
 #define TESTS_MAXIMAL_H
 
@@ -38,23 +38,88 @@ static inline maximal_state maximal_from_reduced(const moray_robot *robot, const
     return state;
 }
 
-// Rows of link i: (m I + F^a) [x''; y''] = F^{a,r} V - F^d [x' - V_x; y' - V_y] and (J + lambda_1) theta'' = ...
-static inline void maximal_link(const moray_robot *robot, const maximal_state *state, int i, dense M, dense h)
+// A place on a link at s from its centre, and the share of the link's drag and added mass that acts there.
+typedef struct {
+    double s, share;
+} maximal_spot;
+
+enum { MAXIMAL_SPOTS = 32 };
+
+// Gauss's rule of three points, by which the strips' drag is exact where the velocity keeps its sign.
+static inline int maximal_gauss(double l, double from, double to, maximal_spot *spots)
 {
-    const double c = cos(state->theta[i]), s = sin(state->theta[i]), w = state->dtheta[i], mu_n = robot->mu_n;
-    const double c_t = robot->c_t, c_n = robot->c_n;
+    const double node[] = {-sqrt(0.6), 0, sqrt(0.6)}, weight[] = {5. / 18, 8. / 18, 5. / 18};
+    for (int j = 0; j < 3; j++)
+        spots[j] = (maximal_spot){(from + to + (to - from) * node[j]) / 2, weight[j] * (to - from) / (2 * l)};
+    return 3;
+}
+
+// The places of a link that moves at u across at its centre: its centre, those of its pieces, or quadrature along it.
+static inline int maximal_spots(const moray_robot *robot, double u, double w, maximal_spot *spots)
+{
+    const double l = robot->l;
+    if (robot->hydro.rotation == MORAY_ROTATION_STRIP) {
+        const double still = w == 0 ? l : -u / w, cut = fmax(-l, fmin(l, still));
+        const int n = maximal_gauss(l, -l, cut, spots);
+        return n + maximal_gauss(l, cut, l, spots + n);
+    }
+    const int pieces = robot->hydro.pieces > 1 ? robot->hydro.pieces : 1;
+    for (int j = 0; j < pieces; j++)
+        spots[j] = (maximal_spot){-l + (2 * j + 1) * l / pieces, 1.0 / pieces};
+    return pieces;
+}
+
+// Share of velocity and of its square in the drag, for a velocity of u.
+static inline double maximal_growth(moray_drag drag, double u)
+{
+    return (drag == MORAY_DRAG_QUADRATIC ? 0 : 1) + (drag == MORAY_DRAG_LINEAR ? 0 : fabs(u));
+}
+
+// Adds to the rows of link i what acts on it at a place: the matrices of (2), (3) at the velocity there, relative to
+// the water v = [x' - V_x; y' - V_y], with drag of either growth; in the invariant form -mu_n d/dt(n.v) across.
+static inline void maximal_place(const moray_robot *robot, const maximal_state *state, int i, maximal_spot at, dense M,
+                                 dense h)
+{
+    const double c = cos(state->theta[i]), s = sin(state->theta[i]), w = state->dtheta[i];
+    const double arm[2] = {-s * at.s, c * at.s}, mu_n = at.share * robot->mu_n; // of theta'
+    const double v[2] = {state->v_x[i] + arm[0] * w - state->V[0], state->v_y[i] + arm[1] * w - state->V[1]};
+    const double along = c * v[0] + s * v[1], across = -s * v[0] + c * v[1];
+    const double c_t = at.share * robot->c_t * maximal_growth(robot->hydro.drag, along);
+    const double c_n = at.share * robot->c_n * maximal_growth(robot->hydro.drag, across);
     const double F_a[2][2] = {{mu_n * s * s, -mu_n * s * c}, {-mu_n * s * c, mu_n * c * c}};
     const double F_ar[2][2] = {{mu_n * s * c * w, mu_n * s * s * w}, {-mu_n * c * c * w, -mu_n * s * c * w}};
     const double F_d[2][2] = {{c_t * c * c + c_n * s * s, (c_t - c_n) * s * c},
                               {(c_t - c_n) * s * c, c_t * s * s + c_n * c * c}};
-    const double rel[2] = {state->v_x[i] - state->V[0], state->v_y[i] - state->V[1]};
-    for (int a = 0; a < 2; a++)
+    const bool invariant = robot->hydro.added_mass == MORAY_ADDED_MASS_INVARIANT;
+    for (int a = 0; a < 2; a++) {
+        double force = 0, turn = 0;
         for (int b = 0; b < 2; b++) {
-            DENSE(M, 3 * i + a, 3 * i + b) = (a == b) * robot->m + F_a[a][b];
-            h.at[3 * i + a] += F_ar[a][b] * state->V[b] - F_d[a][b] * rel[b];
+            DENSE(M, 3 * i + a, 3 * i + b) += F_a[a][b];
+            turn += F_a[a][b] * arm[b];
+            force += F_ar[a][b] * (invariant ? -v[b] : state->V[b]) - F_d[a][b] * v[b];
         }
-    DENSE(M, 3 * i + 2, 3 * i + 2) = robot->J + robot->lambda_1;
-    h.at[3 * i + 2] = -robot->lambda_2 * w - robot->lambda_3 * w * fabs(w);
+        DENSE(M, 3 * i + a, 3 * i + 2) += turn;
+        DENSE(M, 3 * i + 2, 3 * i + a) += turn;
+        DENSE(M, 3 * i + 2, 3 * i + 2) += turn * arm[a];
+        h.at[3 * i + a] += force;
+        h.at[3 * i + 2] += arm[a] * force;
+    }
+}
+
+// Rows of link i: m [x''; y''] and J theta'' and what the fluid does at every place; the torque (4) by lambda_1..3 of
+// the pieces, of lengths l/k.
+static inline void maximal_link(const moray_robot *robot, const maximal_state *state, int i, dense M, dense h)
+{
+    const double w = state->dtheta[i], k = robot->hydro.pieces > 1 ? robot->hydro.pieces : 1;
+    const double rel_n =
+        -sin(state->theta[i]) * (state->v_x[i] - state->V[0]) + cos(state->theta[i]) * (state->v_y[i] - state->V[1]);
+    maximal_spot spots[MAXIMAL_SPOTS];
+    DENSE(M, 3 * i, 3 * i) = DENSE(M, 3 * i + 1, 3 * i + 1) = robot->m;
+    DENSE(M, 3 * i + 2, 3 * i + 2) = robot->J + k * robot->lambda_1 / pow(k, 3);
+    h.at[3 * i + 2] = -k * robot->lambda_2 / pow(k, 3) * w - k * robot->lambda_3 / pow(k, 4) * w * fabs(w);
+    const int n = maximal_spots(robot, rel_n, w, spots);
+    for (int j = 0; j < n; j++)
+        maximal_place(robot, state, i, spots[j], M, h);
 }
 
 static inline void maximal_couple(dense M, int row, int col, double value)

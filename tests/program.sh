@@ -48,3 +48,13 @@ number() {
 near() {
     awk -v is="$1" -v want="$2" -v by="$3" 'BEGIN { exit !(is != "" && want != "" && is - want <= by && want - is <= by) }'
 }
+
+# lost ARGUMENTS: what is printed to a full disk or to nowhere is missed: exit 2 and one line that says so.
+lost() {
+    "$program" "$@" >/dev/full 2>err </dev/null
+    code=$?
+    check "full standard output: exit $code: $(cat err)" eval '[ $code -eq 2 ] && one_line && grep -q "standard output cannot be written" err'
+    "$program" "$@" >&- 2>err </dev/null
+    code=$?
+    check "closed standard output: exit $code: $(cat err)" eval '[ $code -eq 2 ] && one_line && grep -q "standard output cannot be written" err'
+}

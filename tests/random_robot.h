@@ -10,7 +10,7 @@
 typedef unsigned long long random_seed;
 
 static const int robot_links[] = {2, 3, 5, 10, 17};
-enum { ROBOT_SIZES = sizeof robot_links / sizeof *robot_links, MAX_LINKS = 17, MAX_STATES = 2 * MAX_LINKS + 4 };
+enum { ROBOT_SIZES = sizeof robot_links / sizeof *robot_links, MAX_LINKS = 20, MAX_STATES = 2 * MAX_LINKS + 4 };
 
 static inline void random_vector(random_seed *seed, double bound, int n, double *v)
 {
@@ -28,6 +28,17 @@ static inline moray_robot random_robot(random_seed *seed, int N)
     for (unsigned i = 0; i < sizeof fields / sizeof *fields; i++)
         *fields[i] = tap_random(seed, 0.3, 1.5);
     return robot;
+}
+
+// The k-th combination of the choices of hydrodynamics, of so many; the first is the paper's.
+enum { HYDRO_VARIANTS = 18 };
+static inline moray_hydrodynamics hydro_variant(int k)
+{
+    return (moray_hydrodynamics){.rotation = k % 3 == 1 ? MORAY_ROTATION_STRIP : MORAY_ROTATION_PAPER,
+                                 .pieces = k % 3 == 2 ? 3 : 1,
+                                 .drag = (moray_drag)(k / 3 % 3),
+                                 .added_mass = k / 9 ? MORAY_ADDED_MASS_INVARIANT : MORAY_ADDED_MASS_PAPER,
+                                 .frame = k / 9 ? MORAY_FRAME_INVARIANT : MORAY_FRAME_PAPER};
 }
 
 // max |got - want| / max |want|, a NaN if there is one.

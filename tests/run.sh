@@ -13,7 +13,7 @@ failed=0
 suite() {
     build=$1
     rm -f "$build/meson-logs/testlog.json"
-    if ! configure "$@" || ! quietly ninja -C "$build"; then
+    if ! configure "$@" || ! build "$build"; then
         failed=$((failed + 1))
         return
     fi

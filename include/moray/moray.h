@@ -5,6 +5,7 @@
 #define MORAY_MORAY_H
 
 #include "moray/angle.h"
+#include "moray/app/options.h"
 #include "moray/app/program.h"
 #include "moray/app/results.h"
 #include "moray/app/run.h"

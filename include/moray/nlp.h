@@ -42,17 +42,25 @@ typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
 
 // Which factorisation Ipopt works with: our own, MUMPS, or an MA57 that it finds in libhsl.so (then no other thread may
 // be solving with our own).
-typedef enum { MORAY_LINEAR_OWN, MORAY_LINEAR_MUMPS, MORAY_LINEAR_MA57 } moray_linear_solver;
+typedef enum { MORAY_LINEAR_MUMPS, MORAY_LINEAR_OWN, MORAY_LINEAR_MA57 } moray_linear_solver;
 const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
+
+// An option of Ipopt by its name, after all that moray sets; not option_file_name, output_file, sb and linear_solver:
+// no option file is ever read, and Ipopt never writes on standard output.
+typedef struct moray_ipopt_option {
+    const char *key, *value; // "mu_strategy", "adaptive"; numbers as texts
+} moray_ipopt_option;
 
 typedef struct moray_nlp_settings {
     double tolerance;   // 1e-8: scaled KKT error at which the solver stops
     int max_iterations; // 1000
     double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
     bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
-    int print_level;    // 0: Ipopt's own log on standard output, 0..12
-    moray_linear_solver linear_solver; // our own, with MUMPS to fall back on
-    bool timing;                       // false: true has MUMPS or MA57 timed, which goes through a temporary file
+    int print_level;    // 0: Ipopt's own log on standard error, 0..12
+    moray_linear_solver linear_solver; // MUMPS; our own falls back on it
+    bool timing;                       // false: true has MUMPS or MA57 timed
+    const moray_ipopt_option *ipopt;   // [n_ipopt], borrowed
+    int n_ipopt;                       // 0
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;
@@ -86,7 +94,10 @@ typedef struct moray_nlp_info {
 // Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there; where it was
 // interrupted, reached a limit or stalled, the x, g and objective of the least violated iterate after the start, of
 // those violated by less than 1e-6 the one of least objective. Returns MORAY_OK
-// whenever Ipopt ran (read info->outcome), MORAY_MEMORY, or MORAY_INPUT when the problem cannot be set up.
+// whenever Ipopt ran (read info->outcome); MORAY_MEMORY, also when Ipopt or its linear solver ran out of it;
+// MORAY_INPUT when the problem cannot be set up, naming the option that Ipopt refuses. Threads may solve problems of
+// their own at the same time: MUMPS can serve only one of them, so that the others wait. A callback may solve another
+// problem.
 moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *settings, moray_iterate *iterate,
                                moray_nlp_info *info);
 

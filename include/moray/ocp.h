@@ -5,6 +5,9 @@
 //   minimise J(x0, t0, xf, tf, q of every phase, s)
 //   with     x' = f(x, u, s, t), lower <= c(x, u, s, t) <= upper, q = integral of g(x, u, s, t) dt     on every phase
 //            lower <= e(x0, t0, xf, tf, q of every phase, s) <= upper, and bounds on x, u, s, t0, tf, q
+// Threads may each build, solve and read problems of their own at the same time (where MUMPS factors, the solves take
+// turns). One problem, and what comes of it, belongs to one thread at a time: its functions are evaluated in scratch
+// that the problem owns.
 #ifndef MORAY_OCP_H
 #define MORAY_OCP_H
 
@@ -106,7 +109,7 @@ typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_end_va
 
 // Of continuous, continuous_real and map, exactly one.
 typedef struct moray_phase_spec {
-    const char *name;
+    const char *name; // NULL: "phase", or the number of several
     int nx, nu, nc, nq;
     moray_continuous_fn *continuous; // complex step
     const moray_map *map;            // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
@@ -131,8 +134,10 @@ typedef struct moray_ocp_spec {
 
 typedef struct moray_ocp moray_ocp;
 
-// Copies the spec (not the maps, nor data). Error: MORAY_INPUT naming what is missing, of the wrong length,
-// contradictory or not a number; MORAY_MEMORY.
+// Copies the spec (not the maps, nor data). Names of a kind differ from each other, as do states from controls within a
+// phase; none is empty, longer than 100 bytes, holds a control character or " [", or begins or ends with a blank;
+// states and controls are not named t, nor phase where there are several. Error: MORAY_INPUT naming what is missing, of
+// the wrong length, contradictory, not a number or named like another; MORAY_MEMORY.
 moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec);
 void moray_ocp_free(moray_ocp *ocp);
 
@@ -178,8 +183,9 @@ moray_guess moray_guess_from_solution(const moray_solution *solution); // borrow
 
 // Reads comma-separated values as in a trajectory.csv: first a line of names, "t" and those of the states and controls
 // ("x[0]", "u[0]" where the problem has none), units in brackets after a name and other columns ignored; with several
-// phases a column "phase", counted from 1. The parameters are guessed from their bounds: set guess->s for others.
-// Error: MORAY_IO; MORAY_INPUT naming the line, or the column that is missing; MORAY_MEMORY.
+// phases a column "phase", counted from 1. Times ascend; numbers are finite, with a decimal point in any locale. The
+// parameters are guessed from their bounds: set guess->s for others. Error: MORAY_IO; MORAY_INPUT naming the line, or
+// the column that is missing; MORAY_MEMORY.
 moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const char *path);
 
 // u[nu] of phase p at time t and state x[nx].
@@ -208,9 +214,11 @@ typedef struct moray_settings {
     int max_iterations;    // 1000
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
-    int print_level;       // 0: Ipopt's log
-    moray_linear_solver linear_solver; // our own
+    int print_level;       // 0: Ipopt's log on standard error
+    moray_linear_solver linear_solver; // MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
+    const moray_ipopt_option *ipopt;   // [n_ipopt] further options of Ipopt, which must outlive the solution
+    int n_ipopt;                       // 0
     moray_progress_fn *progress;
     void *observer;
 } moray_settings;

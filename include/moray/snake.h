@@ -11,6 +11,7 @@
 #include "moray/snake/gait_search.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/model.h"
+#include "moray/snake/options.h"
 #include "moray/snake/orbit.h"
 #include "moray/snake/path.h"
 #include "moray/snake/plant.h"

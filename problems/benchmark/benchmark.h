@@ -147,7 +147,7 @@ typedef struct benchmark {
 // Tables or JSON on standard output; JSON and figures of the growth in the directory of --out. Error: MORAY_IO,
 // MORAY_MEMORY.
 moray_status benchmark_report(const benchmark *run);
-moray_status benchmark_json(const benchmark *run, FILE *file);
-moray_status benchmark_files(const benchmark *run);
+void benchmark_summary(const void *run, moray_json *json);
+moray_status benchmark_draw(const void *run, moray_output *output);
 
 #endif

@@ -47,12 +47,11 @@ static void json_growth(moray_json *json, const growth *g)
 
 static void json_simulation(moray_json *json, const simulated *s)
 {
-    static const char *const models[] = {"control", "fp"};
     moray_json_open_list(json, "simulation");
     for (int k = 0; k < s->n; k++)
         for (int model = 0; model < 2; model++) {
             moray_json_open(json, NULL);
-            moray_json_text(json, "model", models[model]);
+            moray_json_text(json, "model", moray_model_key(model));
             moray_json_number(json, "links", s->links[k]);
             moray_json_number(json, "simulated_s_per_s", s->rate[model][k]);
             moray_json_close(json);
@@ -60,11 +59,9 @@ static void json_simulation(moray_json *json, const simulated *s)
     moray_json_close(json);
 }
 
-moray_status benchmark_json(const benchmark *run, FILE *file)
+void benchmark_summary(const void *found, moray_json *json)
 {
-    moray_json *json = moray_json_new();
-    moray_json_text(json, "problem", "benchmark");
-    moray_json_text(json, "version", moray_version());
+    const benchmark *run = found;
     moray_json_text(json, "clock", "processor time, medians");
     moray_json_number(json, "repeats", run->repeats);
     moray_json_open_list(json, "problems");
@@ -80,9 +77,6 @@ moray_status benchmark_json(const benchmark *run, FILE *file)
         json_growth(json, &run->growths[k]);
     moray_json_close(json);
     json_simulation(json, &run->simulation);
-    moray_status status = moray_json_write(json, file);
-    moray_json_free(json);
-    return status;
 }
 
 // Time of one iteration over what grows.
@@ -114,12 +108,10 @@ static moray_status draw_growth(const benchmark *run, const char *over, const ch
                                                                    .n_curves = n});
 }
 
-moray_status benchmark_files(const benchmark *run)
+moray_status benchmark_draw(const void *found, moray_output *output)
 {
-    FILE *file;
-    MORAY_TRY(moray_output_file(run->common.output, "summary.json", &file));
-    MORAY_TRY(benchmark_json(run, file));
+    (void)output;
+    const benchmark *run = found;
     MORAY_TRY(draw_growth(run, "intervals", "growth_intervals", "One iteration, over intervals"));
-    MORAY_TRY(draw_growth(run, "links", "growth_links", "One iteration, over links"));
-    return moray_output_commit(run->common.output);
+    return draw_growth(run, "links", "growth_links", "One iteration, over links");
 }

@@ -20,15 +20,14 @@ static void add(struct sheet *sheet, const char *label, const double value[MORAY
     sheet->n++;
 }
 
-static void print(const struct sheet *sheet, const char *title, const char *const columns[MORAY_TABLE_COLUMNS])
+static void print_sheet(const struct sheet *sheet, const char *title, const char *const columns[MORAY_TABLE_COLUMNS])
 {
     moray_table table = {.title = title, .rows = sheet->rows, .n_rows = sheet->n};
     while (table.n_columns < MORAY_TABLE_COLUMNS && columns[table.n_columns]) {
         table.columns[table.n_columns] = columns[table.n_columns];
         table.n_columns++;
     }
-    moray_table_print(&table, stdout);
-    printf("\n");
+    moray_tables_print(&table, 1, stdout);
 }
 
 static void times_row(struct sheet *sheet, const char *label, const cost *c)
@@ -77,9 +76,9 @@ static void print_cases(const benchmark *run)
     }
     if (run->n_cases == 0)
         return;
-    print(&sizes, "Programmes", size_columns);
-    print(&times, "Processor time [ms]", time_columns);
-    print(&totals, "Start to finish [ms]", total_columns);
+    print_sheet(&sizes, "Programmes", size_columns);
+    print_sheet(&times, "Processor time [ms]", time_columns);
+    print_sheet(&totals, "Start to finish [ms]", total_columns);
 }
 
 static void print_growth(const growth *g)
@@ -92,7 +91,7 @@ static void print_growth(const growth *g)
         times_row(&times, label, &g->cost[k]);
     }
     snprintf(title, sizeof title, "%s over %s: processor time [ms]", g->name, g->over);
-    print(&times, title, growth_columns);
+    print_sheet(&times, title, growth_columns);
     growth_exponents(g, exponent);
     printf("grows with the power");
     for (int i = 0; i < EXPONENTS; i++)
@@ -109,19 +108,24 @@ static void print_simulation(const simulated *s)
         add(&sheet, label, (double[MORAY_TABLE_COLUMNS]){s->rate[0][k], s->rate[1][k]});
     }
     if (s->n > 0)
-        print(&sheet, "Simulated seconds in a second of the processor",
-              (const char *const[MORAY_TABLE_COLUMNS]){"control-oriented", "first-principles"});
+        print_sheet(&sheet, "Simulated seconds in a second of the processor",
+                    (const char *const[MORAY_TABLE_COLUMNS]){moray_model_name(0), moray_model_name(1)});
 }
 
-moray_status benchmark_report(const benchmark *run)
+static void print(const void *found, const moray_report *report)
 {
-    if (run->common.output)
-        MORAY_TRY(benchmark_files(run));
-    if (run->common.json)
-        return benchmark_json(run, stdout);
+    (void)report;
+    const benchmark *run = found;
     print_cases(run);
     for (int k = 0; k < run->n_growths; k++)
         print_growth(&run->growths[k]);
     print_simulation(&run->simulation);
-    return moray_ok();
+}
+
+moray_status benchmark_report(const benchmark *run)
+{
+    return moray_app_show(
+        &run->common,
+        &(moray_results){
+            .name = "benchmark", .found = run, .summary = benchmark_summary, .print = print, .draw = benchmark_draw});
 }

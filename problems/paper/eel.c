@@ -30,7 +30,7 @@ static moray_status swim(paper *p, moray_model model, findings *f)
     MORAY_TRY(paper_swimmer(p, p->robot, model, p->settings->reading, &setup.swimmer));
     for (int i = 0; i < TAPERS; i++) {
         const moray_gait gait = tapered(p, model, tapers[i]);
-        paper_progress(p, "%s, taper %g", paper_model_names[model], tapers[i]);
+        paper_progress(p, "%s, taper %g", moray_model_name(model), tapers[i]);
         MORAY_TRY(moray_swim_steady(&setup, &gait, 0, &steady, NULL, 0));
         f->speed[model][i] = steady.speed;
         f->power[model][i] = steady.power;
@@ -38,7 +38,7 @@ static moray_status swim(paper *p, moray_model model, findings *f)
     }
     for (int i = 0; i < TAPERS; i++) {
         moray_gait gait = tapered(p, model, tapers[i]);
-        paper_progress(p, "%s, taper %g at equal power", paper_model_names[model], tapers[i]);
+        paper_progress(p, "%s, taper %g at equal power", moray_model_name(model), tapers[i]);
         MORAY_TRY(moray_swim_match_power(&setup, &gait, 0, f->power[model][TAPERS / 2], &steady));
         f->equal_speed[model][i] = steady.speed;
         f->equal_cost[model][i] = steady.cost_of_transport;
@@ -91,7 +91,7 @@ static moray_status draw(paper *p, const findings *f)
     moray_column columns[7] = {{.name = "taper", .values = tapers}};
     for (int k = 0; k < 2; k++) {
         const moray_model model = paper_model_order[k];
-        const char *name = paper_model_names[model];
+        const char *name = moray_model_name(model);
         columns[1 + k] = (moray_column){paper_label(p, "speed %s", name), "m/s", f->speed[model], 1};
         columns[3 + k] = (moray_column){paper_label(p, "power %s", name), "W", f->power[model], 1};
         columns[5 + k] =
@@ -159,7 +159,7 @@ static moray_status draw_links(paper *p, moray_model model)
     }
     return paper_figure(
         p, &(moray_figure){.name = model == MORAY_CONTROL_ORIENTED ? "links_control" : "links_fp",
-                           .title = paper_label(p, "Swing of the links, %s model", paper_model_names[model]),
+                           .title = paper_label(p, "Swing of the links, %s model", moray_model_name(model)),
                            .x_label = "link (1: tail)",
                            .y_label = "amplitude of the link angle [deg]",
                            .curves = curves,

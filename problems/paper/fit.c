@@ -49,7 +49,7 @@ static void plan_turns(const paper_fitting *fit, moray_model model, moray_gait_c
 
 static moray_status turn(paper_fitting *fit, moray_swimmer *swimmer, double *mean)
 {
-    const double *V = fit->p->settings->common.current;
+    const double *V = fit->p->settings->snake.current;
     moray_gait_change schedule[CHANGES];
     recorder to = {.heading = fit->raw};
     double *x = fit->raw + fit->n;

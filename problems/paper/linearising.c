@@ -60,7 +60,7 @@ static paper_situation situation_of(int N, const double V[2], const double *x, c
 static moray_status try_states(paper *p, const moray_robot *robot, misses *worst)
 {
     const int N = robot->links;
-    const double *V = p->settings->common.current;
+    const double *V = p->settings->snake.current;
     unsigned short seed[3] = {1, 2, 3};
     moray_swimmer *swimmer;
     paper_forward f;

@@ -78,7 +78,7 @@ static moray_status show_displacement(paper *p, const link_paths paths[2])
         const double *across = paths[model].across_amplitude, *along = paths[model].along_amplitude;
         const int N = paths[model].N;
         rows[model] =
-            (moray_table_row){.label = paper_model_names[model],
+            (moray_table_row){.label = moray_model_name(model),
                               .value = {1000 * mean(across, N), 1000 * largest(across, N), 1000 * mean(along, N),
                                         1000 * largest(along, N), mean(across, N) / mean(along, N)}};
         moray_json_open(p->json, model == MORAY_CONTROL_ORIENTED ? "control" : "fp");
@@ -133,7 +133,7 @@ static moray_status draw_paths(paper *p, const link_paths paths[2])
             x[k] = gap ? NAN : paths[model].station[i] + paths[model].along[i * CHAIN_POINTS + sample];
             y[k] = gap ? NAN : paths[model].across[i * CHAIN_POINTS + sample];
         }
-        curves[c] = (moray_curve){.label = paper_model_names[model], .x = x, .y = y, .n = n};
+        curves[c] = (moray_curve){.label = moray_model_name(model), .x = x, .y = y, .n = n};
     }
     return paper_figure(p, &(moray_figure){.name = "paths",
                                            .title = "Property 4: paths of the links about the mean motion",

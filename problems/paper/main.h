@@ -30,7 +30,7 @@ void paper_print_wrapped(const char *text, FILE *file); // a paragraph in lines 
 void paper_json_head(moray_json *json, const paper_settings *settings);
 void paper_json_end(moray_json *json, moray_status status);
 
-// summary.json and report.html, and the commit. Error: MORAY_IO, MORAY_MEMORY.
-moray_status paper_write(const paper *p, const paper_chapter *chapters, int n);
+// summary.json and report.html with --out, --json. Error: MORAY_IO, MORAY_MEMORY.
+moray_status paper_report(const paper *p, const paper_chapter *chapters, int n);
 
 #endif

@@ -54,8 +54,8 @@ static moray_status draw_offsets(paper *p, const double *ratio, const double *tu
     moray_column columns[3] = {{.name = "phi_0 / amplitude", .values = ratio}};
     for (int model = 0; model < 2; model++) {
         columns[1 + model] =
-            (moray_column){.name = paper_model_names[model], .unit = "deg/s", .values = turning + model * n};
-        curves[model] = (moray_curve){.label = paper_model_names[model],
+            (moray_column){.name = moray_model_name(model), .unit = "deg/s", .values = turning + model * n};
+        curves[model] = (moray_curve){.label = moray_model_name(model),
                                       .x = ratio,
                                       .y = turning + model * n,
                                       .n = n,
@@ -122,7 +122,7 @@ static moray_status draw_speeds(paper *p, double speed[2][SPEEDS], double turnin
     moray_curve curves[2];
     moray_column columns[4];
     for (int model = 0; model < 2; model++) {
-        curves[model] = (moray_curve){.label = paper_model_names[model],
+        curves[model] = (moray_curve){.label = moray_model_name(model),
                                       .x = speed[model],
                                       .y = turning[model],
                                       .n = SPEEDS,
@@ -231,7 +231,7 @@ static moray_status turn_in_current(paper *p)
     for (int model = 0; model < 2; model++) {
         MORAY_TRY(swim(p, model, 1. / 6, p->settings->omega, &steady[model]));
         MORAY_TRY(turn_once(p, model, steady[model].heading_drift, &rate[model]));
-        rows[model] = (moray_table_row){.label = paper_model_names[model],
+        rows[model] = (moray_table_row){.label = moray_model_name(model),
                                         .value = {steady[model].heading_drift / DEG, rate[model] / DEG,
                                                   100 * (rate[model] / steady[model].heading_drift - 1)}};
     }
@@ -258,7 +258,7 @@ moray_status paper_offset(paper *p)
         MORAY_TRY(paper_say(p,
                             "Property 3, %s model: straight without offset: %s; a positive offset turns it clockwise: "
                             "%s; faster with more offset: %s; faster at more speed: %s.",
-                            paper_model_names[model], yes(found.straight[model]), yes(found.clockwise[model]),
+                            moray_model_name(model), yes(found.straight[model]), yes(found.clockwise[model]),
                             yes(found.grows[model]), yes(found.grows_with_speed[model])));
     return paper_say(p, "That the two models turn opposite ways is erratum E3: (1) and (20) disagree in the sign of "
                         "phi_0.");

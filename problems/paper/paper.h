@@ -15,7 +15,8 @@
 enum { PAPER_STUDIES = 32, PAPER_TABLES = 12 };
 
 typedef struct paper_settings {
-    moray_common common;             // robot, current, output
+    moray_common common;
+    moray_snake_options snake;       // robot, current
     double theta_max, omega, delta;  // of the gait that studies take where they do not vary it
     paper_reading reading;           // of the control-oriented model
     bool as_printed;                 // reading = printed
@@ -88,8 +89,6 @@ moray_status paper_orbit_in(paper *p, const double current[2], moray_model model
                             moray_steady *steady, moray_swim_track **orbit);
 
 // ---- Telling -------------------------------------------------------------------------------------------------------
-
-extern const char *const paper_model_names[2]; // "control-oriented", "first-principles"
 
 // Replaces the line of progress.
 void paper_progress(const paper *p, const char *format, ...) __attribute__((format(printf, 2, 3)));

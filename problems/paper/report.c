@@ -28,9 +28,9 @@ void paper_json_head(moray_json *json, const paper_settings *settings)
     moray_json_text(json, "problem", "paper");
     moray_json_text(json, "version", moray_version());
     moray_json_open(json, "robot");
-    moray_json_number(json, "links", settings->common.robot.links);
+    moray_json_number(json, "links", settings->snake.robot.links);
     moray_json_close(json);
-    moray_json_numbers(json, "current_m_s", settings->common.current, 2);
+    moray_json_numbers(json, "current_m_s", settings->snake.current, 2);
     moray_json_text(json, "reading", paper_reading_names[settings->reading]);
     moray_json_open(json, "gait");
     moray_json_number(json, "theta_max_deg", settings->theta_max / DEG);
@@ -46,11 +46,11 @@ void paper_json_end(moray_json *json, moray_status status)
         moray_json_text(json, "why", status.text);
 }
 
-static moray_status write_report(const paper *p, const paper_chapter *chapters, int n)
+moray_status paper_report(const paper *p, const paper_chapter *chapters, int n)
 {
-    const moray_common *common = &p->settings->common;
+    const moray_snake_options *snake = &p->settings->snake;
     moray_section section[PAPER_STUDIES];
-    char title[PAPER_STUDIES][80], failed[PAPER_STUDIES][400];
+    char title[PAPER_STUDIES][80], failed[PAPER_STUDIES][400], text[200];
     for (int i = 0; i < n; i++) {
         const paper_chapter *chapter = &chapters[i];
         snprintf(title[i], sizeof title[i], "%s: %s", chapter->study->name, chapter->study->summary);
@@ -61,24 +61,12 @@ static moray_status write_report(const paper *p, const paper_chapter *chapters, 
                                      .tables = chapter->telling.table,
                                      .n_tables = chapter->telling.n_tables};
     }
-    char text[200];
     snprintf(text, sizeof text, "%d links, current (%g, %g) m/s, theta_max %g deg, omega %g deg/s, delta %g deg",
-             common->robot.links, common->current[0], common->current[1], p->settings->theta_max / DEG,
+             snake->robot.links, snake->current[0], snake->current[1], p->settings->theta_max / DEG,
              p->settings->omega / DEG, p->settings->delta / DEG);
     const moray_report report = {.title = "A control-oriented model of underwater snake robots exposed to currents",
                                  .text = text,
                                  .sections = section,
-                                 .n_sections = n,
-                                 .argc = common->argc,
-                                 .argv = common->argv};
-    return moray_output_report(p->output, &report);
-}
-
-moray_status paper_write(const paper *p, const paper_chapter *chapters, int n)
-{
-    FILE *file;
-    MORAY_TRY(moray_output_file(p->output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(p->json, file));
-    MORAY_TRY(write_report(p, chapters, n));
-    return moray_output_commit(p->output);
+                                 .n_sections = n};
+    return moray_app_show(&p->settings->common, &(moray_results){.name = "paper", .json = p->json, .report = &report});
 }

@@ -6,7 +6,6 @@
 #include "main.h"
 
 const char *const paper_reading_names[] = {"corrected", "23h", "l", "printed", NULL};
-const char *const paper_model_names[2] = {"control-oriented", "first-principles"};
 
 // ---- Keeping -------------------------------------------------------------------------------------------------------
 
@@ -243,10 +242,6 @@ moray_status paper_figure(paper *p, const moray_figure *figure)
     file_name(p, figure->name, "", name);
     named.name = name;
     const moray_status status = moray_output_figure(p->output, &named);
-    if (status.code != MORAY_IO)
-        return status;
     moray_ticker_end(&p->ticker);
-    if (!p->settings->common.quiet)
-        fprintf(stderr, "paper: %s\n", status.text);
-    return moray_ok();
+    return moray_app_drawn(&p->settings->common, "paper", status);
 }

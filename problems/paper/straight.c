@@ -66,7 +66,7 @@ static moray_status draw(paper *p, const shown s[2])
 {
     moray_column columns[7] = {{.name = "t", .unit = "s", .values = s[0].t}};
     for (int model = 0; model < 2; model++) {
-        const char *name = paper_model_names[model];
+        const char *name = moray_model_name(model);
         columns[1 + model] = (moray_column){paper_label(p, "p_x %s", name), "m", s[model].x, 1};
         columns[3 + model] = (moray_column){paper_label(p, "p_y %s", name), "m", s[model].y, 1};
         columns[5 + model] = (moray_column){paper_label(p, "v_x %s", name), "m/s", s[model].v_x, 1};

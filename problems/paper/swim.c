@@ -70,7 +70,7 @@ const moray_model paper_model_order[2] = {MORAY_FIRST_PRINCIPLES, MORAY_CONTROL_
 
 moray_curve paper_model_curve(moray_model model, const double *x, const double *y, int n)
 {
-    return (moray_curve){.label = paper_model_names[model],
+    return (moray_curve){.label = moray_model_name(model),
                          .x = x,
                          .y = y,
                          .n = n,

@@ -63,7 +63,7 @@ static moray_status write(paper *p, const double *t, double *series[2][QUANTITIE
     for (int model = 0; model < 2; model++)
         for (int q = 0; q < QUANTITIES; q++)
             columns[1 + 2 * q + model] =
-                (moray_column){.name = paper_label(p, "%s %s", names[q][0], paper_model_names[model]),
+                (moray_column){.name = paper_label(p, "%s %s", names[q][0], moray_model_name(model)),
                                .unit = names[q][1],
                                .values = series[model][q]};
     return paper_csv(p, NULL, columns, 1 + 2 * QUANTITIES, n);
@@ -92,8 +92,8 @@ static moray_status tell(paper *p, moray_swim_track *track[2])
     moray_json_numbers(p->json, "end_fp_m", end[MORAY_FIRST_PRINCIPLES], 2);
     moray_json_numbers(p->json, "end_control_m", end[MORAY_CONTROL_ORIENTED], 2);
     return paper_table(p, &(moray_table){.title = "Manoeuvre of Sec. V-C, theta_max 10 deg",
-                                         .columns = {paper_model_names[MORAY_FIRST_PRINCIPLES],
-                                                     paper_model_names[MORAY_CONTROL_ORIENTED]},
+                                         .columns = {moray_model_name(MORAY_FIRST_PRINCIPLES),
+                                                     moray_model_name(MORAY_CONTROL_ORIENTED)},
                                          .n_columns = 2,
                                          .rows = rows,
                                          .n_rows = 3});

@@ -4,21 +4,6 @@
 
 #include "simulate.h"
 
-static moray_status no_memory(void)
-{
-    return moray_error(MORAY_MEMORY, "no memory for the figures");
-}
-
-static moray_status draw(const simulate *run, const moray_figure *figure)
-{
-    const moray_status status = moray_output_figure(run->common.output, figure);
-    if (status.code != MORAY_IO)
-        return status;
-    if (!run->common.quiet)
-        fprintf(stderr, "simulate: %s\n", status.text);
-    return moray_ok();
-}
-
 // ---- Path ----------------------------------------------------------------------------------------------------------
 
 static moray_status draw_path(const simulate *run, const simulate_results *results)
@@ -33,13 +18,13 @@ static moray_status draw_path(const simulate *run, const simulate_results *resul
                                    .y = &track->pose->p_y,
                                    .n = track->n,
                                    .stride = sizeof *track->pose / sizeof(double)}};
-    const moray_status status = draw(run, &(moray_figure){.name = "path",
-                                                          .title = "Path of the robot",
-                                                          .x_label = "x [m]",
-                                                          .y_label = "y [m]",
-                                                          .equal_axes = true,
-                                                          .curves = curves,
-                                                          .n_curves = 2});
+    const moray_status status = moray_output_figure(run->common.output, &(moray_figure){.name = "path",
+                                                                                        .title = "Path of the robot",
+                                                                                        .x_label = "x [m]",
+                                                                                        .y_label = "y [m]",
+                                                                                        .equal_axes = true,
+                                                                                        .curves = curves,
+                                                                                        .n_curves = 2});
     free(x);
     return status;
 }
@@ -50,31 +35,32 @@ static moray_status draw_velocity(const simulate *run, const double *t, const do
 {
     const moray_curve curves[] = {{.label = "v_x", .x = t, .y = v_x, .n = n},
                                   {.label = "v_y", .x = t, .y = v_y, .n = n}};
-    return draw(run, &(moray_figure){.name = "velocity",
-                                     .title = "Velocity over ground of the centre of mass",
-                                     .x_label = "time [s]",
-                                     .y_label = "velocity [m/s]",
-                                     .curves = curves,
-                                     .n_curves = 2});
+    return moray_output_figure(run->common.output,
+                               &(moray_figure){.name = "velocity",
+                                               .title = "Velocity over ground of the centre of mass",
+                                               .x_label = "time [s]",
+                                               .y_label = "velocity [m/s]",
+                                               .curves = curves,
+                                               .n_curves = 2});
 }
 
 static moray_status draw_heading(const simulate *run, const double *t, const double *heading, int n)
 {
-    const bool control = run->common.model == MORAY_CONTROL_ORIENTED;
+    const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
     const moray_curve curve = {.label = control ? "theta" : "mean link angle", .x = t, .y = heading, .n = n};
-    return draw(run, &(moray_figure){.name = "heading",
-                                     .title = "Heading",
-                                     .x_label = "time [s]",
-                                     .y_label = "heading [deg]",
-                                     .curves = &curve,
-                                     .n_curves = 1});
+    return moray_output_figure(run->common.output, &(moray_figure){.name = "heading",
+                                                                   .title = "Heading",
+                                                                   .x_label = "time [s]",
+                                                                   .y_label = "heading [deg]",
+                                                                   .curves = &curve,
+                                                                   .n_curves = 1});
 }
 
 // Of the joints at the tail, in the middle and at the head: more curves than that nobody reads.
 static moray_status draw_efforts(const simulate *run, const simulate_results *results, const double *t, double *u)
 {
     const moray_swim_track *track = &results->track;
-    const bool control = run->common.model == MORAY_CONTROL_ORIENTED;
+    const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
     const int joint[] = {0, (track->n_joints - 1) / 2, track->n_joints - 1}, shown = track->n_joints < 3 ? 1 : 3;
     int from = 0;
     char label[3][32], title[80];
@@ -90,12 +76,13 @@ static moray_status draw_efforts(const simulate *run, const simulate_results *re
     }
     snprintf(title, sizeof title, "Joint %s, %.4g s to %.4g s", control ? "forces" : "torques", results->window.from,
              results->window.to);
-    return draw(run, &(moray_figure){.name = "effort",
-                                     .title = title,
-                                     .x_label = "time [s]",
-                                     .y_label = control ? "joint force [N]" : "joint torque [N m]",
-                                     .curves = curves,
-                                     .n_curves = shown});
+    return moray_output_figure(run->common.output,
+                               &(moray_figure){.name = "effort",
+                                               .title = title,
+                                               .x_label = "time [s]",
+                                               .y_label = control ? "joint force [N]" : "joint torque [N m]",
+                                               .curves = curves,
+                                               .n_curves = shown});
 }
 
 moray_status simulate_figures(const simulate *run, const simulate_results *results)
@@ -104,7 +91,7 @@ moray_status simulate_figures(const simulate *run, const simulate_results *resul
     const int n = track->n;
     double *v_x = malloc(3 * (size_t)n * sizeof *v_x), *v_y = v_x + n, *heading = v_y + n;
     if (!v_x)
-        return no_memory();
+        return moray_error(MORAY_MEMORY, "no memory for the figures");
     for (int k = 0; k < n; k++) {
         v_x[k] = track->pose[k].v_x;
         v_y[k] = track->pose[k].v_y;

@@ -4,22 +4,20 @@
 
 #include "simulate.h"
 
-static const char *const model_names[] = {"control-oriented", "first-principles"};
-
 static bool is_control(const simulate *run)
 {
-    return run->common.model == MORAY_CONTROL_ORIENTED;
+    return run->snake.model == MORAY_CONTROL_ORIENTED;
 }
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
 static void describe(const simulate *run, const simulate_results *results, char *text, size_t size)
 {
-    const moray_robot *robot = &run->common.robot;
+    const moray_robot *robot = &run->snake.robot;
     const moray_gait *gait = simulate_last_gait(results);
     const bool control = is_control(run);
     const double theta_max =
-        moray_theta_max_from_amplitude(robot, run->common.model, gait->amplitude, gait->delta) / DEG;
+        moray_theta_max_from_amplitude(robot, run->snake.model, gait->amplitude, gait->delta) / DEG;
     char changes[60] = "", taper[40] = "";
     if (results->n_changes > 1)
         snprintf(changes, sizeof changes, "%d gaits, the last one from t = %g s: ", results->n_changes,
@@ -29,7 +27,7 @@ static void describe(const simulate *run, const simulate_results *results, char 
     snprintf(text, size,
              "%d links, %s model, current (%g, %g) m/s. %stheta_max %.4g deg (%s = %.4g %s), omega %.4g deg/s, delta "
              "%.4g deg, phi_0 %.4g %s%s.",
-             robot->links, model_names[run->common.model], run->common.current[0], run->common.current[1], changes,
+             robot->links, moray_model_name(run->snake.model), run->snake.current[0], run->snake.current[1], changes,
              theta_max, control ? "a" : "alpha", gait->amplitude * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
              gait->omega / DEG, gait->delta / DEG, gait->offset * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
              taper);
@@ -100,24 +98,22 @@ static void fill_run(const simulate *run, const simulate_results *r, struct tabl
     t->table[1] = (moray_table){.title = "Whole run", .n_columns = 1, .rows = t->run, .n_rows = RUN_ROWS};
 }
 
-static void print_tables(const simulate *run, const simulate_results *results, struct tables *t)
+static void print(const void *found, const moray_report *report)
 {
-    char text[500];
-    describe(run, results, text, sizeof text);
-    printf("%s\n\n", text);
-    moray_table_print(&t->table[0], stdout);
-    printf("\n");
-    moray_table_print(&t->table[1], stdout);
+    (void)found;
+    printf("%s\n\n", report->text);
+    moray_tables_print(report->tables, 1, stdout);
+    moray_table_print(&report->tables[1], stdout);
 }
 
 // ---- JSON ----------------------------------------------------------------------------------------------------------
 
 static void json_gait(moray_json *json, const simulate *run, const moray_gait_change *change)
 {
-    const moray_robot *robot = &run->common.robot;
+    const moray_robot *robot = &run->snake.robot;
     const bool control = is_control(run);
     const moray_gait *gait = &change->gait;
-    const double theta_max = moray_theta_max_from_amplitude(robot, run->common.model, gait->amplitude, gait->delta);
+    const double theta_max = moray_theta_max_from_amplitude(robot, run->snake.model, gait->amplitude, gait->delta);
     moray_json_open(json, NULL);
     moray_json_number(json, "t_s", change->t);
     moray_json_number(json, "theta_max_deg", theta_max / DEG);
@@ -131,14 +127,8 @@ static void json_gait(moray_json *json, const simulate *run, const moray_gait_ch
 
 static void json_head(moray_json *json, const simulate *run, const simulate_results *results)
 {
-    moray_json_text(json, "problem", "simulate");
-    moray_json_text(json, "version", moray_version());
-    moray_json_text(json, "model", is_control(run) ? "control" : "fp");
-    moray_json_open(json, "robot");
-    moray_json_number(json, "links", run->common.robot.links);
-    moray_json_close(json);
-    moray_json_numbers(json, "current_m_s", run->common.current, 2);
-    moray_json_number(json, "course_deg", run->common.course / DEG);
+    moray_snake_to_json(json, &run->snake);
+    moray_json_number(json, "course_deg", run->snake.course / DEG);
     moray_json_open_list(json, "gaits");
     for (int i = 0; i < results->n_changes; i++)
         json_gait(json, run, &results->schedule[i]);
@@ -184,48 +174,48 @@ static void json_run(moray_json *json, const simulate *run, const simulate_resul
     moray_json_close(json);
 }
 
-static moray_json *make_json(const simulate *run, const simulate_results *results)
-{
-    moray_json *json = moray_json_new();
-    json_head(json, run, results);
-    json_mean(json, run, results);
-    json_run(json, run, results);
-    return json;
-}
-
 // ---- All of it -----------------------------------------------------------------------------------------------------
 
-static moray_status write_out(const simulate *run, const simulate_results *results, const moray_json *json,
-                              struct tables *t)
+struct found {
+    const simulate *run;
+    const simulate_results *results;
+};
+
+static void summarise(const void *found, moray_json *json)
 {
-    char text[500];
-    FILE *file;
-    MORAY_TRY(moray_output_file(run->common.output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(simulate_trajectory(run, results));
-    MORAY_TRY(simulate_figures(run, results));
-    describe(run, results, text, sizeof text);
-    const moray_report report = {.title = "simulate",
-                                 .text = text,
-                                 .tables = t->table,
-                                 .n_tables = 2,
-                                 .argc = run->common.argc,
-                                 .argv = run->common.argv};
-    MORAY_TRY(moray_output_report(run->common.output, &report));
-    return moray_output_commit(run->common.output);
+    const struct found *f = found;
+    json_head(json, f->run, f->results);
+    json_mean(json, f->run, f->results);
+    json_run(json, f->run, f->results);
+}
+
+static moray_status write(const void *found, moray_output *output)
+{
+    (void)output;
+    const struct found *f = found;
+    return simulate_trajectory(f->run, f->results);
+}
+
+static moray_status draw(const void *found, moray_output *output)
+{
+    (void)output;
+    const struct found *f = found;
+    return simulate_figures(f->run, f->results);
 }
 
 moray_status simulate_report(const simulate *run, const simulate_results *results)
 {
     struct tables t;
-    moray_json *json = make_json(run, results);
+    char text[500];
     fill_means(run, results, &t);
     fill_run(run, results, &t);
-    moray_status status = run->common.output ? write_out(run, results, json, &t) : moray_ok();
-    if (!moray_failed(status) && run->common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print_tables(run, results, &t);
-    moray_json_free(json);
-    return status;
+    describe(run, results, text, sizeof text);
+    const moray_report report = {.title = "simulate", .text = text, .tables = t.table, .n_tables = 2};
+    return moray_app_show(&run->common, &(moray_results){.name = "simulate",
+                                                         .found = &(struct found){run, results},
+                                                         .summary = summarise,
+                                                         .print = print,
+                                                         .write = write,
+                                                         .draw = draw,
+                                                         .report = &report});
 }

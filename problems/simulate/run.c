@@ -25,13 +25,13 @@ static moray_sim_settings settings_of(const simulate *run)
 
 static moray_status read_schedule(const simulate *run, simulate_results *results)
 {
-    const moray_common *common = &run->common;
+    const moray_snake_options *snake = &run->snake;
     if (run->schedule_file[0]) {
-        MORAY_TRY(moray_gait_schedule_read(run->schedule_file, &run->gait, &common->robot, common->model,
+        MORAY_TRY(moray_gait_schedule_read(run->schedule_file, &run->gait, &snake->robot, snake->model,
                                            &results->schedule, &results->n_changes));
     } else {
         moray_gait gait;
-        MORAY_TRY(moray_gait_input_make(&run->gait, &common->robot, common->model, &gait));
+        MORAY_TRY(moray_gait_input_make(&run->gait, &snake->robot, snake->model, &gait));
         if (!(results->schedule = malloc(sizeof *results->schedule)))
             return moray_error(MORAY_MEMORY, "no memory for a gait");
         results->schedule[results->n_changes++] = (moray_gait_change){0, gait};
@@ -133,11 +133,11 @@ static int choose_times(const simulate *run, const simulate_results *results, in
 
 static void conclude(const simulate *run, const lookout *seen, simulate_results *results)
 {
-    const double *V = run->common.current, span = results->window.to - results->window.from;
+    const double *V = run->snake.current, span = results->window.to - results->window.from;
     results->v_x = (results->end.p_x - seen->start.p_x) / span;
     results->v_y = (results->end.p_y - seen->start.p_y) / span;
     results->speed = hypot(results->v_x - V[0], results->v_y - V[1]);
-    results->course_speed = results->v_x * cos(run->common.course) + results->v_y * sin(run->common.course);
+    results->course_speed = results->v_x * cos(run->snake.course) + results->v_y * sin(run->snake.course);
     results->power = (results->energy - seen->start_energy) / span;
     results->cost_of_transport = results->speed > 0 ? results->power / results->speed : INFINITY;
     results->heading = seen->heading_sum / span;
@@ -148,7 +148,7 @@ static void conclude(const simulate *run, const lookout *seen, simulate_results 
 
 static moray_status swim(const simulate *run, simulate_results *results, double *times, bool *kept, int n, int divided)
 {
-    lookout seen = {.plan = results, .track = &results->track, .kept = kept, .n_joints = run->common.robot.links - 1};
+    lookout seen = {.plan = results, .track = &results->track, .kept = kept, .n_joints = run->snake.robot.links - 1};
     const moray_swim_plan plan = {.t1 = results->t1,
                                   .schedule = results->schedule,
                                   .n_changes = results->n_changes,
@@ -158,7 +158,7 @@ static moray_status swim(const simulate *run, simulate_results *results, double 
                                   .observer = &seen,
                                   .statistics = &results->statistics};
     double *x = times + n + 2;
-    moray_swimmer_set_current(results->swimmer, run->common.current[0], run->common.current[1]);
+    moray_swimmer_set_current(results->swimmer, run->snake.current[0], run->snake.current[1]);
     moray_swimmer_rest(results->swimmer, run->heading, run->position[0], run->position[1], x);
     MORAY_TRY(moray_swim_run(results->swimmer, &results->sim, &plan, x, &results->energy));
     results->end = moray_swimmer_pose(results->swimmer, x);
@@ -192,7 +192,7 @@ moray_status simulate_run(const simulate *run, simulate_results *results)
     MORAY_TRY(moray_sim_settings_check(&results->sim));
     MORAY_TRY(read_schedule(run, results));
     results->window = window_of(results, run->periods);
-    MORAY_TRY(moray_swimmer_new(&results->swimmer, &run->common.robot, run->common.model));
+    MORAY_TRY(moray_swimmer_new(&results->swimmer, &run->snake.robot, run->snake.model));
     return allot(run, results);
 }
 

@@ -10,6 +10,7 @@ typedef enum { SIMULATE_EXPLICIT, SIMULATE_TR_BDF2, SIMULATE_PAPER } simulate_in
 
 typedef struct simulate {
     moray_common common;
+    moray_snake_options snake;
     moray_gait_input gait;
     char schedule_file[MORAY_PATH_SIZE];
     double duration, output_step, heading, position[2]; // duration NaN: 60 s after the last change of gait
@@ -50,7 +51,7 @@ moray_status simulate_report(const simulate *run, const simulate_results *result
 // trajectory.csv. Error: MORAY_IO, MORAY_MEMORY.
 moray_status simulate_trajectory(const simulate *run, const simulate_results *results);
 
-// The figures; one that gnuplot does not draw is left out with a line on standard error. Error: MORAY_MEMORY.
+// The figures. Error: MORAY_MEMORY; those of moray_output_figure.
 moray_status simulate_figures(const simulate *run, const simulate_results *results);
 
 extern const char *const simulate_integrators[];

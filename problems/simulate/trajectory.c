@@ -32,8 +32,8 @@ static void add_states(columns *c, const moray_swim_track *track, int first, int
 static void choose_columns(const simulate *run, const simulate_results *results, columns *c)
 {
     const moray_swim_track *track = &results->track;
-    const int N = run->common.robot.links, pose = sizeof *track->pose / sizeof(double);
-    const bool control = run->common.model == MORAY_CONTROL_ORIENTED;
+    const int N = run->snake.robot.links, pose = sizeof *track->pose / sizeof(double);
+    const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
     add_column(c, "t", 0, "s", track->t, 1);
     add_column(c, "heading", 0, "rad", &track->pose->heading, pose);
     add_column(c, "p_x", 0, "m", &track->pose->p_x, pose);
@@ -58,7 +58,7 @@ static void choose_columns(const simulate *run, const simulate_results *results,
 
 moray_status simulate_trajectory(const simulate *run, const simulate_results *results)
 {
-    const size_t most = 3 * (size_t)run->common.robot.links + 12;
+    const size_t most = 3 * (size_t)run->snake.robot.links + 12;
     FILE *file;
     MORAY_TRY(moray_output_file(run->common.output, "trajectory.csv", &file));
     columns c = {.column = calloc(most, sizeof *c.column), .name = calloc(most, sizeof *c.name)};

@@ -3,18 +3,9 @@
 
 #include "steer.h"
 
-static moray_status drawn(const steer_job *job, moray_status status)
-{
-    if (status.code != MORAY_IO)
-        return status;
-    if (!job->common.quiet)
-        fprintf(stderr, "%s: %s\n", job->name, status.text);
-    return moray_ok();
-}
-
 moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure)
 {
-    return drawn(job, moray_output_figure(job->common.output, figure));
+    return moray_app_drawn(&job->common, job->name, moray_output_figure(job->common.output, figure));
 }
 
 // ---- Over time -----------------------------------------------------------------------------------------------------
@@ -74,8 +65,9 @@ static moray_status draw_path(const steer_job *job, const steer_trial *const *tr
         labels[k] = trials[k]->name;
     if (job->program->path)
         job->program->path(job, x, y);
-    return drawn(job, moray_swim_closed_loop_draw_path(job->common.output, closed_loops, labels, STEER_CURVES,
-                                                       job->common.current, job->program->path ? &path : NULL));
+    return moray_app_drawn(&job->common, job->name,
+                           moray_swim_closed_loop_draw_path(job->common.output, closed_loops, labels, STEER_CURVES,
+                                                            job->snake.current, job->program->path ? &path : NULL));
 }
 
 static moray_status draw_shown(const steer_job *job, const steer_trial *const *trials,
@@ -84,13 +76,15 @@ static moray_status draw_shown(const steer_job *job, const steer_trial *const *t
     const moray_swim_closed_loop *last = &closed_loops[STEER_CURVES - 1];
     MORAY_TRY(draw_over_time(job, trials, closed_loops));
     MORAY_TRY(draw_path(job, trials, closed_loops));
-    MORAY_TRY(drawn(job, moray_swim_closed_loop_draw_joints(job->common.output, last)));
+    MORAY_TRY(moray_app_drawn(&job->common, job->name, moray_swim_closed_loop_draw_joints(job->common.output, last)));
     MORAY_TRY(moray_swim_closed_loop_write(job->common.output, last));
     return job->program->draw ? job->program->draw(job) : moray_ok();
 }
 
-moray_status steer_draw(const steer_job *job)
+moray_status steer_write(const void *found, moray_output *output)
 {
+    (void)output;
+    const steer_job *job = found;
     const steer_trial *trials[STEER_CURVES] = {NULL};
     moray_swim_closed_loop closed_loops[STEER_CURVES] = {{0}};
     moray_status status = moray_ok();

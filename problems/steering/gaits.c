@@ -20,7 +20,7 @@ static double into(const double range[2], double value)
 
 moray_gait steer_first_gait(const steer_job *job)
 {
-    const moray_robot *robot = &job->common.robot;
+    const moray_robot *robot = &job->snake.robot;
     const steer_input *input = &job->input;
     const moray_gait paper = moray_gait_paper(robot);
     const double theta_max =
@@ -45,13 +45,13 @@ moray_steering_limits steer_limits(const steer_job *job, moray_model model)
         .offset_acceleration = MORAY_INFINITY,
         .power = isnan(input->power) ? usual : fmin(input->power, MORAY_INFINITY),
     };
-    return moray_steering_limits_map(&job->common.robot, &limits, &gait, MORAY_CONTROL_ORIENTED, model);
+    return moray_steering_limits_map(&job->snake.robot, &limits, &gait, MORAY_CONTROL_ORIENTED, model);
 }
 
 moray_status steer_fastest_gait(const steer_job *job, double power, moray_gait *gait)
 {
     const steer_input *input = &job->input;
-    const moray_gait_problem_spec spec = {.robot = job->common.robot,
+    const moray_gait_problem_spec spec = {.robot = job->snake.robot,
                                           .model = MORAY_FIRST_PRINCIPLES,
                                           .goal = MORAY_GAIT_FASTEST,
                                           .joints = MORAY_JOINTS_ON_GAIT,
@@ -77,7 +77,7 @@ moray_status steer_fastest_gait(const steer_job *job, double power, moray_gait *
 
 moray_status steer_straight_motions(steer_job *job, int index, const moray_gait *gait, moray_model from)
 {
-    const moray_robot *robot = &job->common.robot;
+    const moray_robot *robot = &job->snake.robot;
     for (int model = 0; model < 2; model++) {
         const moray_gait mapped = moray_gait_map(robot, gait, from, (moray_model)model);
         MORAY_TRY(moray_straight_motion_find(&job->straight[index][model], robot, (moray_model)model, &mapped));
@@ -89,7 +89,7 @@ moray_status steer_find_turn_rate(steer_job *job, moray_model model, const moray
 {
     moray_gait turning = *gait;
     turning.offset = steer_limits(job, model).offset;
-    return moray_turn_rate(&job->common.robot, model, &turning, &job->turn_rate[model]);
+    return moray_turn_rate(&job->snake.robot, model, &turning, &job->turn_rate[model]);
 }
 
 double steer_offset_ratio(const steer_job *job, int gait, moray_model from, moray_model to)

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "steer.h"
 
-static const char *const model_keys[] = {"control", "fp"};
-
 static void json_scores(const steer_job *job, moray_json *json, const char *key, const double *score)
 {
     moray_json_open(json, key);
@@ -34,7 +32,7 @@ static void json_trial(const steer_job *job, moray_json *json, const steer_trial
     moray_json_text(json, "law", trial->law->key);
     if (!program->one_gait)
         moray_json_text(json, "gait", gait);
-    moray_json_text(json, "plan", trial->law->kind == STEER_UNPLANNED ? NULL : model_keys[trial->plan]);
+    moray_json_text(json, "plan", trial->law->kind == STEER_UNPLANNED ? NULL : moray_model_key(trial->plan));
     if (program->tells_preview)
         moray_json_bool(json, "reference_known_ahead", trial->law->preview);
     for (int k = 0; k < program->n_numbers; k++)
@@ -59,7 +57,7 @@ static void json_plan(const steer_job *job, moray_json *json, const char *key, m
 void steer_json_gait(const steer_job *job, moray_json *json, int gait)
 {
     const moray_gait gaits[2] = {job->straight[gait][0].gait, job->straight[gait][1].gait};
-    moray_gait_to_json(json, "gait", &job->common.robot, gaits);
+    moray_gait_to_json(json, "gait", &job->snake.robot, gaits);
 }
 
 void steer_json_saturation(const steer_job *job, moray_json *json, moray_model model)
@@ -69,19 +67,13 @@ void steer_json_saturation(const steer_job *job, moray_json *json, moray_model m
     moray_json_number(json, "offset_rate_at_limit_percent", 100 * share.rate);
 }
 
-moray_json *steer_json(const steer_job *job)
+void steer_summary(const void *found, moray_json *json)
 {
-    moray_json *json = moray_json_new();
-    moray_json_text(json, "problem", job->name);
-    moray_json_text(json, "version", moray_version());
-    moray_json_text(json, "model", model_keys[job->common.model]);
-    moray_json_open(json, "robot");
-    moray_json_number(json, "links", job->common.robot.links);
-    moray_json_close(json);
-    moray_json_numbers(json, "current_m_s", job->common.current, 2);
+    const steer_job *job = found;
+    moray_snake_to_json(json, &job->snake);
     job->program->json_head(job, json);
     json_plan(job, json, "control_oriented_plan", MORAY_CONTROL_ORIENTED);
-    if (job->common.model == MORAY_FIRST_PRINCIPLES)
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES)
         json_plan(job, json, "first_principles_plan", MORAY_FIRST_PRINCIPLES);
     moray_json_open_list(json, "steering");
     for (int k = 0; k < job->n_trials; k++)
@@ -89,5 +81,4 @@ moray_json *steer_json(const steer_job *job)
     moray_json_close(json);
     if (job->program->json_tail)
         job->program->json_tail(job, json);
-    return json;
 }

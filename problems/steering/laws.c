@@ -58,7 +58,7 @@ static moray_steering_limits replanning_limits(const steer_steersman *h, double 
     const moray_steering_limits swum = steer_limits(h->job, h->model);
     moray_steering_limits limits = steer_limits(h->job, plan);
     limits.theta_max =
-        moray_fixed(moray_theta_max_from_amplitude(&h->job->common.robot, plan, gait->amplitude, gait->delta));
+        moray_fixed(moray_theta_max_from_amplitude(&h->job->snake.robot, plan, gait->amplitude, gait->delta));
     limits.omega = moray_fixed(gait->omega);
     limits.delta = moray_fixed(gait->delta);
     limits.power = MORAY_INFINITY;
@@ -75,7 +75,7 @@ moray_status steer_set_receding(steer_steersman *h, const char *scheme, moray_re
     const double period = 2 * M_PI / straight[h->trial->plan].gait.omega;
     const double scale = steer_offset_ratio(job, h->trial->gait, h->trial->plan, h->model);
     *limits = replanning_limits(h, scale);
-    moray_swim_receding_horizon_spec spec = {.links = job->common.robot.links,
+    moray_swim_receding_horizon_spec spec = {.links = job->snake.robot.links,
                                              .replanner = replanner,
                                              .settings = moray_settings_default(),
                                              .limits = limits,
@@ -110,7 +110,7 @@ void steer_add_plans(steer_job *job, const steer_law *blind, const steer_law *bo
 {
     static const char *const names[][2] = {{"control-oriented plan", "control-or. plan + feedback"},
                                            {"first-principles plan", "first-pr. plan + feedback"}};
-    for (int model = 0; model <= (int)job->common.model; model++) {
+    for (int model = 0; model <= (int)job->snake.model; model++) {
         const int gait = job->program->one_gait ? 0 : 1 + model;
         steer_add(job, names[model][0], blind, gait, (moray_model)model);
         steer_add(job, names[model][1], both, gait, (moray_model)model);
@@ -120,6 +120,6 @@ void steer_add_plans(steer_job *job, const steer_law *blind, const steer_law *bo
 void steer_add_receding(steer_job *job, const steer_law *law)
 {
     static const char *const names[] = {"receding, control-oriented", "receding, first-principles"};
-    for (int model = 0; model <= (int)job->common.model && job->receding; model++)
-        steer_add(job, names[model], law, 1 + (int)job->common.model, (moray_model)model);
+    for (int model = 0; model <= (int)job->snake.model && job->receding; model++)
+        steer_add(job, names[model], law, 1 + (int)job->snake.model, (moray_model)model);
 }

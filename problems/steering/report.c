@@ -3,8 +3,6 @@
 // Tables, words and files of a program that steers.
 #include "steer.h"
 
-const char *const steer_model_names[2] = {"control-oriented", "first-principles"};
-
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
 void steer_add_table(steer_tables *tables, const moray_table *table)
@@ -28,11 +26,11 @@ void steer_gait_table(const steer_job *job, steer_tables *tables, int first)
     moray_table_row *rows = tables->rows[tables->n];
     for (int i = 0; i < count; i++)
         rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
-    for (int g = first; g <= 1 + (int)job->common.model; g++) {
+    for (int g = first; g <= 1 + (int)job->snake.model; g++) {
         const moray_straight_motion *control = &job->straight[g][0], *revolute = &job->straight[g][1];
         const moray_gait *gait = &control->gait;
         const double values[count] = {
-            moray_theta_max_from_amplitude(&job->common.robot, MORAY_CONTROL_ORIENTED, gait->amplitude, gait->delta) /
+            moray_theta_max_from_amplitude(&job->snake.robot, MORAY_CONTROL_ORIENTED, gait->amplitude, gait->delta) /
                 DEG,
             gait->omega / DEG,
             gait->delta / DEG,
@@ -46,7 +44,7 @@ void steer_gait_table(const steer_job *job, steer_tables *tables, int first)
     }
     moray_table table = {.title = "Gait",
                          .columns = {"paper's", "control opt.", "first-pr. opt."},
-                         .n_columns = 2 + (int)job->common.model,
+                         .n_columns = 2 + (int)job->snake.model,
                          .n_rows = count};
     if (first > 0) {
         table.columns[0] = "given";
@@ -134,7 +132,7 @@ static void print_solver(const steer_job *job, int number)
     const bool averaged = number == STEER_AVERAGED;
     moray_solver_line(solution, averaged ? STEER_AVERAGED_SCHEME : job->common.scheme, record[meshes - 1].intervals,
                       line, sizeof line);
-    printf("%s: ", averaged ? "period-averaged plan" : steer_model_names[number]);
+    printf("%s: ", averaged ? "period-averaged plan" : moray_model_name(number));
     if (job->program->duration)
         printf("%s %.3f s, ", job->program->duration, steer_duration(solution));
     printf("%s\n", line);
@@ -144,62 +142,38 @@ static void print_solver(const steer_job *job, int number)
     printf("    %s\n", line);
 }
 
-static void print_all(const steer_job *job, const steer_tables *tables)
+static void print(const void *found, const moray_report *report)
 {
+    const steer_job *job = found;
     const steer_program *program = job->program;
     char text[STEER_TEXT];
-    printf("%d links, current (%g, %g) m/s, ", job->common.robot.links, job->common.current[0], job->common.current[1]);
+    printf("%d links, current (%g, %g) m/s, ", job->snake.robot.links, job->snake.current[0], job->snake.current[1]);
     program->headline(job, stdout);
     printf("\n\n");
-    for (int k = 0; k < tables->n; k++) {
-        moray_table_print(&tables->table[k], stdout);
-        printf("\n");
-    }
-    program->conclude(job, text, sizeof text);
-    printf("%s\n\n", text);
+    moray_tables_print(report->tables, report->n_tables, stdout);
     program->explain(job, text, sizeof text);
-    printf("%s\n\n", text);
+    printf("%s\n\n%s\n\n", report->text, text);
     if (program->notes)
         program->notes(job, stdout);
     for (int k = 0; k < job->n_trials; k++)
         if (job->trial[k].law->kind == STEER_RECEDING)
             print_receding(job, &job->trial[k]);
     print_solver(job, STEER_AVERAGED);
-    for (int model = 0; model <= (int)job->common.model; model++)
+    for (int model = 0; model <= (int)job->snake.model; model++)
         print_solver(job, model);
-}
-
-// ---- Files ---------------------------------------------------------------------------------------------------------
-
-static moray_status write_files(const steer_job *job, const steer_tables *tables, const moray_json *json)
-{
-    moray_output *output = job->common.output;
-    char text[STEER_TEXT];
-    FILE *file;
-    MORAY_TRY(moray_output_file(output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(steer_draw(job));
-    job->program->conclude(job, text, sizeof text);
-    const moray_report report = {.title = job->name,
-                                 .text = text,
-                                 .tables = tables->table,
-                                 .n_tables = tables->n,
-                                 .argc = job->common.argc,
-                                 .argv = job->common.argv};
-    MORAY_TRY(moray_output_report(output, &report));
-    return moray_output_commit(output);
 }
 
 moray_status steer_report(const steer_job *job)
 {
     steer_tables tables = {0};
+    char text[STEER_TEXT];
     job->program->tables(job, &tables);
-    moray_json *json = steer_json(job);
-    moray_status status = job->common.output ? write_files(job, &tables, json) : moray_ok();
-    if (!moray_failed(status) && job->common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print_all(job, &tables);
-    moray_json_free(json);
-    return status;
+    job->program->conclude(job, text, sizeof text);
+    const moray_report report = {.title = job->name, .text = text, .tables = tables.table, .n_tables = tables.n};
+    return moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                         .found = job,
+                                                         .summary = steer_summary,
+                                                         .print = print,
+                                                         .write = steer_write,
+                                                         .report = &report});
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "steer.h"
 
-#include <stdarg.h>
 #include <string.h>
 
 steer_job steer_defaults(void)
 {
     steer_job job = {.common = moray_common_defaults(),
+                     .snake = moray_snake_options_default(),
                      .input = {.theta_max = {1 * DEG, 20 * DEG},
                                .omega = {30 * DEG, 360 * DEG},
                                .delta = {15 * DEG, 90 * DEG},
@@ -18,7 +18,7 @@ steer_job steer_defaults(void)
                      .replan_periods = 1,
                      .look_ahead_periods = 6,
                      .receding = true};
-    job.common.model = MORAY_FIRST_PRINCIPLES;
+    job.snake.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "radau5");
     job.common.intervals = 0; // by the period
     return job;
@@ -36,7 +36,7 @@ static moray_status work(steer_job *job)
 
 static bool certified(const steer_job *job)
 {
-    return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->common.model].pass;
+    return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->snake.model].pass;
 }
 
 int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job)
@@ -78,6 +78,8 @@ moray_settings steer_settings(steer_job *job, bool averaged, int intervals, doub
     settings.intervals = !averaged && job->common.intervals > 0 ? job->common.intervals : intervals;
     settings.tolerance = job->common.tol;
     settings.linear_solver = job->common.linear_solver;
+    settings.ipopt = job->common.ipopt.at;
+    settings.n_ipopt = job->common.ipopt.n;
     settings.mesh_tolerance = mesh_tolerance;
     settings.max_refinements = averaged ? 0 : job->refinements;
     settings.barrier = averaged ? 0.1 : barrier;
@@ -133,27 +135,18 @@ steer_saturation steer_saturation_of(const steer_job *job, moray_model model)
 
 // ---- Words ---------------------------------------------------------------------------------------------------------
 
-void steer_say(char *text, size_t size, const char *format, ...)
-{
-    const size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
-}
-
 void steer_say_limit(const steer_job *job, char *text, size_t size)
 {
-    const moray_steering_limits limits = steer_limits(job, job->common.model);
-    const bool control = job->common.model == MORAY_CONTROL_ORIENTED;
+    const moray_steering_limits limits = steer_limits(job, job->snake.model);
+    const bool control = job->snake.model == MORAY_CONTROL_ORIENTED;
     *text = 0;
-    steer_say(text, size, "With |phi_0| at its limit of %.3g %s the robot turns",
-              control ? 100 * limits.offset : limits.offset / DEG, control ? "cm" : "deg");
+    moray_text_add(text, size, "With |phi_0| at its limit of %.3g %s the robot turns",
+                   control ? 100 * limits.offset : limits.offset / DEG, control ? "cm" : "deg");
 }
 
 void steer_say_saturation(const steer_job *job, char *text, size_t size)
 {
-    const steer_saturation share = steer_saturation_of(job, job->common.model);
-    steer_say(text, size, "he plan has the offset at its limit for %.0f %% of the time, and its rate for %.0f %%.",
-              100 * share.offset, 100 * share.rate);
+    const steer_saturation share = steer_saturation_of(job, job->snake.model);
+    moray_text_add(text, size, "he plan has the offset at its limit for %.0f %% of the time, and its rate for %.0f %%.",
+                   100 * share.offset, 100 * share.rate);
 }

@@ -149,7 +149,8 @@ typedef struct steer_plan {
 enum { STEER_AVERAGED = 2 }; // plan beside those of the models
 
 struct steer_job {
-    moray_common common; // model: of the last plan; with fp there is one on the control-oriented model before
+    moray_common common;
+    moray_snake_options snake; // model: of the last plan; with fp there is one on the control-oriented model before
     steer_input input;
     double weight_steering;
     int intervals_per_period, refinements, evaluations;
@@ -176,7 +177,7 @@ int steer_main(const moray_program *app, const steer_program *program, int argc,
 
 static inline const steer_plan *steer_last_plan(const steer_job *job)
 {
-    return &job->plan[job->common.model];
+    return &job->plan[job->snake.model];
 }
 
 // ---- Gaits and limits ----------------------------------------------------------------------------------------------
@@ -273,25 +274,23 @@ void steer_gait_table(const steer_job *job, steer_tables *tables, int first); //
 void steer_score_table(const steer_job *job, steer_tables *tables, int n_columns);
 void steer_tuning_table(const steer_job *job, steer_tables *tables);
 
-extern const char *const steer_model_names[2];
-
 // The best on the first-principles model by a score, of the trials whose law is one of the bits and that are not
 // barred.
 const steer_trial *steer_best(const steer_job *job, unsigned laws, int score);
 
-// Adds to a text, the limit at its beginning.
-void steer_say(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+// Begins a text with the limit; adds to one.
 void steer_say_limit(const steer_job *job, char *text, size_t size); // "With |phi_0| at its limit ... the robot turns"
 void steer_say_saturation(const steer_job *job, char *text, size_t size); // behind a "T" or "t"
 
 // Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status steer_report(const steer_job *job);
-moray_json *steer_json(const steer_job *job);
 void steer_json_gait(const steer_job *job, moray_json *json, int gait);
 void steer_json_saturation(const steer_job *job, moray_json *json, moray_model model);
 
-// Figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of moray_swim_closed_loop_run.
-moray_status steer_draw(const steer_job *job);
+// What moray_results wants of a job: the summary; figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of
+// moray_swim_closed_loop_run.
+void steer_summary(const void *job, moray_json *json);
+moray_status steer_write(const void *job, moray_output *output);
 
 // Where gnuplot does not draw, says so on standard error unless quiet. Error: MORAY_MEMORY, MORAY_INPUT.
 moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure);

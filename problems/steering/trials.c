@@ -28,9 +28,9 @@ static moray_status swim(steer_steersman *h, accuracy how, moray_swim_closed_loo
 {
     const steer_job *job = h->job;
     MORAY_TRY(set_controller(h));
-    moray_swim_closed_loop_spec spec = {.robot = &job->common.robot,
+    moray_swim_closed_loop_spec spec = {.robot = &job->snake.robot,
                                         .straight = &job->straight[h->trial->gait][h->model],
-                                        .current = {job->common.current[0], job->common.current[1]},
+                                        .current = {job->snake.current[0], job->snake.current[1]},
                                         .controller = &h->controller,
                                         .tolerance = how.tolerance};
     job->program->start(h, &spec);

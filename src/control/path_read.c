@@ -3,7 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/csv.h"
+#include "base/number.h"
 #include "moray/control/path.h"
 
 typedef struct waypoints {
@@ -39,32 +42,42 @@ static moray_status read_list(waypoints *points, const char *text)
     return moray_ok();
 }
 
-static moray_status read_lines(waypoints *points, FILE *file, const char *name)
+static moray_status read_rows(waypoints *points, const moray_csv *csv)
 {
-    char line[256], extra;
-    if (!fgets(line, sizeof line, file) || strncmp(line, "x_m,y_m", 7) != 0)
-        return moray_error(MORAY_INPUT, "%.120s:1: the first line must name the columns: x_m,y_m", name);
-    for (int number = 2; fgets(line, sizeof line, file); number++) {
+    static const char *const names[] = {"x_m", "y_m"};
+    int column[2];
+    MORAY_TRY(moray_csv_match(csv, names, 2, column));
+    for (int row = 0; row < csv->rows; row++) {
         double x, y;
-        if (line[strspn(line, " \t\r\n")] == 0)
-            continue;
-        if (sscanf(line, " %lf , %lf %c", &x, &y, &extra) != 2)
-            return moray_error(MORAY_INPUT, "%.120s:%d: must be two numbers, x_m,y_m", name, number);
-        MORAY_TRY(add_waypoint(points, x, y));
+        MORAY_TRY(moray_csv_number(csv, row, column[0], &x));
+        MORAY_TRY(moray_csv_number(csv, row, column[1], &y));
+        const moray_status status = add_waypoint(points, x, y);
+        if (moray_failed(status))
+            return moray_csv_error(csv, row, status);
     }
-    return ferror(file) ? moray_error(MORAY_IO, "path %.120s: cannot be read: %s", name, strerror(errno)) : moray_ok();
+    return moray_ok();
+}
+
+static moray_status read_file(waypoints *points, const char *path)
+{
+    moray_csv csv;
+    if (access(path, R_OK) != 0)
+        return moray_error(MORAY_IO, "path %.120s: neither waypoints X,Y ... nor a file that can be opened: %s", path,
+                           strerror(errno));
+    moray_status status = moray_csv_read(&csv, path, "path");
+    if (!moray_failed(status))
+        status = read_rows(points, &csv);
+    moray_csv_free(&csv);
+    return status;
 }
 
 static moray_status read_waypoints(waypoints *points, const char *text)
 {
-    if (strchr("+-.0123456789 ", *text))
-        return read_list(points, text);
-    FILE *file = fopen(text, "r");
-    if (!file)
-        return moray_error(MORAY_IO, "path %.120s: neither waypoints X,Y ... nor a file that can be opened: %s", text,
-                           strerror(errno));
-    const moray_status status = read_lines(points, file, text);
-    fclose(file);
+    if (access(text, R_OK) == 0 || !strchr("+-.0123456789 ", *text))
+        return read_file(points, text);
+    const locale_t before = moray_c_locale_begin();
+    const moray_status status = read_list(points, text);
+    moray_c_locale_end(before);
     return status;
 }
 

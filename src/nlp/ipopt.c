@@ -10,8 +10,10 @@
 #include <time.h>
 
 #include "nlp/ipopt_linear.h"
+#include "nlp/ipopt_log.h"
 #include "nlp/ipopt_options.h"
-#include "nlp/ipopt_timing.h"
+#include "nlp/ipopt_user.h"
+#include "nlp/mumps_lock.h"
 
 struct session {
     const moray_nlp *nlp;
@@ -177,19 +179,41 @@ static void take_best(const struct session *session, moray_iterate *iterate)
     nlp->constraints(nlp->self, iterate->x, true, iterate->g);
 }
 
-static moray_status run(IpoptProblem problem, struct session *session, moray_iterate *iterate,
-                        struct ipopt_timing *timing)
+static moray_status set_up(IpoptProblem problem, const struct session *session, struct ipopt_logs *logs)
 {
     const moray_nlp_settings *settings = session->settings;
+    int level;
+    MORAY_TRY(moray_ipopt_print_level(settings, &level));
     if (!moray_ipopt_set_options(problem, session->nlp, settings, session->info->linear_solver, session->last) ||
         !SetIntermediateCallback(problem, on_iteration))
-        return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations, print level %d",
-                           settings->tolerance, settings->max_iterations, settings->print_level);
-    if (settings->timing && session->info->linear_solver != MORAY_LINEAR_OWN && moray_ipopt_timing_open(timing) &&
-        OpenIpoptOutputFile(problem, timing->path, ipopt_timing_level))
-        AddIpoptStrOption(problem, (char *)"print_timing_statistics", (char *)"yes");
-    session->info->outcome = outcome_of(IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective,
-                                                   iterate->lambda, iterate->z_lower, iterate->z_upper, session));
+        return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations", settings->tolerance,
+                           settings->max_iterations);
+    MORAY_TRY(moray_ipopt_set_user(problem, settings));
+    moray_ipopt_logs_open(problem, level, settings->timing && session->info->linear_solver != MORAY_LINEAR_OWN, logs);
+    return moray_ok();
+}
+
+// What is no outcome of an optimisation.
+static moray_status judge(enum ApplicationReturnStatus code, const struct session *session,
+                          const struct ipopt_logs *logs)
+{
+    const moray_nlp *nlp = session->nlp;
+    if (code == Insufficient_Memory ||
+        (stopped_early(session->info->outcome) && moray_ipopt_log_lacked_memory(&logs->errors)))
+        return moray_error(MORAY_MEMORY, "no memory to solve for %d variables and %d constraints, after %d iterations",
+                           nlp->n, nlp->m, session->info->iterations);
+    if (code == Invalid_Option)
+        return moray_error(MORAY_INPUT, "Ipopt refuses an option when it starts: is its linear solver there?");
+    return moray_ok();
+}
+
+static moray_status run(IpoptProblem problem, struct session *session, moray_iterate *iterate, struct ipopt_logs *logs,
+                        enum ApplicationReturnStatus *code)
+{
+    MORAY_TRY(set_up(problem, session, logs));
+    *code = IpoptSolve(problem, iterate->x, iterate->g, &iterate->objective, iterate->lambda, iterate->z_lower,
+                       iterate->z_upper, session);
+    session->info->outcome = outcome_of(*code);
     take_best(session, iterate);
     return moray_ok();
 }
@@ -198,18 +222,27 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
 static moray_status solve_with(struct session *session, moray_iterate *iterate)
 {
     const moray_nlp *nlp = session->nlp;
-    struct ipopt_timing timing = {0};
+    const bool alone = session->info->linear_solver != MORAY_LINEAR_OWN;
+    struct ipopt_logs logs = {0};
+    enum ApplicationReturnStatus code = Internal_Error;
     moray_status status =
         moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
+    if (alone)
+        moray_mumps_lock();
     // Ipopt copies the bounds.
     IpoptProblem problem = CreateIpoptProblem(
         nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
         nlp->nnz_jac, nlp->nnz_hess, 0, on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
     if (problem) {
-        status = run(problem, session, iterate, &timing);
-        FreeIpoptProblem(problem); // writes the rest of the log
+        status = run(problem, session, iterate, &logs, &code);
+        FreeIpoptProblem(problem); // writes the rest of the logs
+        if (!moray_failed(status))
+            status = judge(code, session, &logs);
     }
-    session->info->linear_seconds = moray_ipopt_timing_close(&timing);
+    if (alone)
+        moray_mumps_unlock();
+    session->info->linear_seconds = moray_ipopt_log_linear_seconds(&logs.timing);
+    moray_ipopt_logs_close(&logs);
     return status;
 }
 

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+#include "base/text.h"
 #include "ocp/refine.h"
 
 static const char *const families[] = {[MORAY_LOBATTO] = "lobatto", [MORAY_RADAU] = "radau", [MORAY_GAUSS] = "gauss"};
@@ -36,6 +38,7 @@ void moray_solution_write(const moray_solution *solution, FILE *file)
 {
     const struct transcription *t = solution->transcription;
     const moray_iterate *it = &solution->iterate;
+    const locale_t before = moray_c_locale_begin();
     fprintf(file, "moray-solution 1 %.*s\nscheme %s phases %d parameters %d events %d\n", name_length(t->ocp),
             t->ocp->name, families[t->layout.family], t->ocp->phases, t->ocp->ns, t->ocp->ne);
     write_meshes(file, &t->layout, t->ocp);
@@ -47,6 +50,7 @@ void moray_solution_write(const moray_solution *solution, FILE *file)
     for (int i = 0; i < t->nlp.m; i++)
         fprintf(file, "%.17g\n", it->lambda[i]);
     fprintf(file, "end\n");
+    moray_c_locale_end(before);
 }
 
 moray_status moray_solution_save(const moray_solution *solution, const char *path)
@@ -69,28 +73,34 @@ moray_status moray_solution_save(const moray_solution *solution, const char *pat
 // ---- Loading ----
 
 struct reader {
-    FILE *file;
-    const char *path;
-    int line;
-    char text[400];
+    moray_text text;
+    const char *line; // the present one, from its first character that is no blank
 };
 
 static moray_status damaged(const struct reader *r, const char *expected)
 {
-    return moray_error(MORAY_INPUT, "%s, line %d: %s expected", r->path, r->line, expected);
+    return moray_error(MORAY_INPUT, "%s, line %d: %s expected", moray_path_tail(r->text.path),
+                       r->line ? r->text.at : r->text.n + 1, expected);
 }
 
 static moray_status next_line(struct reader *r)
 {
-    r->line++;
-    return fgets(r->text, sizeof r->text, r->file) ? moray_ok() : damaged(r, "more");
+    r->line = moray_text_next(&r->text);
+    if (r->line)
+        r->line += strspn(r->line, " \t");
+    return r->line ? moray_ok() : damaged(r, "more");
 }
 
-// A line of n numbers.
+static bool is_end(const char *text)
+{
+    return text[strspn(text, " \t")] == 0;
+}
+
+// A line of n numbers and nothing else.
 static moray_status read_numbers(struct reader *r, int n, double *numbers)
 {
     MORAY_TRY(next_line(r));
-    char *at = r->text;
+    const char *at = r->line;
     for (int i = 0; i < n; i++) {
         char *end;
         numbers[i] = strtod(at, &end);
@@ -98,7 +108,7 @@ static moray_status read_numbers(struct reader *r, int n, double *numbers)
             return damaged(r, "a finite number");
         at = end;
     }
-    return moray_ok();
+    return is_end(at) ? moray_ok() : damaged(r, n == 1 ? "one number" : "fewer numbers");
 }
 
 // "moray-solution 1" and the name of the problem.
@@ -106,26 +116,29 @@ static moray_status read_name(struct reader *r, const moray_ocp *ocp)
 {
     int version, used = 0;
     MORAY_TRY(next_line(r));
-    if (sscanf(r->text, "moray-solution %d %n", &version, &used) != 1 || version != 1)
+    if (sscanf(r->line, "moray-solution %d %n", &version, &used) != 1 || version != 1)
         return damaged(r, "moray-solution 1");
-    r->text[strcspn(r->text, "\n")] = 0;
-    const char *name = r->text + used;
+    const char *name = r->line + used;
     if ((int)strlen(name) != name_length(ocp) || strncmp(name, ocp->name, strlen(name)) != 0)
-        return moray_error(MORAY_INPUT, "%s: is of problem %.80s, not of %.80s", r->path, name, ocp->name);
+        return moray_error(MORAY_INPUT, "%s: is of problem %.80s, not of %.80s", moray_path_tail(r->text.path), name,
+                           ocp->name);
     return moray_ok();
 }
 
 static moray_status read_head(struct reader *r, const moray_ocp *ocp, moray_family *family)
 {
     char scheme[20];
-    int phases, parameters, events;
+    int phases, parameters, events, used = 0;
     MORAY_TRY(read_name(r, ocp));
     MORAY_TRY(next_line(r));
-    if (sscanf(r->text, "scheme %19s phases %d parameters %d events %d", scheme, &phases, &parameters, &events) != 4)
+    if (sscanf(r->line, "scheme %19s phases %d parameters %d events %d%n", scheme, &phases, &parameters, &events,
+               &used) != 4 ||
+        !is_end(r->line + used))
         return damaged(r, "scheme, phases, parameters and events");
     if (phases != ocp->phases || parameters != ocp->ns || events != ocp->ne)
         return moray_error(MORAY_INPUT, "%s: has %d phases, %d parameters and %d events; problem %s has %d, %d and %d",
-                           r->path, phases, parameters, events, ocp->name, ocp->phases, ocp->ns, ocp->ne);
+                           moray_path_tail(r->text.path), phases, parameters, events, ocp->name, ocp->phases, ocp->ns,
+                           ocp->ne);
     for (int f = MORAY_LOBATTO; f <= MORAY_GAUSS; f++)
         if (strcmp(scheme, families[f]) == 0) {
             *family = (moray_family)f;
@@ -136,23 +149,25 @@ static moray_status read_head(struct reader *r, const moray_ocp *ocp, moray_fami
 
 static moray_status read_mesh(struct reader *r, const struct phase *phase, struct mesh *mesh)
 {
-    int nx, nu, nc, nq, intervals;
+    int nx, nu, nc, nq, intervals, used = 0;
     MORAY_TRY(next_line(r));
-    if (sscanf(r->text, "phase %d %d %d %d intervals %d", &nx, &nu, &nc, &nq, &intervals) != 5 || intervals < 1 ||
-        intervals > 1000000)
+    if (sscanf(r->line, "phase %d %d %d %d intervals %d%n", &nx, &nu, &nc, &nq, &intervals, &used) != 5 ||
+        !is_end(r->line + used) || intervals < 1 || intervals > 1000000)
         return damaged(r, "phase nx nu nc nq intervals k");
     if (nx != phase->nx || nu != phase->nu || nc != phase->nc || nq != phase->nq)
         return moray_error(MORAY_INPUT,
                            "%s: a phase of %d states, %d controls, %d path constraints and %d integrals; phase %s has "
                            "%d, %d, %d and %d",
-                           r->path, nx, nu, nc, nq, phase->name, phase->nx, phase->nu, phase->nc, phase->nq);
+                           moray_path_tail(r->text.path), nx, nu, nc, nq, phase->name, phase->nx, phase->nu, phase->nc,
+                           phase->nq);
     MORAY_TRY(moray_mesh_new(mesh, intervals));
     for (int k = 0; k < intervals; k++) {
         double numbers[2];
         MORAY_TRY(read_numbers(r, 2, numbers));
-        mesh->stages[k] = (int)numbers[0];
+        mesh->stages[k] = numbers[0] <= MORAY_MAX_STAGES ? (int)numbers[0] : 0;
         mesh->edge[k + 1] = numbers[1];
-        if (!(numbers[0] >= 1 && numbers[0] <= MORAY_MAX_STAGES) || !(mesh->edge[k + 1] > mesh->edge[k]))
+        if (!(numbers[0] >= 1 && numbers[0] <= MORAY_MAX_STAGES && numbers[0] == mesh->stages[k]) ||
+            !(mesh->edge[k + 1] > mesh->edge[k]))
             return damaged(r, "stages and a later end of the interval");
     }
     return mesh->edge[intervals] == 1 ? moray_ok() : damaged(r, "1 as the end of the last interval");
@@ -178,19 +193,20 @@ static moray_status read_iterate(struct reader *r, moray_solution *solution)
 {
     const moray_nlp *nlp = &solution->transcription->nlp;
     moray_iterate *it = &solution->iterate;
-    int outcome, n, m;
+    int outcome, n, m, used = 0;
     MORAY_TRY(next_line(r));
-    if (sscanf(r->text, "outcome %d iterations %d seconds %lf", &outcome, &solution->info.iterations,
-               &solution->info.seconds) != 3 ||
-        outcome < MORAY_NLP_SOLVED || outcome > MORAY_NLP_INVALID)
+    if (sscanf(r->line, "outcome %d iterations %d seconds %lf%n", &outcome, &solution->info.iterations,
+               &solution->info.seconds, &used) != 3 ||
+        !is_end(r->line + used) || outcome < MORAY_NLP_SOLVED || outcome > MORAY_NLP_INVALID)
         return damaged(r, "outcome, iterations and seconds");
     solution->info.outcome = (moray_nlp_outcome)outcome;
     MORAY_TRY(next_line(r));
-    if (sscanf(r->text, "objective %lf variables %d constraints %d", &it->objective, &n, &m) != 3)
+    if (sscanf(r->line, "objective %lf variables %d constraints %d%n", &it->objective, &n, &m, &used) != 3 ||
+        !is_end(r->line + used))
         return damaged(r, "objective, variables and constraints");
     if (n != nlp->n || m != nlp->m)
         return moray_error(MORAY_INPUT, "%s: has %d variables and %d constraints, the problem %d and %d on this mesh",
-                           r->path, n, m, nlp->n, nlp->m);
+                           moray_path_tail(r->text.path), n, m, nlp->n, nlp->m);
     for (int j = 0; j < n; j++) {
         double numbers[3];
         MORAY_TRY(read_numbers(r, 3, numbers));
@@ -199,7 +215,9 @@ static moray_status read_iterate(struct reader *r, moray_solution *solution)
     for (int i = 0; i < m; i++)
         MORAY_TRY(read_numbers(r, 1, &it->lambda[i]));
     MORAY_TRY(next_line(r));
-    return strcmp(r->text, "end\n") == 0 ? moray_ok() : damaged(r, "the end");
+    if (strncmp(r->line, "end", 3) != 0 || !is_end(r->line + 3))
+        return damaged(r, "the end");
+    return moray_text_next(&r->text) ? damaged(r, "nothing after the end") : moray_ok();
 }
 
 moray_status moray_complete_solution(moray_solution *solution)
@@ -219,25 +237,29 @@ moray_status moray_complete_solution(moray_solution *solution)
     return moray_ok();
 }
 
+static moray_status load(moray_solution *solution, const moray_ocp *ocp, const char *path)
+{
+    struct reader reader;
+    moray_status status = moray_text_read(&reader.text, path, "solution");
+    if (!moray_failed(status))
+        status = read_transcription(&reader, ocp, solution);
+    if (!moray_failed(status))
+        status = read_iterate(&reader, solution);
+    moray_text_free(&reader.text);
+    return moray_failed(status) ? status : moray_complete_solution(solution);
+}
+
 moray_status moray_solution_load(moray_solution **result, const moray_ocp *ocp, const moray_settings *settings,
                                  const char *path)
 {
-    struct reader reader = {.path = path};
     *result = NULL;
     moray_solution *solution = calloc(1, sizeof *solution);
     if (!solution)
         return moray_error(MORAY_MEMORY, "no memory for a solution");
     solution->settings = settings ? *settings : moray_settings_default();
-    reader.file = fopen(path, "r");
-    moray_status status = reader.file ? moray_ok() : moray_error(MORAY_IO, "%s: %s", path, strerror(errno));
-    if (!moray_failed(status))
-        status = read_transcription(&reader, ocp, solution);
-    if (!moray_failed(status))
-        status = read_iterate(&reader, solution);
-    if (!moray_failed(status))
-        status = moray_complete_solution(solution);
-    if (reader.file)
-        fclose(reader.file);
+    const locale_t before = moray_c_locale_begin();
+    const moray_status status = load(solution, ocp, path);
+    moray_c_locale_end(before);
     if (moray_failed(status))
         moray_solution_free(solution);
     else

@@ -27,4 +27,8 @@ void moray_layout_column_name(const struct layout *layout, const moray_ocp *ocp,
 void moray_layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text,
                            int size);
 
+// Error: MORAY_INPUT naming two of a scope that have the same name, or one that is empty, too long or would break a
+// file.
+moray_status moray_check_names(const moray_ocp *ocp);
+
 #endif

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "ocp/names.h"
 #include "ocp/probe.h"
 
 double moray_bounds_middle(moray_bounds bounds)
@@ -117,9 +119,18 @@ static moray_status check_phase(const struct phase *phase, const moray_phase_spe
     return moray_ok();
 }
 
-static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, struct phase *phase)
+// Several without a name are told apart by their numbers.
+static const char *copy_phase_name(moray_ocp *ocp, const moray_phase_spec *spec, int p)
 {
-    phase->name = copy_text(ocp, spec->name ? spec->name : "phase");
+    char number[12];
+    snprintf(number, sizeof number, "%d", p + 1);
+    return copy_text(ocp, spec->name ? spec->name : ocp->phases > 1 ? number : "phase");
+}
+
+static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, int p)
+{
+    struct phase *phase = &ocp->phase[p];
+    phase->name = copy_phase_name(ocp, spec, p);
     if (!phase->name)
         return no_memory();
     phase->nx = spec->nx, phase->nu = spec->nu, phase->nc = spec->nc, phase->nq = spec->nq, phase->ns = ocp->ns;
@@ -174,7 +185,7 @@ static moray_status copy_spec(moray_ocp *ocp, const moray_ocp_spec *spec)
     if (!ocp->phase || !ocp->ends || !ocp->real_ends)
         return no_memory();
     for (int p = 0; p < spec->phases; p++)
-        MORAY_TRY(copy_phase(ocp, &spec->phase[p], &ocp->phase[p]));
+        MORAY_TRY(copy_phase(ocp, &spec->phase[p], p));
     const int inputs = moray_endpoint_inputs(ocp);
     if (spec->endpoint_map && (spec->endpoint_map->n_in != inputs || spec->endpoint_map->n_out != 1 + spec->ne))
         return moray_error(MORAY_INPUT, "problem %s: the endpoint map has %d inputs and %d outputs, needs %d and %d",
@@ -189,6 +200,8 @@ moray_status moray_ocp_new(moray_ocp **result, const moray_ocp_spec *spec)
     if (!ocp)
         return no_memory();
     moray_status status = copy_spec(ocp, spec);
+    if (!moray_failed(status))
+        status = moray_check_names(ocp);
     if (!moray_failed(status))
         status = moray_wrap_functions(ocp, spec);
     if (moray_failed(status))

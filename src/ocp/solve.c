@@ -95,6 +95,8 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
                                 .print_level = settings->print_level,
                                 .linear_solver = settings->linear_solver,
                                 .timing = settings->timing,
+                                .ipopt = settings->ipopt,
+                                .n_ipopt = settings->n_ipopt,
                                 .progress = settings->progress,
                                 .observer = settings->observer};
 }

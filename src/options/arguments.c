@@ -29,8 +29,13 @@ static moray_status take_set(reading *r, const char *text)
     const char *equals = strchr(text, '=');
     if (!equals || equals == text)
         return moray_error(MORAY_INPUT, "--set %.60s: must be KEY=VALUE", *text ? text : "(empty)");
+    const moray_option *row = moray_option_find_ipopt(r->options, text);
+    if (row) {
+        add_assignment(r, row, false, strchr(text, '.') + 1); // KEY=VALUE
+        return moray_ok();
+    }
     snprintf(key, sizeof key, "%.*s", (int)(equals - text), text);
-    const moray_option *row = moray_option_find(r->options, key);
+    row = moray_option_find(r->options, key);
     if (!row)
         return moray_option_unknown(r->options, key);
     add_assignment(r, row, false, equals + 1);

@@ -8,30 +8,34 @@
 static bool has(const moray_program *program, const moray_option *shared)
 {
     for (const char *const *flag = program->without; flag && *flag; flag++)
-        if (shared->flag && strcmp(shared->flag, *flag) == 0)
+        if ((shared->flag && strcmp(shared->flag, *flag) == 0) ||
+            (shared->type == MORAY_OPTION_IPOPT && strcmp(*flag, "tol") == 0)) // a program that solves nothing
             return false;
     return true;
 }
 
+static void add_group(moray_options *options, const moray_program *program, const moray_option_group *group)
+{
+    for (int i = 0; i < group->table->n; i++)
+        if (has(program, &group->table->rows[i])) {
+            options->row[options->n] = group->table->rows[i];
+            options->row[options->n++].offset += group->at;
+        }
+}
+
 moray_status moray_options_new(moray_options *options, const moray_program *program)
 {
-    int n_robot, n_solver;
-    const moray_option *robot = moray_robot_rows(&n_robot), *solver = moray_solver_rows(&n_solver);
-    if (program->no_robot)
-        n_robot = 0;
-    options->row = calloc((size_t)(program->n_options + n_robot + n_solver), sizeof *options->row);
+    int room = program->n_options + moray_common_table.n;
+    for (int i = 0; i < program->n_groups; i++)
+        room += program->groups[i].table->n;
+    *options = (moray_options){.row = calloc((size_t)room, sizeof *options->row), .words = program->words};
     if (!options->row)
         return moray_error(MORAY_MEMORY, "no memory for the table of options");
-    options->n = 0;
-    options->words = program->words;
     for (int i = 0; i < program->n_options; i++)
         options->row[options->n++] = program->options[i];
-    for (int i = 0; i < n_robot; i++)
-        if (has(program, &robot[i]))
-            options->row[options->n++] = robot[i];
-    for (int i = 0; i < n_solver; i++)
-        if (has(program, &solver[i]))
-            options->row[options->n++] = solver[i];
+    for (int i = 0; i < program->n_groups; i++)
+        add_group(options, program, &program->groups[i]);
+    add_group(options, program, &(moray_option_group){&moray_common_table, 0});
     return moray_ok();
 }
 

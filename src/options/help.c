@@ -42,7 +42,8 @@ static void write_name(const moray_option *row, bool flag, char *name, size_t si
     static const char *const by_type[] = {
         [MORAY_OPTION_LIMIT] = "X|none",   [MORAY_OPTION_INT] = "N",       [MORAY_OPTION_REAL] = "X",
         [MORAY_OPTION_BOOL] = "yes|no",    [MORAY_OPTION_CHOICE] = "NAME", [MORAY_OPTION_TEXT] = "TEXT",
-        [MORAY_OPTION_RANGE] = "LOW:HIGH", [MORAY_OPTION_PAIR] = "X,Y",
+        [MORAY_OPTION_RANGE] = "LOW:HIGH", [MORAY_OPTION_PAIR] = "X,Y",    [MORAY_OPTION_INI] = "FILE",
+        [MORAY_OPTION_IPOPT] = "VALUE",
     };
     const char *argument = row->argument ? row->argument : by_type[row->type];
     if (flag && row->type == MORAY_OPTION_BOOL)
@@ -55,7 +56,8 @@ static void write_name(const moray_option *row, bool flag, char *name, size_t si
 static void print_row(FILE *file, const moray_option *row, bool flag, const void *settings)
 {
     char name[80], text[700], allowed[MORAY_SHOWN_SIZE] = "", given[MORAY_SHOWN_SIZE] = "";
-    if (row->type != MORAY_OPTION_TEXT && row->type != MORAY_OPTION_BOOL)
+    if (row->type != MORAY_OPTION_TEXT && row->type != MORAY_OPTION_BOOL && row->type != MORAY_OPTION_INI &&
+        row->type != MORAY_OPTION_IPOPT)
         moray_option_allowed(row, allowed);
     const bool shown = row->key && moray_option_default(row, settings, given);
     snprintf(text, sizeof text, "%s%s%s%s%s", row->help, *allowed ? "; " : "", allowed, shown ? "; default " : "",
@@ -83,11 +85,10 @@ static bool is_first_of_section(const moray_options *options, int at)
     return true;
 }
 
-static void print_section(FILE *file, const moray_options *options, const void *settings, const char *section,
-                          bool in_files)
+static void print_section(FILE *file, const moray_options *options, const void *settings, const char *section)
 {
     char name[80], text[80];
-    fprintf(file, in_files ? "\nKeys for --set, in INI files under [%s]:\n" : "\nKeys of the %s for --set:\n", section);
+    fprintf(file, "\nKeys for --set, in INI files under [%s]:\n", section);
     for (int i = 0; i < options->n; i++) {
         const moray_option *row = &options->row[i];
         if (!row->key || strcmp(row->section, section) != 0)
@@ -132,10 +133,9 @@ moray_status moray_app_help(const moray_program *program, const void *settings, 
     print_flags(file, &options, settings);
     for (int i = 0; i < options.n; i++)
         if (options.row[i].key && is_first_of_section(&options, i))
-            print_section(file, &options, settings, options.row[i].section, !program->no_robot);
+            print_section(file, &options, settings, options.row[i].section);
     fputc('\n', file);
-    if (!program->no_robot)
-        print_wrapped(file, "The INI file overrides the defaults, the command line overrides both.", 0, 0);
+    print_wrapped(file, "The INI file overrides the defaults, the command line overrides both.", 0, 0);
     print_wrapped(file,
                   "Exit status: 0 solved and certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 "
                   "interrupted.",

@@ -1,52 +1,55 @@
 // SPDX-License-Identifier: MIT
 #include "options/options.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <ini.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+
+#include "base/text.h"
 
 typedef struct ini_state {
-    FILE *file;
-    const char *path;
-    int line;
+    moray_text text;
     const moray_options *options;
     void *settings;
-    int *set_in_line; // of each row; 0: not yet
+    int *set_in_line;       // of each row; 0: not yet
+    moray_ipopt_list ipopt; // what this file has set
     moray_status status;
 } ini_state;
 
-// The end of a path that is too long for a message.
-static const char *tail(const char *path)
-{
-    enum { shown = 100 };
-    const size_t length = strlen(path);
-    return length > shown ? path + length - shown : path;
-}
-
-// inih's reader. Counts lines for the messages, and takes leading blanks away: inih would join an indented line to the
-// one before.
+// inih's reader. Takes leading blanks away: inih would join an indented line to the one before.
 static char *next_line(char *line, int size, void *self)
 {
     ini_state *state = self;
-    if (moray_failed(state->status) || !fgets(line, size, state->file))
+    moray_text *text = &state->text;
+    if (moray_failed(state->status) || text->at == text->n)
         return NULL;
-    state->line++;
-    const size_t length = strlen(line);
-    if (length == 0 || (line[length - 1] != '\n' && !feof(state->file))) {
-        state->status = moray_error(MORAY_INPUT, "%s:%d: longer than %d characters, or not text", tail(state->path),
-                                    state->line, size - 2);
+    const char *from = text->line[text->at++];
+    from += strspn(from, " \t");
+    if (strlen(from) >= (size_t)size) {
+        state->status =
+            moray_text_error(text, text->at, moray_error(MORAY_INPUT, "longer than %d characters", size - 1));
         return NULL;
     }
-    const size_t blanks = strspn(line, " \t");
-    memmove(line, line + blanks, length - blanks + 1);
-    return line;
+    return strcpy(line, from);
+}
+
+static moray_status set_ipopt(ini_state *state, const char *key, const char *value)
+{
+    char text[2 * MORAY_IPOPT_SIZE];
+    snprintf(text, sizeof text, "ipopt.%s=%s", key, value);
+    const moray_option *row = moray_option_find_ipopt(state->options, text);
+    if (!row)
+        return moray_option_unknown(state->options, key);
+    if (moray_ipopt_list_has(&state->ipopt, key))
+        return moray_error(MORAY_INPUT, "%.60s is given twice", key);
+    MORAY_TRY(moray_ipopt_list_set(&state->ipopt, strchr(text, '.') + 1));
+    return moray_option_read(row, key, strchr(text, '.') + 1, state->settings);
 }
 
 static moray_status set_key(ini_state *state, const char *section, const char *key, const char *value)
 {
+    if (strcmp(section, "ipopt") == 0)
+        return set_ipopt(state, key, value);
     const moray_option *row = moray_option_find(state->options, key);
     if (!row)
         return moray_option_unknown(state->options, key);
@@ -55,7 +58,7 @@ static moray_status set_key(ini_state *state, const char *section, const char *k
     int *set_in_line = &state->set_in_line[row - state->options->row];
     if (*set_in_line)
         return moray_error(MORAY_INPUT, "%s is given twice, first in line %d", key, *set_in_line);
-    *set_in_line = state->line;
+    *set_in_line = state->text.at;
     return moray_option_read(row, key, value, state->settings);
 }
 
@@ -67,7 +70,7 @@ static int take_pair(void *self, const char *section, const char *key, const cha
         return 0;
     const moray_status status = set_key(state, section, key, value);
     if (moray_failed(status))
-        state->status = moray_error(status.code, "%s:%d: %s", tail(state->path), state->line, status.text);
+        state->status = moray_text_error(&state->text, state->text.at, status);
     return !moray_failed(status);
 }
 
@@ -75,34 +78,26 @@ static int take_pair(void *self, const char *section, const char *key, const cha
 static moray_status parse(ini_state *state)
 {
     const int bad_line = ini_parse_stream(next_line, state, take_pair, state);
-    const bool malformed = bad_line > 0 && (!moray_failed(state->status) || bad_line < state->line);
+    const bool malformed = bad_line > 0 && (!moray_failed(state->status) || bad_line < state->text.at);
     if (malformed)
-        return moray_error(MORAY_INPUT, "%s:%d: neither [section] nor KEY = VALUE", tail(state->path), bad_line);
-    if (moray_failed(state->status))
-        return state->status;
-    if (bad_line < 0)
-        return moray_error(MORAY_MEMORY, "%s: no memory to read it", tail(state->path));
-    if (ferror(state->file))
-        return moray_error(MORAY_IO, "%s: cannot be read: %s", tail(state->path), strerror(errno));
-    return moray_ok();
+        return moray_text_error(&state->text, bad_line, moray_error(MORAY_INPUT, "neither [section] nor KEY = VALUE"));
+    if (!moray_failed(state->status) && bad_line < 0)
+        return moray_error(MORAY_MEMORY, "%s: no memory to read it", moray_path_tail(state->text.path));
+    return state->status;
 }
 
-moray_status moray_ini_read(const moray_options *options, const char *path, void *settings)
+moray_status moray_ini_read(const moray_options *options, const char *flag, const char *path, void *settings)
 {
-    FILE *file = fopen(path, "r");
-    if (!file)
-        return moray_error(MORAY_IO, "robot file %s: cannot be opened: %s", tail(path), strerror(errno));
-    struct stat about;
-    moray_status status = moray_ok();
-    ini_state state = {.file = file, .path = path, .options = options, .settings = settings, .status = status};
+    char what[64];
+    snprintf(what, sizeof what, "%s file", flag);
+    ini_state state = {.options = options, .settings = settings, .status = moray_ok()};
     state.set_in_line = calloc((size_t)options->n, sizeof *state.set_in_line);
-    if (!state.set_in_line)
-        status = moray_error(MORAY_MEMORY, "%s: no memory to read it", tail(path));
-    else if (fstat(fileno(file), &about) == 0 && S_ISDIR(about.st_mode))
-        status = moray_error(MORAY_IO, "robot file %s: is a directory, not an INI file", tail(path));
-    else
+    moray_status status = state.set_in_line
+                              ? moray_text_read(&state.text, path, what)
+                              : moray_error(MORAY_MEMORY, "%s: no memory to read it", moray_path_tail(path));
+    if (!moray_failed(status))
         status = parse(&state);
+    moray_text_free(&state.text);
     free(state.set_in_line);
-    fclose(file);
     return status;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "moray/app/program.h"
+#include "moray/app/options.h"
 
 #include <errno.h>
 #include <limits.h>

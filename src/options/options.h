@@ -4,9 +4,9 @@
 #ifndef SRC_OPTIONS_OPTIONS_H
 #define SRC_OPTIONS_OPTIONS_H
 
-#include "moray/app/program.h"
+#include "moray/app/options.h"
 
-// The program's rows followed by the shared ones.
+// The program's rows followed by those of its groups and of moray_common, all from the start of its settings.
 typedef struct moray_options {
     moray_option *row;
     int n;
@@ -16,16 +16,19 @@ typedef struct moray_options {
 // Error: MORAY_MEMORY. Free row with free().
 moray_status moray_options_new(moray_options *options, const moray_program *program);
 
-// The shared rows about the robot, and all other shared rows; n: how many.
-const moray_option *moray_robot_rows(int *n);
-const moray_option *moray_solver_rows(int *n);
-
-// Makes the robot of geometry and direct coefficients. Error: MORAY_INPUT.
-moray_status moray_common_make_robot(moray_common *common);
+extern const moray_option_table moray_common_table; // the rows of moray_common
 
 // The row with this key; NULL when there is none, and the error that then names the nearest key.
 const moray_option *moray_option_find(const moray_options *options, const char *key);
 moray_status moray_option_unknown(const moray_options *options, const char *key);
+
+// The row for ipopt.KEY, where the program has one; `text` begins with the key.
+const moray_option *moray_option_find_ipopt(const moray_options *options, const char *text);
+
+// Sets one option of Ipopt, given as KEY=VALUE, in the list; a later value takes the place of an earlier one. Error:
+// MORAY_INPUT naming it.
+moray_status moray_ipopt_list_set(moray_ipopt_list *list, const char *text);
+bool moray_ipopt_list_has(const moray_ipopt_list *list, const char *key);
 
 // Number of characters to insert, delete or replace to make b of a; texts beyond 63 bytes are infinitely far (INT_MAX).
 int moray_edit_distance(const char *a, const char *b);
@@ -69,7 +72,7 @@ typedef struct moray_arguments {
 // Values point into argv. Error: MORAY_INPUT, MORAY_MEMORY. free(item) in any case.
 moray_status moray_arguments_read(moray_arguments *arguments, const moray_options *options, int argc, char **argv);
 
-// Sets the keys that the INI file gives. Error: MORAY_INPUT or MORAY_IO, with file and line.
-moray_status moray_ini_read(const moray_options *options, const char *path, void *settings);
+// Sets the keys that the INI file of --flag gives. Error: MORAY_INPUT or MORAY_IO, with file and line.
+moray_status moray_ini_read(const moray_options *options, const char *flag, const char *path, void *settings);
 
 #endif

@@ -4,9 +4,10 @@
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/number.h"
 
 static bool allowed(const moray_option *row, double value)
 {
@@ -36,9 +37,8 @@ static bool read_int(const moray_option *row, const char *text, int *value)
 // A number in the row's unit, stored scaled.
 static bool read_real(const moray_option *row, const char *text, double *value)
 {
-    char *end;
-    const double number = strtod(text, &end);
-    if (end == text || !only_blanks(end) || !isfinite(number) || !allowed(row, number))
+    double number;
+    if (!moray_number_read(text, &number) || !allowed(row, number))
         return false;
     *value = number * moray_option_scale(row);
     return true;
@@ -82,11 +82,23 @@ static bool read_reals(const moray_option *row, const char *text, double *value)
     return read_two(row, text, value);
 }
 
+// Whether text is one of the names in "name|other".
+static bool is_named(const char *names, const char *text)
+{
+    const size_t length = strlen(text);
+    for (const char *name = names; name; name = strchr(name, '|')) {
+        name += *name == '|';
+        if (strcspn(name, "|") == length && strncmp(name, text, length) == 0)
+            return true;
+    }
+    return false;
+}
+
 // Position of text in the NULL-terminated list, or -1.
 static int position(const char *const *list, const char *text)
 {
     for (int i = 0; list[i]; i++)
-        if (strcmp(list[i], text) == 0)
+        if (is_named(list[i], text))
             return i;
     return -1;
 }
@@ -129,6 +141,9 @@ static bool read_value(const moray_option *row, const char *text, char *to)
         return good;
     case MORAY_OPTION_TEXT:
         return read_text(row, text, to);
+    case MORAY_OPTION_IPOPT:
+    case MORAY_OPTION_INI:
+        return *text != 0;
     case MORAY_OPTION_REAL:
     case MORAY_OPTION_LIMIT:
     case MORAY_OPTION_RANGE:
@@ -142,6 +157,8 @@ static bool read_value(const moray_option *row, const char *text, char *to)
 
 moray_status moray_option_read(const moray_option *row, const char *name, const char *text, void *settings)
 {
+    if (row->type == MORAY_OPTION_IPOPT)
+        return moray_ipopt_list_set((moray_ipopt_list *)((char *)settings + row->offset), text);
     if (read_value(row, text, (char *)settings + row->offset))
         return moray_ok();
     char must[MORAY_SHOWN_SIZE];

@@ -36,13 +36,20 @@ static void show_number(const moray_option *row, const char *noun, char *text, s
         snprintf(text, size, "a finite number%s%s", row->unit ? " in " : "", unit);
 }
 
+// Without its other names.
+static int name_length(const char *choice)
+{
+    return (int)strcspn(choice, "|");
+}
+
 static void show_choices(const moray_option *row, char *text, size_t size)
 {
     size_t used = 0;
     text[0] = 0;
     for (int i = 0; row->choices[i] && used < size; i++) {
         const char *joint = i == 0 ? "" : row->choices[i + 1] ? ", " : " or ";
-        used += (size_t)snprintf(text + used, size - used, "%s%s", joint, row->choices[i]);
+        used +=
+            (size_t)snprintf(text + used, size - used, "%s%.*s", joint, name_length(row->choices[i]), row->choices[i]);
     }
 }
 
@@ -63,6 +70,10 @@ void moray_option_allowed(const moray_option *row, char text[MORAY_SHOWN_SIZE])
         return;
     case MORAY_OPTION_TEXT:
         snprintf(text, MORAY_SHOWN_SIZE, "a text of 1 to %zu bytes", row->size - 1);
+        return;
+    case MORAY_OPTION_IPOPT:
+    case MORAY_OPTION_INI:
+        snprintf(text, MORAY_SHOWN_SIZE, "the path of a file");
         return;
     case MORAY_OPTION_LIMIT:
         snprintf(text, MORAY_SHOWN_SIZE, "none or %s", number);
@@ -112,8 +123,10 @@ bool moray_option_default(const moray_option *row, const void *settings, char te
         memcpy(&whole, at, sizeof whole);
         if (row->type == MORAY_OPTION_INT)
             snprintf(text, MORAY_SHOWN_SIZE, "%d", whole);
+        else if (whole < 0)
+            return false;
         else
-            snprintf(text, MORAY_SHOWN_SIZE, "%s", row->choices[whole]);
+            snprintf(text, MORAY_SHOWN_SIZE, "%.*s", name_length(row->choices[whole]), row->choices[whole]);
         return true;
     case MORAY_OPTION_BOOL:
         memcpy(&yes, at, sizeof yes);
@@ -127,6 +140,9 @@ bool moray_option_default(const moray_option *row, const void *settings, char te
     case MORAY_OPTION_RANGE:
     case MORAY_OPTION_PAIR:
         return show_reals(row, at, text);
+    case MORAY_OPTION_IPOPT:
+    case MORAY_OPTION_INI:
+        break;
     }
     return false;
 }

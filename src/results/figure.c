@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "base/number.h"
 #include "results/results.h"
 
 #include <errno.h>
@@ -138,6 +139,7 @@ static void write_log_axis(FILE *script, const moray_figure *figure, int axis)
 static void write_script(FILE *script, const moray_figure *figure)
 {
     const int usual = 4, extra = figure->n_curves > usual ? 18 * (figure->n_curves - usual) : 0; // room for the key
+    const locale_t before = moray_c_locale_begin();
     fprintf(script, "set terminal svg noenhanced size 720,%d font 'Helvetica,13' background '#ffffff'\n", 440 + extra);
     fputs("set grid lc rgb '#d0d0d0' lt 1 lw 0.5\nset border 3\nset tics nomirror\nset key outside below height 1\n"
           "set offsets graph 0, graph 0, graph 0.03, graph 0.03\n",
@@ -156,6 +158,7 @@ static void write_script(FILE *script, const moray_figure *figure)
     for (int i = 0; i < figure->n_curves; i++)
         write_curve(script, &figure->curves[i], i);
     fputc('\n', script);
+    moray_c_locale_end(before);
 }
 
 // Runs gnuplot from script to picture, both as open files, so that no path passes through it. Returns 0 or errno, and

@@ -2,15 +2,21 @@
 #include "results/results.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "base/number.h"
 
 const char *moray_table_number(double value, char text[32])
 {
+    const locale_t before = moray_c_locale_begin();
     if (isnan(value))
         text[0] = 0;
     else if (value == round(value) && fabs(value) < 1e9)
         snprintf(text, 32, "%.0f", value + 0.0); // -0 becomes 0
     else
         snprintf(text, 32, "%.4g", value);
+    moray_c_locale_end(before);
     return text;
 }
 
@@ -79,4 +85,21 @@ void moray_table_print(const moray_table *table, FILE *file)
             cell[j] = moray_table_cell(&table->rows[i], j, text[j]);
         print_line(file, table->rows[i].label, label, cell, column, table->n_columns, table->rows[i].unit);
     }
+}
+
+void moray_tables_print(const moray_table *tables, int n, FILE *file)
+{
+    for (int k = 0; k < n; k++) {
+        moray_table_print(&tables[k], file);
+        fputc('\n', file);
+    }
+}
+
+void moray_text_add(char *text, size_t size, const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
 }

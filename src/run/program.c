@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "options/options.h"
+#include "moray/app/program.h"
 
 #include <ctype.h>
-#include <stdlib.h>
-
-const char *moray_version(void)
-{
-    return MORAY_VERSION;
-}
+#include <errno.h>
+#include <fcntl.h>
+#include <locale.h>
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
 
 moray_exit moray_exit_of(moray_code code)
 {
@@ -27,67 +27,44 @@ moray_exit moray_exit_of(moray_code code)
     return MORAY_EXIT_NOT_SOLVED;
 }
 
-static moray_status assign(const moray_options *options, const moray_arguments *arguments, void *settings)
-{
-    for (int i = 0; i < arguments->n; i++) {
-        const moray_assignment *item = &arguments->item[i];
-        char name[64];
-        if (!item->row) {
-            moray_word_mark(options->words, item->value, settings);
-            continue;
-        }
-        snprintf(name, sizeof name, "%s%s", item->by_flag ? "--" : "",
-                 item->by_flag ? item->row->flag : item->row->key);
-        MORAY_TRY(moray_option_read(item->row, name, item->value, settings));
-    }
-    return moray_ok();
-}
-
-// The command line is assigned before the file, to know which file, and after it, to override it.
-static moray_status fill(const moray_options *options, const moray_arguments *arguments, void *settings)
-{
-    moray_common *common = settings;
-    MORAY_TRY(assign(options, arguments, settings));
-    if (options->words)
-        MORAY_TRY(moray_words_check(options->words, settings));
-    if (common->robot_file[0])
-        MORAY_TRY(moray_ini_read(options, common->robot_file, settings));
-    MORAY_TRY(assign(options, arguments, settings));
-    return moray_common_make_robot(common);
-}
-
-moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
-                             moray_request *request)
-{
-    moray_common *common = settings;
-    moray_options options;
-    moray_arguments arguments;
-    MORAY_TRY(moray_options_new(&options, program));
-    moray_status status = moray_arguments_read(&arguments, &options, argc, argv);
-    *request = arguments.request;
-    if (!moray_failed(status) && *request == MORAY_REQUEST_RUN) {
-        common->argc = argc;
-        common->argv = argv;
-        status = fill(&options, &arguments, settings);
-    }
-    free(arguments.item);
-    free(options.row);
-    return status;
-}
-
 static moray_status answer(const moray_program *program, const void *settings, moray_request request)
 {
     if (request == MORAY_REQUEST_HELP)
         return moray_app_help(program, settings, stdout);
-    if (printf("%s (moray) %s\n", program->name, moray_version()) < 0 || fflush(stdout))
-        return moray_error(MORAY_IO, "the version cannot be written");
+    printf("%s (moray) %s\n", program->name, moray_version());
     return moray_ok();
+}
+
+static _Thread_local locale_t before_start; // of the host; 0: not started
+
+// In the place of a standard stream that is closed, a file would be opened and take what is meant for the stream.
+static void hold_standard_streams(void)
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) < 0)
+            return;
+}
+
+static moray_status finish_standard_output(void)
+{
+    errno = 0;
+    bool failed = fflush(stdout) != 0 || ferror(stdout);
+    const int copy = failed ? -1 : dup(STDOUT_FILENO); // closing tells what a file system found late
+    if (copy >= 0)
+        failed = close(copy) != 0;
+    if (!failed)
+        return moray_ok();
+    return moray_error(MORAY_IO, "standard output cannot be written%s%s", errno ? ": " : "",
+                       errno ? strerror(errno) : "");
 }
 
 bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code)
 {
     moray_common *common = settings;
     moray_request request;
+    hold_standard_streams();
+    signal(SIGCHLD, SIG_DFL); // a parent that ignores it hands that on, and no child could be waited for
+    before_start = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); // numbers have points, read and written
     moray_status status = moray_app_parse(program, argc, argv, settings, &request);
     if (!moray_failed(status) && request != MORAY_REQUEST_RUN)
         status = answer(program, settings, request);
@@ -104,6 +81,11 @@ int moray_app_end(const moray_program *program, void *settings, moray_status sta
     moray_common *common = settings;
     moray_output_free(common->output);
     common->output = NULL;
+    const moray_status printed = finish_standard_output();
+    if (moray_failed(printed))
+        status = printed;
+    uselocale(before_start);
+    before_start = (locale_t)0;
     if (moray_failed(status)) {
         for (char *c = status.text; *c; c++)
             if (iscntrl((unsigned char)*c))

@@ -8,6 +8,9 @@
 
 // ---- Options -------------------------------------------------------------------------------------------------------
 
+_Static_assert(MORAY_LINEAR_MUMPS == 0 && MORAY_LINEAR_OWN == 1 && MORAY_LINEAR_MA57 == 2,
+               "the choices of linear_solver in this order");
+
 static const moray_option own_rows[] = {
     {.section = "solver",
      .key = "mesh_tol",
@@ -90,6 +93,8 @@ static moray_settings settings_of(app_run *run)
     settings.intervals = run->common.intervals;
     settings.tolerance = run->common.tol;
     settings.linear_solver = run->common.linear_solver;
+    settings.ipopt = run->common.ipopt.at;
+    settings.n_ipopt = run->common.ipopt.n;
     settings.mesh_tolerance = run->mesh_tol;
     settings.max_refinements = run->refinements;
     settings.max_iterations = run->max_iterations;
@@ -215,8 +220,7 @@ int moray_app_run(const moray_app *app, int argc, char **argv)
     const moray_program program = {.name = run.name,
                                    .summary = app->summary ? app->summary : "Solves an optimal-control problem.",
                                    .options = rows,
-                                   .n_options = own_count + app->n_constants,
-                                   .no_robot = true};
+                                   .n_options = own_count + app->n_constants};
     int exit_code;
     if (app->n_constants > MORAY_APP_CONSTANTS)
         return moray_app_end(

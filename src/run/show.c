@@ -198,14 +198,12 @@ static void json_phase(moray_json *json, const app_run *run, int p)
     moray_json_close(json);
 }
 
-static moray_json *make_json(const app_run *run)
+static void summarise(const void *found, moray_json *json)
 {
+    const app_run *run = found;
     const moray_ocp_spec *spec = run->app->spec;
     const bool solved = moray_solution_info(run->solution)->outcome == MORAY_NLP_SOLVED;
-    moray_json *json = moray_json_new();
     char name[MORAY_ENTRY_SIZE];
-    moray_json_text(json, "problem", run->name);
-    moray_json_text(json, "version", moray_version());
     moray_json_text(json, "scheme", run->common.scheme);
     moray_json_number(json, "intervals", run->common.intervals);
     moray_json_open(json, "constants");
@@ -226,36 +224,23 @@ static moray_json *make_json(const app_run *run)
     json_meshes(json, run->solution);
     moray_certificate_to_json(json, run->certified ? &run->certificate : NULL);
     moray_json_text(json, "diagnosis", solved ? NULL : moray_solution_diagnosis(run->solution));
-    return json;
 }
 
 // ---- Everything ----------------------------------------------------------------------------------------------------
 
-static moray_status write_files(const app_run *run, const run_tables *tables, const moray_json *json)
+static moray_status write(const void *found, moray_output *output)
 {
-    FILE *file;
-    MORAY_TRY(moray_output_file(run->common.output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(moray_run_write_trajectory(run));
-    MORAY_TRY(moray_run_write_costates(run));
-    const moray_report report = {.title = run->name,
-                                 .text = moray_solution_diagnosis(run->solution),
-                                 .tables = tables->table,
-                                 .n_tables = tables->n,
-                                 .argc = run->common.argc,
-                                 .argv = run->common.argv};
-    MORAY_TRY(moray_output_report(run->common.output, &report));
-    return moray_output_commit(run->common.output);
+    (void)output;
+    MORAY_TRY(moray_run_write_trajectory(found));
+    return moray_run_write_costates(found);
 }
 
-static void print_tables(const app_run *run, const run_tables *tables)
+static void print(const void *found, const moray_report *report)
 {
-    printf("%s\n\n", run->name);
-    for (int k = 0; k < tables->n; k++) {
-        moray_table_print(&tables->table[k], stdout);
-        printf("\n");
-    }
-    printf("%s", moray_solution_diagnosis(run->solution));
+    (void)found;
+    printf("%s\n\n", report->title);
+    moray_tables_print(report->tables, report->n_tables, stdout);
+    printf("%s", report->text);
 }
 
 moray_status moray_run_show(app_run *run)
@@ -264,13 +249,14 @@ moray_status moray_run_show(app_run *run)
     if (moray_solution_info(run->solution)->outcome == MORAY_NLP_INTERRUPTED)
         MORAY_TRY(moray_iterate_keep(&run->common, run->name, run->solution, run->kept));
     MORAY_TRY(moray_run_tables_new(&tables, run));
-    moray_json *json = make_json(run);
-    moray_status status = run->common.output ? write_files(run, &tables, json) : moray_ok();
-    if (!moray_failed(status) && run->common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print_tables(run, &tables);
-    moray_json_free(json);
+    const moray_report report = {.title = run->name,
+                                 .text = moray_solution_diagnosis(run->solution),
+                                 .tables = tables.table,
+                                 .n_tables = tables.n};
+    const moray_status status = moray_app_show(
+        &run->common,
+        &(moray_results){
+            .name = run->name, .found = run, .summary = summarise, .print = print, .write = write, .report = &report});
     moray_run_tables_free(&tables);
     return status;
 }

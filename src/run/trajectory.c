@@ -142,8 +142,8 @@ moray_status moray_run_write_trajectory(const app_run *run)
         status = moray_track_write(&t, "trajectory.csv");
     for (int p = 0; p < run->app->spec->phases && !moray_failed(status) && !moray_failed(figure); p++)
         figure = draw_phase(&t, p);
-    if (moray_failed(figure) && !run->common.quiet)
-        fprintf(stderr, "%s: no figure: %s\n", run->name, figure.text);
+    if (!moray_failed(status))
+        status = moray_app_drawn(&run->common, run->name, figure);
     moray_track_free(&t);
     return status;
 }

@@ -21,7 +21,7 @@ stand_in() {
     chmod +x "$bin/$1"
 }
 
-for tool in sh env cat rm mktemp sed awk dirname basename mkdir chmod cp; do
+for tool in sh env cat rm mktemp sed awk dirname basename mkdir chmod cp sleep; do
     ln -s "$(command -v $tool)" "$bin/$tool"
 done
 stand_in dpkg-query <<'END'
@@ -39,7 +39,11 @@ echo "${USER_ID:-0}"
 END
 stand_in meson <<'END'
 case $1 in
-setup) mkdir -p "$2/meson-logs" && : >"$2/build.ninja" ;;
+setup)
+    [ ! -e "$2/meson.lock" ] || { echo "ERROR: Some other Meson process is already using this build directory."; exit 1; }
+    mkdir -p "$2/meson-logs" && : >"$2/meson.lock" && sleep ${MESON_SECONDS:-0}
+    rm "$2/meson.lock" && : >"$2/build.ninja"
+    ;;
 test) [ -z "$TEST_LOG" ] || cp "$TEST_LOG" "$3/meson-logs/testlog.json" ;;
 esac
 END
@@ -82,6 +86,22 @@ for name in '' nonsense ../tests/run . problems/demo; do
     check "run.sh '$name': exit 2 and the names, nothing else" eval \
         '[ $code -eq 2 ] && said "  demo" && said "  other" && printed "" && ! called "ninja -C" && ! called "apt-get "'
 done
+
+
+# ---- Two at once, and a lock that nobody holds
+rm -rf "$repo/build"
+(cd "$work/elsewhere" && MESON_SECONDS=2 PATH=$bin sh "$repo/problems/run.sh" demo >"$work/out1" 2>"$work/err1" </dev/null; echo $? >"$work/code1") &
+sleep 1
+run problems/run.sh demo
+wait
+check "two first runs at once: both work" eval '[ $code -eq 3 ] && [ "$(cat "$work/code1")" -eq 3 ]'
+check "the second says that it waits" said 'Waiting for process'
+check "and does not configure again" eval '! said Configuring && ! grep -q "^failed" "$work/err1"'
+check "no lock is left" [ ! -e "$repo/build.lock" ]
+sh -c 'echo $$' >"$work/gone"
+mkdir "$repo/build.lock" && cp "$work/gone" "$repo/build.lock/holder"
+run problems/run.sh demo
+check "a lock whose holder is gone is taken over" eval '[ $code -eq 3 ] && ! said Waiting && [ ! -e "$repo/build.lock" ]'
 
 sed -i '/nlopt/d; /^gcc$/d' "$INSTALLED"
 run problems/run.sh demo

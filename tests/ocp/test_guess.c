@@ -123,9 +123,9 @@ static void test_read(void)
     check_refused(ocp, "t,x,\"speed, forward\",u\n0,0,0,0\n", "no column phase, which a problem of 2 phases needs");
     check_refused(ocp, "phase,t,x,u\n1,0,0,0\n2,0,0,0\n", "no column speed, forward, which phase out needs");
     check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0,0\n", "no line of phase 2, in");
-    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0\n", "line 2: 4 fields, the first line has 5");
-    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0,0\n\n2,0,zero,0,0\n", "line 4: x = zero: not a number");
-    check_refused(ocp, "phase,t\n", "needs a line of names and one of numbers");
+    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0\n", "test_guess.csv:2: 4 fields, but line 1 names 5 columns");
+    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0,0\n\n2,0,zero,0,0\n", "test_guess.csv:4: x = zero: not a finite number");
+    check_refused(ocp, "phase,t\n", "needs a line of names and a line of values");
     remove(path);
     moray_status status = moray_guess_read(&guess, ocp, path);
     CHECK(status.code == MORAY_IO && strstr(status.text, path), "%s", status.text);

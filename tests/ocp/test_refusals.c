@@ -125,6 +125,70 @@ static void test_problems(void)
     problem_refused(&spec, "e of task: 0 bounds given, 1 needed");
 }
 
+static const char *names_of[3];
+static const char *const alike[] = {"x", "v", "v"}, *const empty[] = {"x", ""}, *const broken[] = {"x", "v\nw"},
+                         *const united[] = {"x", "v [m/s]"}, *const blank[] = {"x", " v"},
+                         *const time_like[] = {"x", "t"}, *const other[] = {"u[0]", "v"},
+                         *const fine[] = {"x, \"ahead\"", "v"};
+
+static void test_names(void)
+{
+    static char endless[200];
+    memset(endless, 'v', sizeof endless - 1);
+    names_of[0] = "x", names_of[1] = endless;
+    const struct {
+        const char *const *names;
+        const char *expected;
+    } cases[] = {{alike + 1, "states 0 and 1 of phase cart are both named v"},
+                 {empty, "state 1 of phase cart: its name is empty"},
+                 {broken, "state 1 of phase cart: its name holds a control character, byte 2"},
+                 {united, "state 1 of phase cart: its name \"v [m/s]\" holds \" [\", which begins a unit"},
+                 {blank, "state 1 of phase cart: its name \" v\" begins or ends with a blank"},
+                 {time_like, "state 1 of phase cart is named t, as is the column of the time in files"},
+                 {other, "state 0 and control 0 of phase cart are both named u[0]"},
+                 {names_of, "is longer than 100 bytes"}};
+    moray_phase_spec phase = cart();
+    for (unsigned i = 0; i < sizeof cases / sizeof *cases; i++) {
+        phase.x_names = cases[i].names;
+        phase_refused(phase, cases[i].expected);
+    }
+    phase = cart();
+    phase.u_names = alike + 1;
+    phase.x_names = alike;
+    phase_refused(phase, "state 1 and control 0 of phase cart are both named v");
+    phase.u_names = NULL;
+    phase.nc = 2;
+    phase.c = (moray_bounds_list){nought, 2};
+    phase.c_names = alike + 1;
+    phase_refused(phase, "path constraints 0 and 1 of phase cart are both named v");
+    phase = cart();
+    phase.name = "a\tb";
+    phase_refused(phase, "phase 0 of problem task: its name holds a control character");
+}
+
+static void test_names_of_problems(void)
+{
+    moray_phase_spec phase[] = {cart(), cart()};
+    moray_ocp_spec spec = task(phase);
+    spec.phases = 2;
+    problem_refused(&spec, "phases 0 and 1 of problem task are both named cart");
+    phase[0].name = phase[1].name = NULL;
+    moray_ocp *ocp = NULL;
+    CHECK_OK(moray_ocp_new(&ocp, &spec), "phases without names");
+    moray_ocp_free(ocp);
+    spec.ns = 2, spec.s_names = alike + 1;
+    problem_refused(&spec, "parameters 0 and 1 of problem task are both named v");
+    spec.ns = 0, spec.ne = 2, spec.e_names = alike + 1, spec.e = (moray_bounds_list){nought, 2};
+    problem_refused(&spec, "events 0 and 1 of problem task are both named v");
+    spec = task(phase);
+    spec.name = "";
+    problem_refused(&spec, "its name is empty");
+    spec.name = "task";
+    phase[0].x_names = fine;
+    CHECK_OK(moray_ocp_new(&ocp, &spec), "commas and quotes, which files can hold");
+    moray_ocp_free(ocp);
+}
+
 static moray_ocp *make(const moray_ocp_spec *spec)
 {
     moray_ocp *ocp;
@@ -153,8 +217,7 @@ static void test_settings(void)
     settings = good, settings.max_refinements = -1;
     refused(moray_solve(ocp, &settings, NULL, &solution), "max_refinements = -1: must not be negative");
     settings = good, settings.print_level = 99;
-    refused(moray_solve(ocp, &settings, NULL, &solution),
-            "Ipopt refuses the settings: tolerance 1e-08, 1000 iterations, print level 99");
+    refused(moray_solve(ocp, &settings, NULL, &solution), "print level 99: must lie between 0 and 12");
     CHECK(!solution, "and there is no solution");
     moray_ocp_free(ocp);
 
@@ -256,6 +319,8 @@ int main(void)
 {
     test_phases();
     test_problems();
+    test_names();
+    test_names_of_problems();
     test_settings();
     test_guesses();
     test_simulated_guesses();

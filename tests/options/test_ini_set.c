@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "moray/app/program.h"
+#include "moray/app/options.h"
 
 static char directory[] = "/tmp/ini_set_XXXXXX";
 

@@ -17,14 +17,15 @@ typedef struct paper_desk {
 static inline void paper_desk_open(paper_desk *desk, const moray_robot *robot, double V_x, double V_y, double theta_max)
 {
     *desk = (paper_desk){.settings = {.common = moray_common_defaults(),
+                                      .snake = moray_snake_options_default(),
                                       .theta_max = theta_max * DEG,
                                       .omega = 120 * DEG,
                                       .delta = 2 * M_PI / (robot->links - 1)}};
-    desk->settings.common.robot = *robot;
+    desk->settings.snake.robot = *robot;
     desk->settings.common.json = true; // nothing to standard output, which is the test's
     paper *p = &desk->p;
     *p = (paper){
-        .settings = &desk->settings, .robot = &desk->settings.common.robot, .study = "test", .telling = &desk->telling};
+        .settings = &desk->settings, .robot = &desk->settings.snake.robot, .study = "test", .telling = &desk->telling};
     for (int model = 0; model < 2; model++) {
         p->gait[model] = (moray_gait){.omega = desk->settings.omega, .delta = desk->settings.delta};
         p->gait[model] = paper_gait(p, (moray_model)model, desk->settings.theta_max);

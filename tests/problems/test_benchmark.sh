@@ -34,4 +34,9 @@ check "with simulated seconds a second" awk -v r="$(number simulated_s_per_s)" '
 refuse 'repeats = 0' --set repeats=0
 refuse 'most_links = 4' --set most_links=4
 refuse 'part = everything' --part everything
+lost --part simulation --set repeats=1 --set most_links=5
+for wrong in --links=3 --robot=x; do
+    run $wrong
+    check "no options of a robot here: $(cat err)" eval '[ $code -eq 2 ] && grep -q "unknown option" err'
+done
 tap_done

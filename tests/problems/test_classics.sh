@@ -29,4 +29,14 @@ check "a coarse mesh differs: $(cat err)" eval '[ $code -eq 1 ] && grep -q "0 of
 refuse 'no-such-problem' no-such-problem
 refuse 'refinements = 101' brachistochrone --refinements 101
 refuse 'scheme' brachistochrone --scheme simpson
+for wrong in --links=3 --robot=x --current=1,1 --model=fp; do
+    run brachistochrone $wrong
+    check "no robots here: $(cat err)" eval '[ $code -eq 2 ] && one_line && grep -q "unknown option" err'
+done
+run --help
+check "--help knows no robot" eval '! grep -qi "snake\|--robot\|--links" out'
+
+lost rayleigh
+lost rayleigh --json
+lost --version
 tap_done

@@ -91,4 +91,6 @@ refuse 'scheme = euler' --scheme euler
 run --json --out file/below
 check "an unwritable --out fails before the solve: $(cat err)" \
     eval '[ $code -eq 2 ] && [ ! -s out ] && [ "$(wc -l <err)" -eq 1 ] && grep -q "file/below" err'
+lost --model control
+lost --help
 tap_done

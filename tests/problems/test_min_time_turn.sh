@@ -36,4 +36,5 @@ check "Ctrl-C is told and leaves nothing: $(cat err)" eval '[ $code -eq 130 ] &&
 
 refuse 'angle_deg = 0' --angle 0
 refuse 'band_deg' --set band_deg=0
+lost --help
 tap_done

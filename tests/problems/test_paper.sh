@@ -117,4 +117,6 @@ check "every study leaves something" eval '
     for study in mapping forces links offset errata; do
         ls all/$study*.svg all/$study*.csv && grep -q "\"$study\":" all/summary.json || exit 1
     done'
+lost ground
+lost ground --json
 tap_done

@@ -133,7 +133,10 @@ static void test_writing(paper_desk *desk)
     p->json = moray_json_new();
     paper_json_head(p->json, p->settings);
     paper_json_end(p->json, chapters[1].status);
-    CHECK_OK(paper_write(p, chapters, 2), "summary, report, commit");
+    desk->settings.common.output = p->output;
+    desk->settings.common.json = false;
+    CHECK_OK(paper_report(p, chapters, 2), "summary, report, commit");
+    desk->settings.common.json = true;
     moray_json_free(p->json);
     moray_output_free(p->output);
     CHECK(present("test.csv") && present("test_more.csv") && present("test_wave.svg"), "files bear the study's name");

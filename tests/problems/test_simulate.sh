@@ -160,9 +160,9 @@ refuse 's.csv:1: unknown key delta_dg; did you mean delta_deg?' --schedule s.csv
 schedule 't_s,a_m,t_s\n0,1,2\n'
 refuse 's.csv:1: column t_s is named twice' --schedule s.csv
 schedule 't_s,delta_deg\n0,40\n10\n'
-refuse 's.csv:3: fewer values than the 2 columns' --schedule s.csv
+refuse 's.csv:3: 1 field, but line 1 names 2 columns' --schedule s.csv
 schedule 't_s,delta_deg\n0,40,3\n'
-refuse 's.csv:2: more values than the 2 columns' --schedule s.csv
+refuse 's.csv:2: 3 fields, but line 1 names 2 columns' --schedule s.csv
 schedule 't_s,delta_deg\n0,wide\n'
 refuse 's.csv:2: delta_deg = wide: must be a number from -180 to 180 deg' --schedule s.csv
 schedule 't_s,delta_deg\n,40\n'
@@ -173,4 +173,6 @@ schedule 't_s,delta_deg\n0,40\n0,30\n'
 refuse 's.csv:3: t_s = 0: must lie after that of the line before, 0' --schedule s.csv
 schedule 't_s,a_m,alpha_deg\n0,0.04,10\n'
 refuse 's.csv:2: alpha_deg = 10 contradicts a_m = 0.04' --schedule s.csv
+lost --duration 1
+lost --duration 1 --json
 tap_done

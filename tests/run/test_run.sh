@@ -54,6 +54,47 @@ run --json --set gate=1.2 --scheme radau4 --intervals 7 --tol 1e-9
 check "--set reaches the functions, other options the solver" \
     eval '[ $code -eq 0 ] && has gate 1.2 0 && has intervals 7 0 && grep -q radau4 out && has tf 1.1341378 1e-6'
 
+# ---- Options of Ipopt by their names, and no option file
+iterations() { number iterations; }
+printf 'max_iter 3\ntol 1e-2\nprint_level 5\n' >ipopt.opt
+run --json
+check "ipopt.opt in the working directory decides nothing" \
+    eval '[ $code -eq 0 ] && [ "$(head -c 1 out)" = "{" ] && has objective 3 1e-6 && [ ! -s err ]'
+rm ipopt.opt
+run --json --set ipopt.max_iter=1
+check "--set ipopt.KEY: $(cat err)" eval '[ $code -eq 1 ] && [ "$(iterations)" -eq 1 ]'
+run --json --set ipopt.max_iter=1 --set ipopt.max_iter=100 --set ipopt.mu_strategy=adaptive
+check "the last one counts, a text" eval '[ $code -eq 0 ] && has objective 3 1e-6'
+printf '[ipopt]\nmax_iter = 1\n' >one.ini
+run --json --config one.ini
+check "in an INI file" eval '[ $code -eq 1 ] && [ "$(iterations)" -eq 1 ]'
+run --json --config one.ini --set ipopt.max_iter=100
+check "which the command line overrides" [ $code -eq 0 ]
+run --json --set ipopt.print_level=5
+check "its log stands on standard error" eval '[ $code -eq 0 ] && [ "$(head -c 1 out)" = "{" ] && grep -q "EXIT: Optimal" err'
+run --set ipopt.tolerance=1
+check "an unknown key: $(cat err)" eval '[ $code -eq 2 ] && [ ! -s out ] && says "ipopt.tolerance: Ipopt has no such option"'
+run --set ipopt.tol=tiny
+check "a bad value: $(cat err)" eval '[ $code -eq 2 ] && [ ! -s out ] && says "ipopt.tol = tiny: not a value"'
+run --set ipopt.tol
+check "no value: $(cat err)" eval '[ $code -eq 2 ] && [ ! -s out ] && says "must be KEY=VALUE"'
+printf '[ipopt]\ntol = 1e-9\ntol = 1e-8\n' >twice.ini
+run --config twice.ini
+check "twice in a file: $(cat err)" eval '[ $code -eq 2 ] && says "twice.ini:3: tol is given twice"'
+
+# ---- Streams that are closed, folders that are not there
+run --json
+cp out usual
+for closed in '<&-' '2>&-' '<&- 2>&-'; do
+    eval "\"\$program\" --json --out closed $closed >out"
+    code=$?
+    check "with $closed: as ever" eval '[ $code -eq 0 ] && has objective 3 1e-6 && cmp closed/summary.json out && [ ! -e closed/.part ]'
+    rm -rf closed
+done
+(unset HOME; TMPDIR=/no/such LC_ALL=xx_XX.UTF-8 POSIXLY_CORRECT=1 OMP_NUM_THREADS=3 "$program" --json >out 2>err)
+check "without HOME, with odd TMPDIR, locale and threads" \
+    eval 'grep -v "_s\":\|time\|seconds\|threads" usual >a && grep -v "_s\":\|time\|seconds\|threads" out >b && cmp a b'
+
 run --json --scheme trapezoid --intervals 3 --set mesh_tol=1e-4 --set refinements=20
 check "a coarse mesh is refined: $(grep -c '"nodes"' out) meshes" \
     eval '[ $code -eq 0 ] && [ $(grep -c "\"nodes\":" out) -gt 1 ] && has objective 3 1e-3'
@@ -98,7 +139,7 @@ run --set raise=1 --intervals 30
 check "without --out the iterate is in the working directory, and it has its mesh" \
     eval '[ $code -eq 130 ] && says "--continue run_demo.iterate" && run --json --continue run_demo.iterate &&
           [ $code -eq 0 ] && has objective 3 1e-6 && has nodes 122 0'
-refuse "nowhere: No such file" --continue nowhere
+refuse "nowhere: cannot be opened: No such file" --continue nowhere
 head -n 20 run_demo.iterate >cut
 refuse "line 21: more expected" --continue cut
 echo "x,y" >other
@@ -119,7 +160,11 @@ run --scheme euler --json --out euler
 check "bad scheme: exit 2, nothing printed or written: $(cat err)" \
     eval '[ $code -eq 2 ] && says "scheme = euler: must be" && [ ! -s out ] && [ ! -e euler ]'
 run --help
-check "--help has the constants and no INI files" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -q INI out'
+check "--help has the constants and nothing of robots" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -qiE "robot|model" out'
 run --version
 check "--version: $(cat out)" grep -q '^run_demo (moray) [0-9.]*$' out
+lost
+lost --json
+lost --help
+lost --check
 tap_done

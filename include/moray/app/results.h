@@ -78,8 +78,12 @@ typedef struct moray_table {
 // A value as tables show it: whole numbers in full, others with four significant digits, NaN as "".
 const char *moray_table_number(double value, char text[32]);
 
-// Plain text with aligned columns; widths count UTF-8 characters.
+// Plain text with aligned columns; widths count UTF-8 characters. Of several, each with a blank line behind it.
 void moray_table_print(const moray_table *table, FILE *file);
+void moray_tables_print(const moray_table *tables, int n, FILE *file);
+
+// Adds to what stands in text[size]; what has no room is left out.
+void moray_text_add(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 // Comma-separated values: a line of names "name [unit]", then n_rows lines of full-precision numbers. Row i of a column
 // is values[i * stride] (stride 0 stands for 1). Errors of the file stay in the file for the commit to find.

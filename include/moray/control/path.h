@@ -27,7 +27,7 @@ typedef struct moray_path {
 // moray_path_free. Error: MORAY_INPUT, also where a leg is too short for its arcs; MORAY_MEMORY.
 moray_status moray_path_through(moray_path *path, const double (*waypoint)[2], int n, double radius);
 
-// The same through waypoints "X,Y X,Y ..." [m], or those of a CSV file whose first line names the columns x_m,y_m.
+// The same through waypoints "X,Y X,Y ..." [m], or those of a CSV file of the columns x_m and y_m.
 // Error: those, and MORAY_IO.
 moray_status moray_path_read(moray_path *path, const char *text, double radius);
 void moray_path_free(moray_path *path); // safe on a zeroed path, and twice

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "moray/app/program.h"
+#include "moray/app/options.h"
 #include "moray/snake/swim.h"
 
 // A gait by whichever parameters were given; NaN stands for one that was not. SI units, angles in rad.

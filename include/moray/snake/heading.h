@@ -16,7 +16,7 @@ typedef struct moray_reference {
 } moray_reference;
 
 // From "steps:T=H,T=H,..." (0 before the first), "ramps:T=H,...", "sine:AMPLITUDE,PERIOD", with times in s and headings
-// in deg, or the path of a CSV file whose first line names the columns t_s and heading_deg. Free with
+// in deg, or the path of a CSV file of the columns t_s and heading_deg. Free with
 // moray_reference_free. Error: MORAY_INPUT, MORAY_IO naming the text or the line; MORAY_MEMORY.
 moray_status moray_reference_read(moray_reference *reference, const char *text);
 void moray_reference_free(moray_reference *reference);

@@ -9,6 +9,25 @@
 #include "moray/map.h"
 #include "moray/ode.h"
 
+// Which hydrodynamics: all zero is the paper's. Those of the first-principles model but for the last;
+// src/snake/README.md has the equations, and which erratum each one answers. The control-oriented model knows linear
+// drag only.
+typedef enum { MORAY_ROTATION_PAPER, MORAY_ROTATION_STRIP } moray_rotation;
+typedef enum { MORAY_DRAG_LINEAR, MORAY_DRAG_QUADRATIC, MORAY_DRAG_BOTH } moray_drag;
+typedef enum { MORAY_ADDED_MASS_PAPER, MORAY_ADDED_MASS_INVARIANT } moray_added_mass;
+typedef enum { MORAY_FRAME_PAPER, MORAY_FRAME_INVARIANT } moray_frame;
+typedef struct moray_hydrodynamics {
+    moray_rotation rotation; // drag and added mass at the centre of a link, or spread evenly along it
+    moray_drag drag;         // the terms of (2) relative to the water: linear, quadratic, both (Remark 2, erratum E8)
+    moray_added_mass added_mass; // (2) as printed, or the same to every observer who moves with a constant velocity
+    moray_frame frame; // (15b), (15c) of the control-oriented model, or with theta' v_n, -theta' v_t (erratum E7)
+    int pieces; // every link cut into so many with the joints between them held: (2)-(4) with lambda_1, lambda_2 of
+                // (l/pieces)^3, lambda_3 of (l/pieces)^4 for each, J of the whole; 0 or 1: not cut. Not with strip.
+} moray_hydrodynamics;
+
+// Strip, both drags, invariant added mass and frame.
+moray_hydrodynamics moray_hydrodynamics_consistent(void);
+
 // The robot. Every field is set; moray_robot_check says whether they make sense.
 typedef struct moray_robot {
     int links;                           // N >= 2
@@ -19,6 +38,7 @@ typedef struct moray_robot {
     double lambda_1, lambda_2, lambda_3; // fluid torque (4): added inertia, linear and quadratic drag
     double rot_damping, rot_gain;        // lambda~_1 [1/s], lambda~_2 [1/(m^2 s)] of (20), control-oriented model only
     double k_p, k_d;                     // joint controller (34) [1/s^2], [1/s]
+    moray_hydrodynamics hydro;
 } moray_robot;
 
 // An elliptic-cylinder link in a fluid, from which the coefficients of moray_robot follow (Sec. V-A).
@@ -40,6 +60,9 @@ void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *ge
 moray_status moray_robot_check(const moray_robot *robot);
 
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
+
+const char *moray_model_name(moray_model model); // "control-oriented", "first-principles"
+const char *moray_model_key(moray_model model);  // "control", "fp", as options and summaries have it
 
 // A free periodic motion of the joints, beyond the paper: a truncated Fourier series in each of them,
 //     phi_i(t) = c_i + sum_k p_ik sin(k omega t) + q_ik cos(k omega t),   k = 1..harmonics.

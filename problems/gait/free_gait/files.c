@@ -17,8 +17,8 @@ static void json_gain(moray_json *json, const char *key, const moray_gait_gain *
 static void json_swum(moray_json *json, const free_gait *run, const stage *at)
 {
     if (at->model == MORAY_CONTROL_ORIENTED)
-        moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, run->job.common.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.common.course);
+        moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, run->job.snake.course);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.snake.course);
 }
 
 // A series in the parameters of its own and of the first-principles model.
@@ -29,7 +29,7 @@ static void json_motion(moray_json *json, const free_gait *run, const motion *m)
     moray_json_number(json, "harmonics", m->harmonics);
     moray_json_number(json, "omega_deg_s", m->at.prediction.gait.omega / DEG);
     if (m->harmonics == 0)
-        moray_gait_to_json(json, "gait", &run->job.common.robot, m->at.trial.gait);
+        moray_gait_to_json(json, "gait", &run->job.snake.robot, m->at.trial.gait);
     for (int model = (int)m->at.model; model < 2 && m->harmonics > 0; model++)
         moray_json_numbers(json, keys[model], m->series[model].at, m->series[model].joints * (1 + 2 * m->harmonics));
     gait_job_json_prediction(json, &m->at.prediction);
@@ -43,11 +43,11 @@ static void json_motion(moray_json *json, const free_gait *run, const motion *m)
     moray_certificate_to_json(json, &m->at.certificate);
 }
 
-moray_json *free_gait_json(const free_gait *run)
+void free_gait_summary(const void *found, moray_json *json)
 {
+    const free_gait *run = found;
     const gait_job *job = &run->job;
     const stage *best = last_stage(job);
-    moray_json *json = moray_json_new();
     gait_job_json_head(json, job);
     moray_json_number(json, "power_limit_W", best->power);
     moray_json_number(json, "link_angle_limit_deg", run->limit / DEG);
@@ -63,24 +63,23 @@ moray_json *free_gait_json(const free_gait *run)
     gait_job_json_stage(json, job, best);
     moray_json_close(json);
     moray_json_open(json, "baseline");
-    moray_gait_to_json(json, "gait", &job->common.robot, job->paper.gait);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->common.course);
+    moray_gait_to_json(json, "gait", &job->snake.robot, job->paper.gait);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
     moray_json_close(json);
-    return json;
 }
 
 // ---- Files ---------------------------------------------------------------------------------------------------------
 
 static int angle_width(const free_gait *run)
 {
-    return 2 * run->job.common.robot.links; // time, N-1 joints, N links
+    return 2 * run->job.snake.robot.links; // time, N-1 joints, N links
 }
 
 moray_status free_gait_angles(const free_gait *run, const moray_gait_trial *trial, double **value)
 {
     const moray_model model = MORAY_FIRST_PRINCIPLES;
     const moray_swim_setup setup = moray_test_rig_setup(&run->job.rig, model);
-    const int N = run->job.common.robot.links, width = angle_width(run);
+    const int N = run->job.snake.robot.links, width = angle_width(run);
     moray_steady steady;
     moray_swim_track orbit;
     *value = calloc((size_t)(FREE_GAIT_SAMPLES * width), sizeof **value);
@@ -127,7 +126,7 @@ static moray_status write_series(const free_gait *run, moray_output *output)
 // The motion of the freest gait as it is swum on the first-principles model.
 static moray_status write_angles(const free_gait *run, const double *value, moray_output *output)
 {
-    const int N = run->job.common.robot.links, width = angle_width(run);
+    const int N = run->job.snake.robot.links, width = angle_width(run);
     FILE *file;
     MORAY_TRY(moray_output_file(output, "motion.csv", &file));
     moray_column *columns = calloc((size_t)width, sizeof *columns);
@@ -149,7 +148,7 @@ enum { GAITS = 3, SHOWN = 3 };
 // The best gait by theta_max, the gait within the links' limit, and the freest motion.
 static moray_status draw_joints(const free_gait *run, double *const value[GAITS], moray_output *output)
 {
-    const int N = run->job.common.robot.links, width = angle_width(run);
+    const int N = run->job.snake.robot.links, width = angle_width(run);
     const int joints[SHOWN] = {1, N / 2, N - 1}, shown = N > 3 ? SHOWN : 1;
     static const int gaits[] = {0, 2};
     moray_curve curves[2 * SHOWN];
@@ -184,7 +183,7 @@ static moray_status draw_amplitudes(const free_gait *run, double *const value[GA
 {
     static const char *const labels[GAITS] = {"best gait (25) by theta_max", "gait (25) within the links' limit",
                                               "free motion"};
-    const int N = run->job.common.robot.links, width = angle_width(run);
+    const int N = run->job.snake.robot.links, width = angle_width(run);
     moray_curve curves[GAITS];
     double *data = calloc((size_t)((GAITS + 1) * N), sizeof *data);
     if (!data)
@@ -211,26 +210,34 @@ static moray_status draw_amplitudes(const free_gait *run, double *const value[GA
     return status;
 }
 
-moray_status free_gait_files(const free_gait *run, moray_output *output)
+moray_status free_gait_write(const void *found, moray_output *output)
 {
-    const moray_gait_trial *const trials[GAITS] = {&last_stage(&run->job)->trial, &run->motion[0].at.trial,
-                                                   &freest(run)->at.trial};
-    double *value[GAITS] = {NULL};
+    const free_gait *run = found;
+    double *value = NULL;
     moray_status status = gait_job_trajectory(&run->job, &freest(run)->at, output);
     if (!moray_failed(status))
         status = write_series(run, output);
+    if (!moray_failed(status))
+        status = free_gait_angles(run, &freest(run)->at.trial, &value);
+    if (!moray_failed(status))
+        status = write_angles(run, value, output);
+    free(value);
+    return status;
+}
+
+moray_status free_gait_draw(const void *found, moray_output *output)
+{
+    const free_gait *run = found;
+    const moray_gait_trial *const trials[GAITS] = {&last_stage(&run->job)->trial, &run->motion[0].at.trial,
+                                                   &freest(run)->at.trial};
+    double *value[GAITS] = {NULL};
+    moray_status status = moray_ok();
     for (int g = 0; g < GAITS && !moray_failed(status); g++)
         status = free_gait_angles(run, trials[g], &value[g]);
     if (!moray_failed(status))
-        status = write_angles(run, value[GAITS - 1], output);
-    moray_status drawn = moray_ok();
-    if (!moray_failed(status)) {
-        drawn = draw_joints(run, value, output);
-        if (!moray_failed(drawn))
-            drawn = draw_amplitudes(run, value, output);
-    }
-    if (moray_failed(drawn) && !run->job.common.quiet)
-        fprintf(stderr, "%s: no figures: %s\n", run->job.name, drawn.text);
+        status = draw_joints(run, value, output);
+    if (!moray_failed(status))
+        status = draw_amplitudes(run, value, output);
     for (int g = 0; g < GAITS; g++)
         free(value[g]);
     return status;

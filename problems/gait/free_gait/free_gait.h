@@ -43,10 +43,10 @@ double free_gait_disagreement(const motion *m);
 enum { FREE_GAIT_SAMPLES = 181 };
 moray_status free_gait_angles(const free_gait *run, const moray_gait_trial *trial, double **value);
 
-moray_json *free_gait_json(const free_gait *run);
-
-// CSV files and figures. Error: those of moray_output_file.
-moray_status free_gait_files(const free_gait *run, moray_output *output);
+// What moray_results wants of a free_gait.
+void free_gait_summary(const void *run, moray_json *json);
+moray_status free_gait_write(const void *run, moray_output *output);
+moray_status free_gait_draw(const void *run, moray_output *output);
 
 moray_status free_gait_report(gait_job *job);
 

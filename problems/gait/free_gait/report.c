@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "free_gait.h"
 
 enum { TEXT = 1600, COLUMNS = 8, ROWS = 2 + FREE_GAIT_MOTIONS };
-
-static const char *const model_names[] = {"control-oriented", "first-principles"};
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
@@ -36,7 +33,7 @@ static void fill_row(moray_table_row *row, const char *label, const stage *at, c
 // The paper's gait as if it had been a stage: its prediction is what it makes.
 static stage paper_stage(const free_gait *run)
 {
-    const moray_model model = run->job.common.model;
+    const moray_model model = run->job.snake.model;
     const moray_gait_trial *paper = &run->job.paper;
     stage at = {.model = model, .trial = *paper};
     at.prediction.gait = paper->gait[model];
@@ -87,7 +84,7 @@ static double largest(const moray_series *series, int harmonic)
 static moray_status make_waves(const free_gait *run, struct waves *waves)
 {
     const moray_series *series = &freest(run)->series[MORAY_FIRST_PRINCIPLES];
-    const int n = run->job.common.robot.links - 1;
+    const int n = run->job.snake.robot.links - 1;
     const double nothing = 1e-5;
     *waves = (struct waves){.rows = calloc((size_t)n, sizeof *waves->rows)};
     if (!waves->rows)
@@ -118,24 +115,16 @@ static moray_status make_waves(const free_gait *run, struct waves *waves)
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
-__attribute__((format(printf, 3, 4))) static void say(char *text, int *used, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    *used += vsnprintf(text + *used, (size_t)(TEXT - *used), format, arguments);
-    va_end(arguments);
-    *used = *used < TEXT ? *used : TEXT - 1;
-}
-
-static void say_gain(const moray_gait_gain *gain, const char *whom, char *text, int *used)
+static void say_gain(const moray_gait_gain *gain, const char *whom, char *text)
 {
     const double faster = gain->speed_percent_at_equal_power, more = gain->power_percent_at_equal_speed;
     if (isnan(faster))
-        say(text, used, "no comparison with %s at its power (%.200s)", whom, gain->why_no_speed.text);
+        moray_text_add(text, TEXT, "no comparison with %s at its power (%.200s)", whom, gain->why_no_speed.text);
     else
-        say(text, used, "%.2f %% %s than %s at its power", fabs(faster), faster < 0 ? "SLOWER" : "faster", whom);
+        moray_text_add(text, TEXT, "%.2f %% %s than %s at its power", fabs(faster), faster < 0 ? "SLOWER" : "faster",
+                       whom);
     if (!isnan(more))
-        say(text, used, ", %.2f %% %s power at its speed", fabs(more), more < 0 ? "less" : "MORE");
+        moray_text_add(text, TEXT, ", %.2f %% %s power at its speed", fabs(more), more < 0 ? "less" : "MORE");
 }
 
 static void find_words(const free_gait *run, char *text)
@@ -143,47 +132,37 @@ static void find_words(const free_gait *run, char *text)
     const stage *best = last_stage(&run->job);
     const motion *m = freest(run);
     const double reach = best->trial.steady[best->model].peak_link_angle / DEG;
-    int used = 0;
-    say(text, &used,
+    moray_text_add(
+        text, TEXT,
         "Same limits for all but the first two: |link angle - heading| at most %.4g deg in the %s model, where the "
         "best gait (25) by theta_max reaches %.4g deg",
-        run->limit / DEG, model_names[best->model], reach);
+        run->limit / DEG, moray_model_name(best->model), reach);
     if (isfinite(best->power))
-        say(text, &used, "; mean joint power at most %.4g W there", best->power);
-    say(text, &used, ".\nThe free motion, %s, on the first-principles model: ", m->name);
-    say_gain(&m->at.gain, "the paper's gait", text, &used);
-    say(text, &used, "; ");
-    say_gain(&m->over_best, "the best gait (25)", text, &used);
-    say(text, &used, "; ");
-    say_gain(&m->over_alike, "the gait (25) within the same limits", text, &used);
-    say(text, &used, ".\nThe %s model itself predicted %+.2f %% speed on the gait (25) within the same limits.\n",
-        model_names[best->model], 100 * (m->at.prediction.speed / run->motion[0].at.prediction.speed - 1));
+        moray_text_add(text, TEXT, "; mean joint power at most %.4g W there", best->power);
+    moray_text_add(text, TEXT, ".\nThe free motion, %s, on the first-principles model: ", m->name);
+    say_gain(&m->at.gain, "the paper's gait", text);
+    moray_text_add(text, TEXT, "; ");
+    say_gain(&m->over_best, "the best gait (25)", text);
+    moray_text_add(text, TEXT, "; ");
+    say_gain(&m->over_alike, "the gait (25) within the same limits", text);
+    moray_text_add(
+        text, TEXT, ".\nThe %s model itself predicted %+.2f %% speed on the gait (25) within the same limits.\n",
+        moray_model_name(best->model), 100 * (m->at.prediction.speed / run->motion[0].at.prediction.speed - 1));
     if (run->vainly > 0)
-        say(text, &used, "With %d harmonics nothing better was found from there.\n", run->vainly);
+        moray_text_add(text, TEXT, "With %d harmonics nothing better was found from there.\n", run->vainly);
 }
 
 // ---- All -----------------------------------------------------------------------------------------------------------
 
-struct findings {
-    char text[TEXT];
-    moray_table_row rows[ROWS];
-    moray_table motions;
-    struct waves waves;
-};
-
-static void print(const free_gait *run, const struct findings *found)
+static void print(const void *found, const moray_report *report)
 {
+    const free_gait *run = found;
     const moray_common *common = &run->job.common;
     char text[TEXT];
-    printf("%d links, current (%g, %g) m/s, course %g deg, %s model\n\n", common->robot.links, common->current[0],
-           common->current[1], common->course / DEG, model_names[common->model]);
-    moray_table_print(&found->motions, stdout);
-    printf("\n");
-    if (found->waves.table.n_columns > 0) {
-        moray_table_print(&found->waves.table, stdout);
-        printf("\n");
-    }
-    printf("%s\n", found->text);
+    gait_job_print_head(&run->job);
+    printf(", %s model\n\n", moray_model_name(run->job.snake.model));
+    moray_tables_print(report->tables, report->n_tables, stdout);
+    printf("%s\n", report->text);
     for (int k = 0; k < run->n; k++) {
         const motion *m = &run->motion[k];
         moray_solver_line(m->at.solution, common->scheme, common->intervals, text, TEXT);
@@ -193,42 +172,24 @@ static void print(const free_gait *run, const struct findings *found)
     }
 }
 
-static moray_status write_files(const free_gait *run, const struct findings *found, const moray_json *json)
-{
-    moray_output *output = run->job.common.output;
-    FILE *file;
-    MORAY_TRY(moray_output_file(output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(free_gait_files(run, output));
-    const moray_table tables[] = {found->motions, found->waves.table};
-    const moray_report report = {.title = run->job.name,
-                                 .text = found->text,
-                                 .tables = tables,
-                                 .n_tables = found->waves.table.n_columns > 0 ? 2 : 1,
-                                 .argc = run->job.common.argc,
-                                 .argv = run->job.common.argv};
-    MORAY_TRY(moray_output_report(output, &report));
-    return moray_output_commit(output);
-}
-
 moray_status free_gait_report(gait_job *job)
 {
     const free_gait *run = (const free_gait *)job;
-    struct findings *found = calloc(1, sizeof *found);
-    if (!found)
-        return moray_error(MORAY_MEMORY, "no memory for a report");
-    find_words(run, found->text);
-    found->motions = motions_table(run, found->rows);
-    moray_status status = make_waves(run, &found->waves);
-    moray_json *json = free_gait_json(run);
-    if (!moray_failed(status) && job->common.output)
-        status = write_files(run, found, json);
-    if (!moray_failed(status) && job->common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print(run, found);
-    moray_json_free(json);
-    free(found->waves.rows);
-    free(found);
+    char text[TEXT] = "";
+    moray_table_row rows[ROWS];
+    struct waves waves;
+    MORAY_TRY(make_waves(run, &waves));
+    find_words(run, text);
+    const moray_table tables[] = {motions_table(run, rows), waves.table};
+    const moray_report report = {
+        .title = job->name, .text = text, .tables = tables, .n_tables = waves.table.n_columns > 0 ? 2 : 1};
+    const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                                              .found = run,
+                                                                              .summary = free_gait_summary,
+                                                                              .print = print,
+                                                                              .write = free_gait_write,
+                                                                              .draw = free_gait_draw,
+                                                                              .report = &report});
+    free(waves.rows);
     return status;
 }

@@ -6,7 +6,7 @@
 
 static const char *const joint_forms[] = {"on-gait", "closed-loop", NULL};
 
-const moray_option gait_job_options[GAIT_JOB_OPTIONS] = {
+static const moray_option shared[] = {
     GAIT_RANGE("theta_max_deg", theta_max, 0, 89, "deg", "link-angle amplitude of (24)"),
     GAIT_RANGE("omega_deg_s", omega, 1, 3600, "deg/s", "gait frequency"),
     GAIT_RANGE("delta_deg", delta, 1, 179, "deg", "phase shift between joints"),
@@ -35,7 +35,7 @@ const moray_option gait_job_options[GAIT_JOB_OPTIONS] = {
      .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"},
 };
 
-enum { most_options = GAIT_JOB_OPTIONS + 10 };
+static const moray_option continuation = MORAY_CONTINUE(gait_job, from_file);
 
 // A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
 enum { usual_intervals = 12, effort_intervals = 60 };
@@ -43,6 +43,7 @@ enum { usual_intervals = 12, effort_intervals = 60 };
 gait_job gait_job_defaults(const gait_program *program)
 {
     gait_job job = {.common = moray_common_defaults(),
+                    .snake = moray_snake_options_default(),
                     .name = program->name,
                     .goal = program->goal,
                     .theta_max = {1 * DEG, 20 * DEG},
@@ -54,7 +55,7 @@ gait_job gait_job_defaults(const gait_program *program)
                     .speed = program->speed,
                     .joint_rate = INFINITY,
                     .joint_effort = INFINITY};
-    job.common.model = MORAY_FIRST_PRINCIPLES;
+    job.snake.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "lobatto5");
     job.common.intervals = usual_intervals;
     return job;
@@ -70,7 +71,7 @@ static moray_status speed_demand(const gait_job *job, stage *at)
         return moray_error(MORAY_NOT_SOLVED,
                            "speed_m_s: the paper's gait, whose speed is the default, fails: %.250s; give a speed",
                            job->paper.why[at->model].text);
-    at->speed = moray_course_speed(&job->paper.steady[at->model], job->common.course);
+    at->speed = moray_course_speed(&job->paper.steady[at->model], job->snake.course);
     return moray_ok();
 }
 
@@ -113,13 +114,13 @@ static moray_status optimise_and_prove(gait_job *job, moray_model model, const g
 
 moray_status gait_job_prepare(gait_job *job)
 {
-    const moray_gait paper = moray_gait_paper(&job->common.robot);
+    const moray_gait paper = moray_gait_paper(&job->snake.robot);
     moray_family family;
     int stages;
     if (isfinite(job->joint_effort) && job->common.intervals == usual_intervals)
         job->common.intervals = effort_intervals;
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
-    MORAY_TRY(moray_test_rig_new(&job->rig, &job->common.robot, job->common.current, job->common.course));
+    MORAY_TRY(moray_test_rig_new(&job->rig, &job->snake.robot, job->snake.current, job->snake.course));
     moray_ticker_show(&job->ticker, "%s: the paper's gait on both models", job->name);
     return moray_gait_trial_run(&job->rig, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
 }
@@ -129,7 +130,7 @@ moray_status gait_job_work(gait_job *job)
     MORAY_TRY(gait_job_prepare(job));
     const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
     MORAY_TRY(optimise_and_prove(job, MORAY_CONTROL_ORIENTED, &one));
-    if (job->common.model == MORAY_CONTROL_ORIENTED)
+    if (job->snake.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
     const gait_starts two = {{job->stage[MORAY_CONTROL_ORIENTED].trial.gait[MORAY_FIRST_PRINCIPLES],
                               job->paper.gait[MORAY_FIRST_PRINCIPLES]},
@@ -140,7 +141,7 @@ moray_status gait_job_work(gait_job *job)
 bool gait_job_certified(const gait_job *job)
 {
     bool pass = true;
-    for (int model = 0; model <= (int)job->common.model; model++)
+    for (int model = 0; model <= (int)job->snake.model; model++)
         pass = pass && job->stage[model].certificate.pass;
     return pass;
 }
@@ -163,14 +164,15 @@ void gait_job_free(gait_job *job)
 
 int gait_job_main(const gait_program *program, gait_job *job, int argc, char **argv)
 {
-    moray_option options[most_options];
-    int n = GAIT_JOB_OPTIONS;
-    memcpy(options, gait_job_options, sizeof gait_job_options);
-    memcpy(options + n, program->options, (size_t)program->n_options * sizeof *options);
-    n += program->n_options;
-    if (!program->work)
-        options[n++] = (moray_option)MORAY_CONTINUE(gait_job, from_file);
-    const moray_program app = {.name = program->name, .summary = program->summary, .options = options, .n_options = n};
+    const moray_option_table common = {.rows = shared, .n = sizeof shared / sizeof *shared},
+                             own = {.rows = program->options, .n = program->n_options},
+                             going_on = {.rows = &continuation, .n = program->work ? 0 : 1};
+    const moray_option_group groups[] = {
+        {&common, 0}, {&own, 0}, {&going_on, 0}, {&moray_snake_option_table, offsetof(gait_job, snake)}};
+    const moray_program app = {.name = program->name,
+                               .summary = program->summary,
+                               .groups = groups,
+                               .n_groups = sizeof groups / sizeof *groups};
     int exit_code;
     if (!moray_app_start(&app, argc, argv, job, &exit_code))
         return exit_code;

@@ -29,8 +29,9 @@ typedef struct stage {
 } stage;
 
 struct gait_job {
-    moray_common common; // model fp: both stages, control-oriented first; control: that alone
-    const char *name;    // of the program
+    moray_common common;
+    moray_snake_options snake; // model fp: both stages, control-oriented first; control: that alone
+    const char *name;          // of the program
     moray_gait_goal goal;
     double theta_max[2], omega[2], delta[2], offset[2], offset_angle[2], taper[2];
     double power, speed; // NaN: what the paper's gait uses and makes
@@ -46,7 +47,7 @@ struct gait_job {
 
 static inline const stage *last_stage(const gait_job *job)
 {
-    return &job->stage[job->common.model];
+    return &job->stage[job->snake.model];
 }
 
 #define GAIT_RANGE(name, field, low, high, in, text)                                                                   \
@@ -86,9 +87,6 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
 // What a program without its own does: both stages, or one, optimised and proved. Error: those of the below.
 moray_status gait_job_work(gait_job *job);
 bool gait_job_certified(const gait_job *job);
-
-enum { GAIT_JOB_OPTIONS = 10 }; // of every gait job
-extern const moray_option gait_job_options[GAIT_JOB_OPTIONS];
 
 // Swims the paper's gait. Error: that of moray_scheme_parse, moray_test_rig_new or moray_gait_trial_run.
 moray_status gait_job_prepare(gait_job *job);
@@ -159,8 +157,11 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);
 
-// The summary; moray_json_free it.
-moray_json *gait_job_json(const gait_job *job);
+// What moray_results wants of a job.
+void gait_job_summary(const void *job, moray_json *json);
+
+// "10 links, current (0, 0) m/s, course 0 deg" on standard output.
+void gait_job_print_head(const gait_job *job);
 
 // Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_report(gait_job *job);

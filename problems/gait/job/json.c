@@ -3,14 +3,8 @@
 
 void gait_job_json_head(moray_json *json, const gait_job *job)
 {
-    moray_json_text(json, "problem", job->name);
-    moray_json_text(json, "version", moray_version());
-    moray_json_text(json, "model", job->common.model == MORAY_CONTROL_ORIENTED ? "control" : "fp");
-    moray_json_open(json, "robot");
-    moray_json_number(json, "links", job->common.robot.links);
-    moray_json_close(json);
-    moray_json_numbers(json, "current_m_s", job->common.current, 2);
-    moray_json_number(json, "course_deg", job->common.course / DEG);
+    moray_snake_to_json(json, &job->snake);
+    moray_json_number(json, "course_deg", job->snake.course / DEG);
     moray_json_text(json, "scheme", job->common.scheme);
     moray_json_number(json, "intervals", job->common.intervals);
 }
@@ -47,28 +41,27 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
 {
     moray_json_number(json, "power_limit_W", at->power);
     moray_json_number(json, "least_course_speed_m_s", at->speed);
-    moray_gait_to_json(json, "gait", &job->common.robot, at->trial.gait);
+    moray_gait_to_json(json, "gait", &job->snake.robot, at->trial.gait);
     gait_job_json_prediction(json, &at->prediction);
-    moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, job->common.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, job->common.course);
+    moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, job->snake.course);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, job->snake.course);
     json_gain(json, &at->gain);
     json_solver(json, at);
 }
 
-moray_json *gait_job_json(const gait_job *job)
+void gait_job_summary(const void *found, moray_json *json)
 {
-    moray_json *json = moray_json_new();
+    const gait_job *job = found;
     gait_job_json_head(json, job);
     gait_job_json_stage(json, job, last_stage(job));
     moray_json_open(json, "baseline");
-    moray_gait_to_json(json, "gait", &job->common.robot, job->paper.gait);
-    moray_steady_to_json(json, "predicted", MORAY_CONTROL_ORIENTED, &job->paper, job->common.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->common.course);
+    moray_gait_to_json(json, "gait", &job->snake.robot, job->paper.gait);
+    moray_steady_to_json(json, "predicted", MORAY_CONTROL_ORIENTED, &job->paper, job->snake.course);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
     moray_json_close(json);
-    if (job->common.model == MORAY_FIRST_PRINCIPLES) {
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES) {
         moray_json_open(json, "control_oriented_optimum");
         gait_job_json_stage(json, job, &job->stage[MORAY_CONTROL_ORIENTED]);
         moray_json_close(json);
     }
-    return json;
 }

@@ -5,8 +5,6 @@
 
 #include "job.h"
 
-static const char *const model_names[] = {"control-oriented", "first-principles"};
-
 // ---- In words ------------------------------------------------------------------------------------------------------
 
 enum { text_size = 1000 };
@@ -19,43 +17,46 @@ static double percent(double value, double reference)
 
 // "at the paper gait's power there (0.2646 W) it is 4.03 % faster" and "at its speed ... it needs 7.65 % less power",
 // the first with "than the paper's gait" behind it.
-static int say_gain(const gait_job *job, const moray_gait_gain *gain, bool speed, bool first, char *text, size_t size)
+static void say_gain(const gait_job *job, const moray_gait_gain *gain, bool speed, bool first, char *text)
 {
     const moray_steady *there = &job->paper.steady[MORAY_FIRST_PRINCIPLES];
     const char *whose = first ? "the paper gait's" : "its", *than = first ? " than the paper's gait" : "";
     const double faster = gain->speed_percent_at_equal_power, more = gain->power_percent_at_equal_speed;
     if (speed)
-        return snprintf(text, size, "at %s power%s (%.4f W) it is %.2f %% %s%s", whose, first ? " there" : "",
-                        there->power, fabs(faster), faster < 0 ? "slower" : "faster", than);
-    return snprintf(text, size, "at %s speed%s (%.4f m/s) it needs %.2f %% %s power%s", whose, first ? " there" : "",
-                    there->speed, fabs(more), more < 0 ? "less" : "more", than);
+        moray_text_add(text, text_size, "at %s power%s (%.4f W) it is %.2f %% %s%s", whose, first ? " there" : "",
+                       there->power, fabs(faster), faster < 0 ? "slower" : "faster", than);
+    else
+        moray_text_add(text, text_size, "at %s speed%s (%.4f m/s) it needs %.2f %% %s power%s", whose,
+                       first ? " there" : "", there->speed, fabs(more), more < 0 ? "less" : "more", than);
 }
 
 // The gain on the first-principles model, first that which the goal is about, and beside it what the model of the stage
 // predicts.
-static void verdict(const gait_job *job, const stage *at, char *text)
+static void judge(const gait_job *job, const stage *at, char *text)
 {
     const bool fastest = job->goal == MORAY_GAIT_FASTEST;
     const double faster = at->gain.speed_percent_at_equal_power, less = -at->gain.power_percent_at_equal_speed;
     const double gain = fastest ? faster : less, other = fastest ? less : faster;
     const moray_steady *here = &job->paper.steady[at->model];
+    const char *name = moray_model_name(at->model);
+    text[0] = 0;
     if (isnan(gain)) {
-        snprintf(text, text_size, "The %s optimum: no comparison at equal %s on the first-principles model: %.250s",
-                 model_names[at->model], fastest ? "power" : "speed",
-                 fastest ? at->gain.why_no_speed.text : at->gain.why_no_power.text);
+        moray_text_add(text, text_size,
+                       "The %s optimum: no comparison at equal %s on the first-principles model: %.250s", name,
+                       fastest ? "power" : "speed", fastest ? at->gain.why_no_speed.text : at->gain.why_no_power.text);
         return;
     }
-    const char *outcome = gain < -0.05 ? "LOSES" : gain > 0.05 ? "wins" : "neither wins nor loses";
-    int used =
-        snprintf(text, text_size, "The %s optimum %s on the first-principles model: ", model_names[at->model], outcome);
-    used += say_gain(job, &at->gain, fastest, true, text + used, (size_t)(text_size - used));
+    moray_text_add(text, text_size, "The %s optimum %s on the first-principles model: ", name,
+                   gain < -0.05  ? "LOSES"
+                   : gain > 0.05 ? "wins"
+                                 : "neither wins nor loses");
+    say_gain(job, &at->gain, fastest, true, text);
     if (!isnan(other)) {
-        used += snprintf(text + used, (size_t)(text_size - used), ", ");
-        used += say_gain(job, &at->gain, !fastest, false, text + used, (size_t)(text_size - used));
+        moray_text_add(text, text_size, ", ");
+        say_gain(job, &at->gain, !fastest, false, text);
     }
-    snprintf(text + used, (size_t)(text_size - used),
-             ". The %s model itself predicted %+.2f %% speed for %+.2f %% power.", model_names[at->model],
-             percent(at->prediction.speed, here->speed), percent(at->prediction.power, here->power));
+    moray_text_add(text, text_size, ". The %s model itself predicted %+.2f %% speed for %+.2f %% power.", name,
+                   percent(at->prediction.speed, here->speed), percent(at->prediction.power, here->power));
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
@@ -70,10 +71,10 @@ struct tables {
 static void make_tables(const gait_job *job, struct tables *t)
 {
     const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
-    const int columns = 2 + (int)job->common.model;
-    const double course = job->common.course;
+    const int columns = 2 + (int)job->snake.model;
+    const double course = job->snake.course;
     const int rows[tables] = {
-        moray_gait_rows(&job->common.robot, trials, columns, t->rows[0]),
+        moray_gait_rows(&job->snake.robot, trials, columns, t->rows[0]),
         moray_steady_rows(MORAY_CONTROL_ORIENTED, trials, columns, course, t->rows[1]),
         moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, course, t->rows[2]),
     };
@@ -90,16 +91,22 @@ static void make_tables(const gait_job *job, struct tables *t)
 // "; WHAT 1 UNIT (control-oriented model) and 2 UNIT (first-principles model)"
 static void print_demand(const gait_job *job, const char *what, double control, double revolute, const char *unit)
 {
-    printf("; %s %.4g %s (%s model)", what, control, unit, model_names[MORAY_CONTROL_ORIENTED]);
-    if (job->common.model == MORAY_FIRST_PRINCIPLES)
-        printf(" and %.4g %s (%s model)", revolute, unit, model_names[MORAY_FIRST_PRINCIPLES]);
+    printf("; %s %.4g %s (%s model)", what, control, unit, moray_model_name(MORAY_CONTROL_ORIENTED));
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES)
+        printf(" and %.4g %s (%s model)", revolute, unit, moray_model_name(MORAY_FIRST_PRINCIPLES));
+}
+
+void gait_job_print_head(const gait_job *job)
+{
+    const moray_snake_options *snake = &job->snake;
+    printf("%d links, current (%g, %g) m/s, course %g deg", snake->robot.links, snake->current[0], snake->current[1],
+           snake->course / DEG);
 }
 
 static void print_demands(const gait_job *job)
 {
     const stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
-    printf("%d links, current (%g, %g) m/s, course %g deg", job->common.robot.links, job->common.current[0],
-           job->common.current[1], job->common.course / DEG);
+    gait_job_print_head(job);
     if (isfinite(control->power))
         print_demand(job, "mean joint power at most", control->power, revolute->power, "W");
     if (control->speed > 0)
@@ -107,24 +114,20 @@ static void print_demands(const gait_job *job)
     printf("\n\n");
 }
 
-static void print_tables(const gait_job *job)
+static void print(const void *found, const moray_report *report)
 {
+    const gait_job *job = found;
     char text[text_size];
-    struct tables t;
     print_demands(job);
-    make_tables(job, &t);
-    for (int k = 0; k < tables; k++) {
-        moray_table_print(&t.table[k], stdout);
-        printf("\n");
-    }
-    for (int model = 0; model <= (int)job->common.model; model++) {
-        verdict(job, &job->stage[model], text);
+    moray_tables_print(report->tables, report->n_tables, stdout);
+    for (int model = 0; model <= (int)job->snake.model; model++) {
+        judge(job, &job->stage[model], text);
         printf("%s\n\n", text);
     }
-    for (int model = 0; model <= (int)job->common.model; model++) {
+    for (int model = 0; model <= (int)job->snake.model; model++) {
         const stage *at = &job->stage[model];
         moray_solver_line(at->solution, job->common.scheme, job->common.intervals, text, text_size);
-        printf("%s model, %s; %d of %d starts end here, none better\n", model_names[model], text, at->agreeing,
+        printf("%s model, %s; %d of %d starts end here, none better\n", moray_model_name(model), text, at->agreeing,
                at->starts);
         moray_certificate_line(&at->certificate, text, text_size);
         printf("    %s\n", text);
@@ -142,7 +145,7 @@ moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_out
     const char *const names[2][6] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n"},
                                      {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y"}};
     const char *const units[] = {"rad", "m", "m", "rad/s", "m/s", "m/s"};
-    const int joints = job->common.robot.links - 1, full = job->joints == MORAY_JOINTS_ON_GAIT ? 0 : joints;
+    const int joints = job->snake.robot.links - 1, full = job->joints == MORAY_JOINTS_ON_GAIT ? 0 : joints;
     const int width = 1 + 6 + joints, states = 6 + 2 * full;
     FILE *file;
     MORAY_TRY(moray_output_file(output, "trajectory.csv", &file));
@@ -183,15 +186,16 @@ moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_out
 }
 
 // Speed along the course from rest, every gait on both models: what the reader wants to see of the proof.
-static moray_status draw_start(const gait_job *job, moray_output *output)
+static moray_status draw_start(const void *found, moray_output *output)
 {
+    const gait_job *job = found;
     enum { points = 301, most = 6 };
     const double horizon = 15;
     const char *const labels[most] = {
         "paper's gait, control-oriented model",      "control optimum, control-oriented model",
         "first-pr. optimum, control-oriented model", "paper's gait, first-principles model",
         "control optimum, first-principles model",   "first-pr. optimum, first-principles model"};
-    const int gaits = 2 + (int)job->common.model;
+    const int gaits = 2 + (int)job->snake.model;
     const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
     double *data = calloc((most + 1) * points, sizeof *data), *time = data + most * points;
     moray_curve curves[most];
@@ -215,38 +219,24 @@ static moray_status draw_start(const gait_job *job, moray_output *output)
     return status;
 }
 
-static moray_status write_files(const gait_job *job, const moray_json *json)
+static moray_status write(const void *found, moray_output *output)
 {
-    moray_output *output = job->common.output;
-    char text[text_size];
-    struct tables t;
-    FILE *file;
-    MORAY_TRY(moray_output_file(output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(gait_job_trajectory(job, last_stage(job), output));
-    moray_status figure = draw_start(job, output);
-    if (moray_failed(figure) && !job->common.quiet)
-        fprintf(stderr, "%s: no figure: %s\n", job->name, figure.text);
-    verdict(job, last_stage(job), text);
-    make_tables(job, &t);
-    const moray_report report = {.title = job->name,
-                                 .text = text,
-                                 .tables = t.table,
-                                 .n_tables = tables,
-                                 .argc = job->common.argc,
-                                 .argv = job->common.argv};
-    MORAY_TRY(moray_output_report(output, &report));
-    return moray_output_commit(output);
+    const gait_job *job = found;
+    return gait_job_trajectory(job, last_stage(job), output);
 }
 
 moray_status gait_job_report(gait_job *job)
 {
-    moray_json *json = gait_job_json(job);
-    moray_status status = job->common.output ? write_files(job, json) : moray_ok();
-    if (!moray_failed(status) && job->common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print_tables(job);
-    moray_json_free(json);
-    return status;
+    struct tables t;
+    char text[text_size];
+    make_tables(job, &t);
+    judge(job, last_stage(job), text);
+    const moray_report report = {.title = job->name, .text = text, .tables = t.table, .n_tables = tables};
+    return moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                         .found = job,
+                                                         .summary = gait_job_summary,
+                                                         .print = print,
+                                                         .write = write,
+                                                         .draw = draw_start,
+                                                         .report = &report});
 }

@@ -12,16 +12,16 @@ static double limit(double value)
 moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
                                       const double current[2])
 {
-    const bool revolute = at->model == MORAY_FIRST_PRINCIPLES, own = at->model == job->common.model;
+    const bool revolute = at->model == MORAY_FIRST_PRINCIPLES, own = at->model == job->snake.model;
     const double *offset = revolute ? job->offset_angle : job->offset;
     const double theta_max = at->link_angle > 0 ? at->link_angle : job->theta_max[1];
     return (moray_gait_problem_spec){
-        .robot = job->common.robot,
+        .robot = job->snake.robot,
         .model = at->model,
         .goal = goal,
         .joints = own ? job->joints : MORAY_JOINTS_ON_GAIT,
         .current = {current[0], current[1]},
-        .course = job->common.course,
+        .course = job->snake.course,
         .limits = {.theta_max = moray_between(job->theta_max[0], theta_max),
                    .link_angles = at->link_angle > 0,
                    .omega = moray_between(job->omega[0], job->omega[1]),
@@ -59,6 +59,8 @@ moray_settings gait_job_settings(gait_job *job)
                             .intervals = job->common.intervals,
                             .tolerance = job->common.tol,
                             .linear_solver = job->common.linear_solver,
+                            .ipopt = job->common.ipopt.at,
+                            .n_ipopt = job->common.ipopt.n,
                             .mesh_tolerance = 1e-6,
                             .max_refinements = job->refinements,
                             .max_iterations = 1000,
@@ -82,8 +84,8 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
     const moray_swim_setup setup = moray_test_rig_setup(&job->rig, at->model);
     moray_steady steady;
     moray_swim_track orbit = {0};
-    moray_status status = moray_swim_hold_course(&setup, gait, job->common.course, &steady);
-    const double heading = moray_failed(status) ? job->common.course : steady.start_heading;
+    moray_status status = moray_swim_hold_course(&setup, gait, job->snake.course, &steady);
+    const double heading = moray_failed(status) ? job->snake.course : steady.start_heading;
     status = moray_swim_steady(&setup, gait, heading, &steady, &orbit, 101);
     if (!moray_failed(status))
         status = gait_job_solve_from(job, problem, gait, &orbit, solution);
@@ -100,7 +102,7 @@ moray_gait gait_job_random(const gait_job *job, const stage *at)
 {
     const double theta_max = uniform(job->theta_max[0], job->theta_max[1]);
     moray_gait gait = {.omega = uniform(job->omega[0], job->omega[1]), .delta = uniform(job->delta[0], job->delta[1])};
-    gait.amplitude = moray_amplitude_from_theta_max(&job->common.robot, at->model, theta_max, gait.delta);
+    gait.amplitude = moray_amplitude_from_theta_max(&job->snake.robot, at->model, theta_max, gait.delta);
     if (at->taper[0] < at->taper[1])
         gait.taper = uniform(at->taper[0], at->taper[1]);
     return gait;
@@ -149,7 +151,7 @@ moray_status gait_job_continue(gait_job *job, stage *at, const stage *from)
     if (isfinite(share))
         gait.omega = fmin(fmax(gait.omega * pow(share, exponent), job->omega[0]), job->omega[1]);
     if (!at->problem)
-        MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
+        MORAY_TRY(gait_job_problem(job, at, job->goal, job->snake.current, &at->problem));
     MORAY_TRY(gait_job_solve(job, at, at->problem, &gait, &solution));
     gait_job_keep_best(at, solution);
     at->prediction = moray_gait_problem_prediction(at->problem, at->solution);
@@ -163,7 +165,7 @@ static moray_status load(const gait_job *job, stage *at)
         return moray_ok();
     const moray_status status =
         moray_solution_load(&at->from, moray_gait_problem_ocp(at->problem), NULL, job->from_file);
-    return at->model < job->common.model && status.code == MORAY_INPUT ? moray_ok() : status;
+    return at->model < job->snake.model && status.code == MORAY_INPUT ? moray_ok() : status;
 }
 
 static moray_status solve_continued(gait_job *job, stage *at)
@@ -179,7 +181,7 @@ static moray_status solve_continued(gait_job *job, stage *at)
 // From --continue or the known gaits, then, on the model asked for, from random ones.
 static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known)
 {
-    const int random = at->model == job->common.model ? job->random_starts : 0;
+    const int random = at->model == job->snake.model ? job->random_starts : 0;
     const int first = at->from ? known->n : 0;
     srand48(1);
     at->starts = (at->from ? 1 : known->n) + random;
@@ -216,7 +218,7 @@ static moray_gait_prediction fastest(gait_job *job, const stage *at, const doubl
 // Why there is no gait that makes way.
 static moray_status explain_no_way(gait_job *job, const stage *at)
 {
-    const double *V = job->common.current, c = cos(job->common.course), s = sin(job->common.course);
+    const double *V = job->snake.current, c = cos(job->snake.course), s = sin(job->snake.course);
     const double along = V[0] * c + V[1] * s, across = fabs(V[1] * c - V[0] * s), still[2] = {0, 0};
     const double U = V[0] != 0 || V[1] != 0 ? fastest(job, at, still).speed : NAN;
     if (across >= U)
@@ -235,7 +237,7 @@ static moray_status explain_no_way(gait_job *job, const stage *at)
 static moray_status explain_failure(gait_job *job, const stage *at)
 {
     if (at->speed > 0) {
-        const double most = fastest(job, at, job->common.current).course_speed;
+        const double most = fastest(job, at, job->snake.current).course_speed;
         if (most > 0 && most < at->speed)
             return moray_error(MORAY_NOT_SOLVED,
                                "speed_m_s = %g: within the limits the robot makes %.4f m/s along the course at most",
@@ -252,7 +254,7 @@ moray_status gait_job_certify(gait_job *job, stage *at)
 
 moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known)
 {
-    MORAY_TRY(gait_job_problem(job, at, job->goal, job->common.current, &at->problem));
+    MORAY_TRY(gait_job_problem(job, at, job->goal, job->snake.current, &at->problem));
     MORAY_TRY(load(job, at));
     MORAY_TRY(solve_all(job, at, known));
     if (moray_interrupted())

@@ -11,12 +11,12 @@ void pareto_values(const pareto *run, const stage *at, double value[PARETO_VALUE
     value[PARETO_POWER] = at->prediction.power;
     value[PARETO_SPEED] = at->prediction.course_speed;
     value[PARETO_THETA_MAX] =
-        moray_theta_max_from_amplitude(&run->job.common.robot, at->model, gait->amplitude, gait->delta) / DEG;
+        moray_theta_max_from_amplitude(&run->job.snake.robot, at->model, gait->amplitude, gait->delta) / DEG;
     value[PARETO_OMEGA] = gait->omega / DEG;
     value[PARETO_DELTA] = gait->delta / DEG;
     value[PARETO_TAPER] = fabs(gait->taper) < 1e-6 ? 0 : gait->taper;
     value[PARETO_PRICE] = at->prediction.power_price;
-    value[PARETO_TRUE_SPEED] = held ? moray_course_speed(swum, run->job.common.course) : NAN;
+    value[PARETO_TRUE_SPEED] = held ? moray_course_speed(swum, run->job.snake.course) : NAN;
     value[PARETO_TRUE_POWER] = swum->power;
 }
 
@@ -26,23 +26,23 @@ static void json_point(moray_json *json, const pareto *run, const stage *at)
 {
     moray_json_open(json, NULL);
     moray_json_number(json, "power_limit_W", at->power);
-    moray_gait_to_json(json, "gait", &run->job.common.robot, at->trial.gait);
+    moray_gait_to_json(json, "gait", &run->job.snake.robot, at->trial.gait);
     gait_job_json_prediction(json, &at->prediction);
     moray_json_number(json, "speed_per_power_m_s_W", at->prediction.power_price);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.common.course);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.snake.course);
     moray_certificate_to_json(json, &at->certificate);
     moray_json_close(json);
 }
 
-moray_json *pareto_json(const pareto *run)
+void pareto_summary(const void *found, moray_json *json)
 {
-    moray_json *json = moray_json_new();
+    const pareto *run = found;
     gait_job_json_head(json, &run->job);
     moray_json_open_list(json, "fronts");
     for (int f = 0; f < run->fronts; f++) {
         const pareto_front *front = &run->front[f];
         moray_json_open(json, NULL);
-        moray_json_text(json, "model", front->model == MORAY_CONTROL_ORIENTED ? "control" : "fp");
+        moray_json_text(json, "model", moray_model_key(front->model));
         moray_json_text(json, "kind", pareto_kinds[front->kind]);
         moray_json_open_list(json, "points");
         for (int k = 0; k < front->n; k++)
@@ -51,13 +51,9 @@ moray_json *pareto_json(const pareto *run)
         moray_json_close(json);
     }
     moray_json_close(json);
-    return json;
 }
 
 // ---- Files ---------------------------------------------------------------------------------------------------------
-
-static const char *const file_names[2][PARETO_KINDS] = {{"control_lateral", "control_eel", "control_free"},
-                                                        {"fp_lateral", "fp_eel", "fp_free"}};
 
 static moray_status write_csv(const pareto_front *front, const double *values, moray_output *output)
 {
@@ -70,10 +66,11 @@ static moray_status write_csv(const pareto_front *front, const double *values, m
                                                         [PARETO_PRICE] = {"speed per power", "m/s/W"},
                                                         [PARETO_TRUE_SPEED] = {"first-principles course speed", "m/s"},
                                                         [PARETO_TRUE_POWER] = {"first-principles power", "W"}};
+    static const char *const kinds[PARETO_KINDS] = {"lateral", "eel", "free"};
     char name[40];
     FILE *file;
     moray_column columns[PARETO_VALUES];
-    snprintf(name, sizeof name, "%s.csv", file_names[front->model][front->kind]);
+    snprintf(name, sizeof name, "%s_%s.csv", moray_model_key(front->model), kinds[front->kind]);
     for (int i = 0; i < PARETO_VALUES; i++)
         columns[i] = (moray_column){names[i][0], names[i][1], values + i, PARETO_VALUES};
     MORAY_TRY(moray_output_file(output, name, &file));
@@ -119,26 +116,9 @@ static moray_status draw(const pareto *run, const picture *what, double *const v
                                                        .n_curves = n});
 }
 
-static moray_status write_all(const pareto *run, double *const values[PARETO_FRONTS], moray_output *output)
-{
-    static const picture pictures[] = {
-        {"front", "Fronts of speed against power", "speed along the course [m/s]", PARETO_SPEED, true},
-        {"omega", "Along the fronts: frequency", "omega [deg/s]", PARETO_OMEGA, false},
-        {"delta", "Along the fronts: phase shift", "delta [deg]", PARETO_DELTA, false},
-        {"theta_max", "Along the fronts: link-angle amplitude in the middle", "theta_max [deg]", PARETO_THETA_MAX,
-         false},
-        {"taper", "Along the fronts: taper of the amplitude", "taper", PARETO_TAPER, false}};
-    for (int f = 0; f < run->fronts; f++)
-        MORAY_TRY(write_csv(&run->front[f], values[f], output));
-    moray_status drawn = moray_ok();
-    for (size_t k = 0; k < sizeof pictures / sizeof *pictures && !moray_failed(drawn); k++)
-        drawn = draw(run, &pictures[k], values, output);
-    if (moray_failed(drawn) && !run->job.common.quiet)
-        fprintf(stderr, "pareto: no figures: %s\n", drawn.text);
-    return moray_ok();
-}
-
-moray_status pareto_files(const pareto *run, moray_output *output)
+// Calls `use` with the values of all points of all fronts.
+static moray_status with_values(const pareto *run, moray_output *output,
+                                moray_status (*use)(const pareto *, double *const[PARETO_FRONTS], moray_output *))
 {
     double *values[PARETO_FRONTS], *block = calloc((size_t)(run->fronts * run->points * PARETO_VALUES), sizeof *block);
     if (!block)
@@ -148,7 +128,38 @@ moray_status pareto_files(const pareto *run, moray_output *output)
         for (int k = 0; k < run->front[f].n; k++)
             pareto_values(run, &run->front[f].at[k], values[f] + k * PARETO_VALUES);
     }
-    const moray_status status = write_all(run, values, output);
+    const moray_status status = use(run, values, output);
     free(block);
     return status;
+}
+
+static moray_status write_all(const pareto *run, double *const values[PARETO_FRONTS], moray_output *output)
+{
+    for (int f = 0; f < run->fronts; f++)
+        MORAY_TRY(write_csv(&run->front[f], values[f], output));
+    return moray_ok();
+}
+
+static moray_status draw_all(const pareto *run, double *const values[PARETO_FRONTS], moray_output *output)
+{
+    static const picture pictures[] = {
+        {"front", "Fronts of speed against power", "speed along the course [m/s]", PARETO_SPEED, true},
+        {"omega", "Along the fronts: frequency", "omega [deg/s]", PARETO_OMEGA, false},
+        {"delta", "Along the fronts: phase shift", "delta [deg]", PARETO_DELTA, false},
+        {"theta_max", "Along the fronts: link-angle amplitude in the middle", "theta_max [deg]", PARETO_THETA_MAX,
+         false},
+        {"taper", "Along the fronts: taper of the amplitude", "taper", PARETO_TAPER, false}};
+    for (size_t k = 0; k < sizeof pictures / sizeof *pictures; k++)
+        MORAY_TRY(draw(run, &pictures[k], values, output));
+    return moray_ok();
+}
+
+moray_status pareto_write(const void *run, moray_output *output)
+{
+    return with_values(run, output, write_all);
+}
+
+moray_status pareto_draw(const void *run, moray_output *output)
+{
+    return with_values(run, output, draw_all);
 }

@@ -25,7 +25,6 @@ typedef struct pareto {
 } pareto;
 
 extern const char *const pareto_kinds[PARETO_KINDS]; // "lateral", "eel-like", "free taper"
-extern const char *const pareto_models[2];
 
 // What a table, a figure or a file shows of a gait.
 enum {
@@ -48,10 +47,10 @@ double pareto_speed_at(const pareto_front *front, double power);
 // Whether a front with free taper never uses it.
 bool pareto_is_lateral(const pareto_front *front);
 
-moray_json *pareto_json(const pareto *run);
-
-// CSV files and figures. Error: those of moray_output_file.
-moray_status pareto_files(const pareto *run, moray_output *output);
+// What moray_results wants of a pareto.
+void pareto_summary(const void *run, moray_json *json);
+moray_status pareto_write(const void *run, moray_output *output);
+moray_status pareto_draw(const void *run, moray_output *output);
 
 moray_status pareto_report(gait_job *job);
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <stdarg.h>
 #include <stdlib.h>
 
 #include "pareto.h"
@@ -18,18 +17,8 @@ static const stage *last(const pareto_front *front)
     return &front->at[front->n - 1];
 }
 
-// Adds to a text of text_size.
-__attribute__((format(printf, 3, 4))) static void add(char *text, int *used, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    const int more = vsnprintf(text + *used, (size_t)(text_size - *used), format, arguments);
-    va_end(arguments);
-    *used = *used + more < text_size ? *used + more : text_size - 1;
-}
-
 // How the gait changes along a front.
-static void say_trend(const pareto *run, const pareto_front *front, char *text, int *used)
+static void say_trend(const pareto *run, const pareto_front *front, char *text)
 {
     double first[PARETO_VALUES], end[PARETO_VALUES], value[PARETO_VALUES];
     const double bound = run->job.omega[1] / DEG;
@@ -47,18 +36,21 @@ static void say_trend(const pareto *run, const pareto_front *front, char *text, 
         }
         before = value[PARETO_DELTA];
     }
-    add(text, used, "%s model, %s: %.3g m/s at %.3g W to %.3g m/s at %.3g W. ", pareto_models[front->model],
-        pareto_kinds[front->kind], first[PARETO_SPEED], first[PARETO_POWER], end[PARETO_SPEED], end[PARETO_POWER]);
+    moray_text_add(text, text_size, "%s model, %s: %.3g m/s at %.3g W to %.3g m/s at %.3g W. ",
+                   moray_model_name(front->model), pareto_kinds[front->kind], first[PARETO_SPEED], first[PARETO_POWER],
+                   end[PARETO_SPEED], end[PARETO_POWER]);
     if (at_bound >= 0) {
         pareto_values(run, &front->at[at_bound], value);
-        add(text, used, "omega stays at its bound of %.4g deg/s down to %.3g W while delta %s from %.3g to %.3g deg; ",
-            bound, value[PARETO_POWER], rises ? "rises" : "goes", first[PARETO_DELTA], turn);
+        moray_text_add(text, text_size,
+                       "omega stays at its bound of %.4g deg/s down to %.3g W while delta %s from %.3g to %.3g deg; ",
+                       bound, value[PARETO_POWER], rises ? "rises" : "goes", first[PARETO_DELTA], turn);
     }
-    add(text, used, "at the end omega is %.4g deg/s, delta %.3g deg.\n", end[PARETO_OMEGA], end[PARETO_DELTA]);
+    moray_text_add(text, text_size, "at the end omega is %.4g deg/s, delta %.3g deg.\n", end[PARETO_OMEGA],
+                   end[PARETO_DELTA]);
 }
 
 // An eel beside lateral undulation: the fastest of both, and both at equal power.
-static void say_eel(const pareto_front *lateral, const pareto_front *eel, char *text, int *used)
+static void say_eel(const pareto_front *lateral, const pareto_front *eel, char *text)
 {
     const moray_gait_prediction *a = &lateral->at[0].prediction, *b = &eel->at[0].prediction;
     double least = INFINITY, most = -INFINITY;
@@ -68,18 +60,18 @@ static void say_eel(const pareto_front *lateral, const pareto_front *eel, char *
         least = fmin(least, change);
         most = fmax(most, change);
     }
-    add(text, used, "%s model, fastest %s gait against fastest lateral one: %+.1f %% speed for %+.1f %% power",
-        pareto_models[eel->model], pareto_kinds[eel->kind], percent(b->course_speed, a->course_speed),
-        percent(b->power, a->power));
+    moray_text_add(text, text_size,
+                   "%s model, fastest %s gait against fastest lateral one: %+.1f %% speed for %+.1f %% power",
+                   moray_model_name(eel->model), pareto_kinds[eel->kind], percent(b->course_speed, a->course_speed),
+                   percent(b->power, a->power));
     if (isfinite(least))
-        add(text, used, "; at equal power %+.1f to %+.1f %% speed", least, most);
-    add(text, used, ".\n");
+        moray_text_add(text, text_size, "; at equal power %+.1f to %+.1f %% speed", least, most);
+    moray_text_add(text, text_size, ".\n");
 }
 
 // How far the control-oriented gaits fall short of the front of the first-principles model, at the power they use
 // there.
-static void say_shortfall(const pareto *run, const pareto_front *control, const pareto_front *front, char *text,
-                          int *used)
+static void say_shortfall(const pareto *run, const pareto_front *control, const pareto_front *front, char *text)
 {
     double least = INFINITY, most = -INFINITY, value[PARETO_VALUES];
     for (int k = 0; k < control->n; k++) {
@@ -89,7 +81,8 @@ static void say_shortfall(const pareto *run, const pareto_front *control, const 
         most = fmax(most, change);
     }
     if (isfinite(least))
-        add(text, used,
+        moray_text_add(
+            text, text_size,
             "The %s gaits that the control-oriented model finds best are on the first-principles model %.1f to %.1f %% "
             "slower than its own at equal power.\n",
             pareto_kinds[control->kind], -most, -least);
@@ -103,20 +96,20 @@ static bool repeats(const pareto_front *front)
 
 static void find_words(const pareto *run, char *text)
 {
-    const int kinds = run->fronts / (1 + (int)run->job.common.model);
-    int used = 0;
+    const int kinds = run->fronts / (1 + (int)run->job.snake.model);
     for (int f = 0; f < run->fronts; f++)
         if (!repeats(&run->front[f]))
-            say_trend(run, &run->front[f], text, &used);
+            say_trend(run, &run->front[f], text);
     for (int f = 0; f < run->fronts; f++)
         if (repeats(&run->front[f]))
-            add(text, &used, "%s model, free taper: none is best, everywhere; the front is the lateral one.\n",
-                pareto_models[run->front[f].model]);
+            moray_text_add(text, text_size,
+                           "%s model, free taper: none is best, everywhere; the front is the lateral one.\n",
+                           moray_model_name(run->front[f].model));
         else if (run->front[f].kind > 0)
-            say_eel(&run->front[f - run->front[f].kind], &run->front[f], text, &used);
+            say_eel(&run->front[f - run->front[f].kind], &run->front[f], text);
     for (int kind = 0; kind < kinds && run->fronts > kinds; kind++)
         if (!repeats(&run->front[kind]))
-            say_shortfall(run, &run->front[kind], &run->front[kinds + kind], text, &used);
+            say_shortfall(run, &run->front[kind], &run->front[kinds + kind], text);
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
@@ -135,7 +128,7 @@ static void fill_sheet(const pareto *run, const pareto_front *front, struct shee
     static const int shown[n_columns] = {PARETO_SPEED, PARETO_THETA_MAX, PARETO_OMEGA,      PARETO_DELTA,
                                          PARETO_TAPER, PARETO_PRICE,     PARETO_TRUE_POWER, PARETO_TRUE_SPEED};
     snprintf(sheet->title, sizeof sheet->title, "%s optima, %s: by mean joint power in that model",
-             pareto_models[front->model], pareto_kinds[front->kind]);
+             moray_model_name(front->model), pareto_kinds[front->kind]);
     sheet->table = (moray_table){.title = sheet->title, .n_columns = n_columns, .rows = sheet->row, .n_rows = front->n};
     for (int i = 0; i < n_columns; i++)
         sheet->table.columns[i] = columns[i];
@@ -149,70 +142,40 @@ static void fill_sheet(const pareto *run, const pareto_front *front, struct shee
     }
 }
 
-// Text, then the sheets of the fronts.
-struct findings {
-    char text[text_size];
-    struct sheet sheet[PARETO_FRONTS];
-};
-
-static void print(const pareto *run, const struct findings *found)
+static void print(const void *found, const moray_report *report)
 {
-    const moray_common *common = &run->job.common;
-    printf("%d links, current (%g, %g) m/s, course %g deg: fastest gaits within ever less mean joint power; columns "
-           "f.-p.: "
-           "swum on the first-principles model\n\n",
-           common->robot.links, common->current[0], common->current[1], common->course / DEG);
+    const pareto *run = found;
+    gait_job_print_head(&run->job);
+    printf(": fastest gaits within ever less mean joint power; columns f.-p.: swum on the first-principles model\n\n");
     for (int f = 0; f < run->fronts; f++)
-        if (!repeats(&run->front[f])) {
-            moray_table_print(&found->sheet[f].table, stdout);
-            printf("\n");
-        }
-    printf("%s", found->text);
-}
-
-static moray_status write_files(const pareto *run, const struct findings *found, const moray_json *json)
-{
-    moray_output *output = run->job.common.output;
-    moray_table tables[PARETO_FRONTS];
-    FILE *file;
-    MORAY_TRY(moray_output_file(output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(pareto_files(run, output));
-    for (int f = 0; f < run->fronts; f++)
-        tables[f] = found->sheet[f].table;
-    const moray_section section = {
-        .title = "Fronts", .text = found->text, .figures = "", .tables = tables, .n_tables = run->fronts};
-    const moray_report report = {.title = run->job.name,
-                                 .sections = &section,
-                                 .n_sections = 1,
-                                 .argc = run->job.common.argc,
-                                 .argv = run->job.common.argv};
-    MORAY_TRY(moray_output_report(output, &report));
-    return moray_output_commit(output);
-}
-
-static moray_status tell(const pareto *run, const struct findings *found)
-{
-    moray_json *json = pareto_json(run);
-    moray_status status = run->job.common.output ? write_files(run, found, json) : moray_ok();
-    if (!moray_failed(status) && run->job.common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print(run, found);
-    moray_json_free(json);
-    return status;
+        if (!repeats(&run->front[f]))
+            moray_tables_print(&report->sections->tables[f], 1, stdout);
+    printf("%s", report->sections->text);
 }
 
 moray_status pareto_report(gait_job *job)
 {
     const pareto *run = (const pareto *)job;
-    struct findings *found = calloc(1, sizeof *found);
-    if (!found)
+    char text[text_size] = "";
+    moray_table tables[PARETO_FRONTS];
+    struct sheet *sheets = calloc(PARETO_FRONTS, sizeof *sheets);
+    if (!sheets)
         return moray_error(MORAY_MEMORY, "no memory for a report");
-    find_words(run, found->text);
-    for (int f = 0; f < run->fronts; f++)
-        fill_sheet(run, &run->front[f], &found->sheet[f]);
-    const moray_status status = tell(run, found);
-    free(found);
+    find_words(run, text);
+    for (int f = 0; f < run->fronts; f++) {
+        fill_sheet(run, &run->front[f], &sheets[f]);
+        tables[f] = sheets[f].table;
+    }
+    const moray_section section = {
+        .title = "Fronts", .text = text, .figures = "", .tables = tables, .n_tables = run->fronts};
+    const moray_report report = {.title = job->name, .sections = &section, .n_sections = 1};
+    const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                                              .found = run,
+                                                                              .summary = pareto_summary,
+                                                                              .print = print,
+                                                                              .write = pareto_write,
+                                                                              .draw = pareto_draw,
+                                                                              .report = &report});
+    free(sheets);
     return status;
 }

@@ -3,8 +3,7 @@
 
 #include "search_gait.h"
 
-static const char *const model_names[] = {"control-oriented", "first-principles"};
-enum { TEXT = 1000 };
+enum { TEXT = 2000 };
 
 static double value_of(const search_gait *run, const optimum *o)
 {
@@ -86,15 +85,15 @@ static void make_tables(const search_gait *run, struct tables *t)
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
-static void say_demand(const search_gait *run, char *text)
+static void print_demand(const search_gait *run)
 {
-    const moray_common *common = &run->job.common;
-    int used = snprintf(text, TEXT, "%d links, current (%g, %g) m/s, course %g deg; %s model", common->robot.links,
-                        common->current[0], common->current[1], common->course / DEG, model_names[common->model]);
+    gait_job_print_head(&run->job);
+    printf("; %s model", moray_model_name(run->job.snake.model));
     if (isfinite(run->demand.power))
-        used += snprintf(text + used, (size_t)(TEXT - used), ", mean joint power at most %.4g W", run->demand.power);
+        printf(", mean joint power at most %.4g W", run->demand.power);
     if (run->demand.speed > 0)
-        snprintf(text + used, (size_t)(TEXT - used), ", speed along the course at least %.4g m/s", run->demand.speed);
+        printf(", speed along the course at least %.4g m/s", run->demand.speed);
+    printf("\n\n");
 }
 
 static int optimum_of_global(const search_gait *run)
@@ -107,22 +106,22 @@ static int optimum_of_global(const search_gait *run)
 
 static void say_found(const search_gait *run, char *text)
 {
-    int used =
-        snprintf(text, TEXT, "%d %s from %d starts (%s: %d orbits, %.1f s)", run->n, run->n == 1 ? "optimum" : "optima",
-                 run->starts, search_gait_locals[run->local_method], run->orbits, run->seconds);
+    const int global = optimum_of_global(run);
+    moray_text_add(text, TEXT, "%d %s from %d starts (%s: %d orbits, %.1f s)", run->n,
+                   run->n == 1 ? "optimum" : "optima", run->starts, search_gait_locals[run->local_method], run->orbits,
+                   run->seconds);
     if (run->n > run->shown)
-        used += snprintf(text + used, (size_t)(TEXT - used), ", the best %d shown", run->shown);
+        moray_text_add(text, TEXT, ", the best %d shown", run->shown);
     if (run->lost > 0)
-        used +=
-            snprintf(text + used, (size_t)(TEXT - used), "; %d starts lead to no gait within the limits", run->lost);
-    if (run->global_method > 0 && optimum_of_global(run) > 0)
-        used += snprintf(text + used, (size_t)(TEXT - used), "; %s (%d orbits, %.1f s) leads to optimum %d",
-                         search_gait_globals[run->global_method], run->global.evaluations, run->global.seconds,
-                         optimum_of_global(run));
+        moray_text_add(text, TEXT, "; %d starts lead to no gait within the limits", run->lost);
+    if (run->global_method > 0)
+        moray_text_add(text, TEXT, "; %s (%d orbits, %.1f s) leads to ", search_gait_globals[run->global_method],
+                       run->global.evaluations, run->global.seconds);
+    if (run->global_method > 0 && global > 0)
+        moray_text_add(text, TEXT, "optimum %d", global);
     else if (run->global_method > 0)
-        used += snprintf(text + used, (size_t)(TEXT - used), "; %s (%d orbits, %.1f s) leads to none",
-                         search_gait_globals[run->global_method], run->global.evaluations, run->global.seconds);
-    snprintf(text + used, (size_t)(TEXT - used), ".");
+        moray_text_add(text, TEXT, "none");
+    moray_text_add(text, TEXT, ".");
 }
 
 static double largest_difference(const search_gait *run)
@@ -138,25 +137,21 @@ static void say_certificates(const search_gait *run, char *text)
     int passed = 0;
     for (int k = 0; k < run->shown; k++)
         passed += run->optimum[k].at.certificate.pass;
-    snprintf(text, TEXT,
-             "Search over orbits and collocation differ by at most %.1e %s. Certificates of the collocation: %d of %d "
-             "pass.",
-             largest_difference(run), unit_of(run), passed, run->shown);
+    moray_text_add(
+        text, TEXT,
+        "Search over orbits and collocation differ by at most %.1e %s. Certificates of the collocation: %d of %d "
+        "pass.",
+        largest_difference(run), unit_of(run), passed, run->shown);
 }
 
-static void print_tables(const search_gait *run)
+static void print(const void *found, const moray_report *report)
 {
-    char text[TEXT];
-    struct tables t;
-    say_demand(run, text);
-    printf("%s\n\n", text);
-    make_tables(run, &t);
-    for (int k = 0; k < TABLES; k++) {
-        moray_table_print(&t.table[k], stdout);
-        printf("\n");
-    }
+    const search_gait *run = found;
+    char text[TEXT] = "";
+    print_demand(run);
+    moray_tables_print(report->tables, report->n_tables, stdout);
     say_found(run, text);
-    printf("%s\n", text);
+    moray_text_add(text, TEXT, "\n");
     say_certificates(run, text);
     printf("%s\n", text);
 }
@@ -197,9 +192,9 @@ static void json_found(moray_json *json, const search_gait *run)
     moray_json_close(json);
 }
 
-static moray_json *make_json(const search_gait *run)
+static void summarise(const void *found, moray_json *json)
 {
-    moray_json *json = moray_json_new();
+    const search_gait *run = found;
     gait_job_json_head(json, &run->job);
     json_found(json, run);
     moray_json_open_list(json, "optimum");
@@ -210,21 +205,20 @@ static moray_json *make_json(const search_gait *run)
     moray_gait_to_json(json, "gait", &run->spec.robot, run->job.paper.gait);
     moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &run->job.paper, run->spec.course);
     moray_json_close(json);
-    return json;
 }
 
 // ---- Files ---------------------------------------------------------------------------------------------------------
 
-static moray_status draw_ridge(search_gait *run, moray_output *output)
+static moray_status draw_ridge(const void *found, moray_output *output)
 {
-    double delta[SEARCH_GAIT_RIDGE], value[SEARCH_GAIT_RIDGE], at[SEARCH_GAIT_SHOWN], best[SEARCH_GAIT_SHOWN];
-    MORAY_TRY(search_gait_ridge(run, delta, value));
+    const search_gait *run = found;
+    double at[SEARCH_GAIT_SHOWN], best[SEARCH_GAIT_SHOWN];
     for (int k = 0; k < run->shown; k++) {
         at[k] = run->optimum[k].gait.delta / DEG;
         best[k] = value_of(run, &run->optimum[k]);
     }
     const moray_curve curves[] = {
-        {.label = "best gait of each phase shift", .x = delta, .y = value, .n = SEARCH_GAIT_RIDGE},
+        {.label = "best gait of each phase shift", .x = run->ridge[0], .y = run->ridge[1], .n = SEARCH_GAIT_RIDGE},
         {.label = "optima", .x = at, .y = best, .n = run->shown, .style = MORAY_CURVE_POINTS}};
     const moray_figure figure = {.name = "ridge",
                                  .title = "The ridge: best gait within the limits for each phase shift",
@@ -236,45 +230,29 @@ static moray_status draw_ridge(search_gait *run, moray_output *output)
     return moray_output_figure(output, &figure);
 }
 
-static moray_status write_files(search_gait *run, const moray_json *json)
+static moray_status write(const void *found, moray_output *output)
 {
-    moray_output *output = run->job.common.output;
-    char text[2 * TEXT + 1], *end = text;
-    struct tables t;
-    FILE *file;
-    MORAY_TRY(moray_output_file(output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(gait_job_trajectory(&run->job, &run->optimum[0].at, output));
-    const moray_status figure = draw_ridge(run, output);
-    if (figure.code == MORAY_INTERRUPTED)
-        return figure;
-    if (moray_failed(figure) && !run->job.common.quiet)
-        fprintf(stderr, "search_gait: no figure: %s\n", figure.text);
-    say_found(run, text);
-    while (*end)
-        end++;
-    *end++ = ' ';
-    say_certificates(run, end);
-    make_tables(run, &t);
-    const moray_report report = {.title = "search_gait",
-                                 .text = text,
-                                 .tables = t.table,
-                                 .n_tables = TABLES,
-                                 .argc = run->job.common.argc,
-                                 .argv = run->job.common.argv};
-    MORAY_TRY(moray_output_report(output, &report));
-    return moray_output_commit(output);
+    const search_gait *run = found;
+    return gait_job_trajectory(&run->job, &run->optimum[0].at, output);
 }
 
 moray_status search_gait_report(search_gait *run)
 {
-    moray_json *json = make_json(run);
-    moray_status status = run->job.common.output ? write_files(run, json) : moray_ok();
+    struct tables t;
+    char text[TEXT] = "";
+    if (run->job.common.output)
+        MORAY_TRY(search_gait_ridge(run));
     moray_ticker_end(&run->job.ticker);
-    if (!moray_failed(status) && run->job.common.json)
-        status = moray_json_write(json, stdout);
-    else if (!moray_failed(status))
-        print_tables(run);
-    moray_json_free(json);
-    return status;
+    make_tables(run, &t);
+    say_found(run, text);
+    moray_text_add(text, TEXT, " ");
+    say_certificates(run, text);
+    const moray_report report = {.title = "search_gait", .text = text, .tables = t.table, .n_tables = TABLES};
+    return moray_app_show(&run->job.common, &(moray_results){.name = "search_gait",
+                                                             .found = run,
+                                                             .summary = summarise,
+                                                             .print = print,
+                                                             .write = write,
+                                                             .draw = draw_ridge,
+                                                             .report = &report});
 }

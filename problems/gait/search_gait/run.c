@@ -209,8 +209,8 @@ static moray_status make_search(search_gait *run)
 {
     gait_job *job = &run->job;
     MORAY_TRY(gait_job_prepare(job));
-    MORAY_TRY(gait_job_demand(job, job->common.model, &run->demand));
-    run->spec = gait_job_spec(job, &run->demand, job->goal, job->common.current);
+    MORAY_TRY(gait_job_demand(job, job->snake.model, &run->demand));
+    run->spec = gait_job_spec(job, &run->demand, job->goal, job->snake.current);
     return moray_gait_search_new(&run->search, &run->spec, job->common.scheme, job->common.intervals);
 }
 
@@ -263,16 +263,16 @@ static double best_at(search_gait *run, double delta, moray_gait *gait)
     return search_gait_value(run, moray_course_speed(&orbit.steady, spec.course), orbit.steady.power);
 }
 
-moray_status search_gait_ridge(search_gait *run, double *delta_deg, double *value)
+moray_status search_gait_ridge(search_gait *run)
 {
     const moray_bounds range = run->spec.limits.delta;
     moray_gait gait = run->job.paper.gait[run->spec.model];
     run->activity = "the ridge";
     for (int k = 0; k < SEARCH_GAIT_RIDGE; k++) {
         const double delta = range.lower + (range.upper - range.lower) * k / (SEARCH_GAIT_RIDGE - 1);
-        delta_deg[k] = delta / DEG;
-        value[k] = best_at(run, delta, &gait);
-        if (isnan(value[k]))
+        run->ridge[0][k] = delta / DEG;
+        run->ridge[1][k] = best_at(run, delta, &gait);
+        if (isnan(run->ridge[1][k]))
             gait = run->job.paper.gait[run->spec.model];
         if (moray_interrupted())
             return interrupted();

@@ -33,7 +33,8 @@ typedef struct search_gait {
     optimum optimum[SEARCH_GAIT_OPTIMA];
     int n, shown;
     moray_search_info global;
-    double seconds; // of the local searches
+    double seconds;                     // of the local searches
+    double ridge[2][SEARCH_GAIT_RIDGE]; // phase shifts over their range [deg], the best value for each or NaN
     // while searching
     const char *activity;
 } search_gait;
@@ -55,8 +56,8 @@ static inline double search_gait_value(const search_gait *run, double course_spe
 // those of the pieces.
 moray_status search_gait_run(search_gait *run);
 
-// The best value for each of SEARCH_GAIT_RIDGE phase shifts over their range, NaN where there is none [deg, value].
-moray_status search_gait_ridge(search_gait *run, double *delta_deg, double *value);
+// Finds run->ridge. Error: MORAY_INTERRUPTED.
+moray_status search_gait_ridge(search_gait *run);
 
 // Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status search_gait_report(search_gait *run);

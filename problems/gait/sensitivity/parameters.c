@@ -34,18 +34,18 @@ struct sensitivity_parameter {
     }
 
 static const sensitivity_parameter parameters[] = {
-    {CURRENT, "current V_x", "m/s", PLACE(job.common.current[0]), 1, BOTH},
-    {CURRENT, "current V_y", "m/s", PLACE(job.common.current[1]), 1, BOTH},
-    {ROBOT, "c_t", "kg/s", PLACE(job.common.robot.c_t), 1, BOTH},
-    {ROBOT, "c_n", "kg/s", PLACE(job.common.robot.c_n), 1, BOTH},
-    {ROBOT, "mu_n", "kg", PLACE(job.common.robot.mu_n), 1, BOTH},
-    {ROBOT, "lambda_1", "kg m^2", PLACE(job.common.robot.lambda_1), 1, COMPLEX},
-    {ROBOT, "lambda_2", "kg m^2/s", PLACE(job.common.robot.lambda_2), 1, COMPLEX},
-    {ROBOT, "lambda_3", "kg m^2", PLACE(job.common.robot.lambda_3), 1, COMPLEX},
-    {ROBOT, "rot_damping", "1/s", PLACE(job.common.robot.rot_damping), 1, CONTROL},
-    {ROBOT, "rot_gain", "1/(m^2 s)", PLACE(job.common.robot.rot_gain), 1, CONTROL},
-    {ROBOT, "m_kg", "kg", PLACE(job.common.robot.m), 1, BOTH},
-    {GEOMETRY, "length_m", "m", PLACE(job.common.geometry.length), 1, BOTH},
+    {CURRENT, "current V_x", "m/s", PLACE(job.snake.current[0]), 1, BOTH},
+    {CURRENT, "current V_y", "m/s", PLACE(job.snake.current[1]), 1, BOTH},
+    {ROBOT, "c_t", "kg/s", PLACE(job.snake.robot.c_t), 1, BOTH},
+    {ROBOT, "c_n", "kg/s", PLACE(job.snake.robot.c_n), 1, BOTH},
+    {ROBOT, "mu_n", "kg", PLACE(job.snake.robot.mu_n), 1, BOTH},
+    {ROBOT, "lambda_1", "kg m^2", PLACE(job.snake.robot.lambda_1), 1, COMPLEX},
+    {ROBOT, "lambda_2", "kg m^2/s", PLACE(job.snake.robot.lambda_2), 1, COMPLEX},
+    {ROBOT, "lambda_3", "kg m^2", PLACE(job.snake.robot.lambda_3), 1, COMPLEX},
+    {ROBOT, "rot_damping", "1/s", PLACE(job.snake.robot.rot_damping), 1, CONTROL},
+    {ROBOT, "rot_gain", "1/(m^2 s)", PLACE(job.snake.robot.rot_gain), 1, CONTROL},
+    {ROBOT, "m_kg", "kg", PLACE(job.snake.robot.m), 1, BOTH},
+    {GEOMETRY, "length_m", "m", PLACE(job.snake.geometry.length), 1, BOTH},
     {LIMIT, "power_W", "W", PLACE(at.power), 1, BOTH},
     RANGE("theta_max_deg", "deg", job.theta_max, DEG, BOTH),
     RANGE("omega_deg_s", "deg/s", job.omega, DEG, BOTH),
@@ -92,7 +92,7 @@ bool sensitivity_parameter_applies(const sensitivity_parameter *parameter, const
 {
     variant now = as_it_is(job);
     const double value = *place_in(parameter, &now);
-    if (!parameter->model[job->common.model] || !isfinite(value))
+    if (!parameter->model[job->snake.model] || !isfinite(value))
         return false;
     return parameter->kind == CURRENT || (value != 0 && !(parameter->kind == LOWER && is_fixed(parameter, &now)));
 }
@@ -111,10 +111,10 @@ void sensitivity_parameter_describe(const sensitivity_parameter *parameter, cons
 }
 
 // The fields that follow from the geometry follow it; those that were given stay.
-static void remake_robot(const gait_job *job, moray_common *moved)
+static void remake_robot(const gait_job *job, moray_snake_options *moved)
 {
-    moray_robot old = job->common.robot, made = old;
-    moray_robot_from_geometry(&old, &job->common.geometry);
+    moray_robot old = job->snake.robot, made = old;
+    moray_robot_from_geometry(&old, &job->snake.geometry);
     moray_robot_from_geometry(&made, &moved->geometry);
     const double *const was[] = {&old.l,    &old.m,        &old.J,        &old.c_t,     &old.c_n,
                                  &old.mu_n, &old.lambda_1, &old.lambda_2, &old.lambda_3};
@@ -137,5 +137,5 @@ void sensitivity_displace(const sensitivity_parameter *parameter, const gait_job
     if (fixed)
         place[-1] = *place;
     if (parameter->kind == GEOMETRY)
-        remake_robot(job, &moved->job.common);
+        remake_robot(job, &moved->job.snake);
 }

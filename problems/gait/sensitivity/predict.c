@@ -10,7 +10,7 @@ static moray_status on_the_way(const sensitivity *run, double share, moray_gait_
     const gait_job *job = &run->job;
     double current[2];
     for (int i = 0; i < 2; i++)
-        current[i] = job->common.current[i] + share * (run->forecast.current[i] - job->common.current[i]);
+        current[i] = job->snake.current[i] + share * (run->forecast.current[i] - job->snake.current[i]);
     return gait_job_problem(job, last_stage(job), job->goal, current, problem);
 }
 
@@ -18,7 +18,7 @@ static moray_status on_the_way(const sensitivity *run, double share, moray_gait_
 static moray_status take_slopes(sensitivity *run, moray_sensitivity *slopes)
 {
     static const double sides[SIDES] = {-2, -1, 1, 2};
-    const double *from = run->job.common.current, *to = run->forecast.current;
+    const double *from = run->job.snake.current, *to = run->forecast.current;
     const double way = hypot(to[0] - from[0], to[1] - from[1]);
     const double step = 1e-3 * last_stage(&run->job)->prediction.course_speed / way;
     moray_gait_problem *problem[SIDES] = {NULL};
@@ -58,9 +58,9 @@ static moray_status swim_all(sensitivity *run)
     sensitivity_forecast *f = &run->forecast;
     const gait_job *job = &run->job;
     moray_test_rig rig;
-    moray_status status = moray_test_rig_new(&rig, &job->common.robot, f->current, job->common.course);
+    moray_status status = moray_test_rig_new(&rig, &job->snake.robot, f->current, job->snake.course);
     for (int k = 0; k < SENSITIVITY_GAITS && !moray_failed(status); k++)
-        status = moray_gait_trial_run(&rig, &f->prediction[k].gait, job->common.model, &f->trial[k]);
+        status = moray_gait_trial_run(&rig, &f->prediction[k].gait, job->snake.model, &f->trial[k]);
     moray_test_rig_free(&rig);
     return status;
 }
@@ -78,7 +78,7 @@ static moray_status predict(sensitivity *run, moray_sensitivity *slopes)
 
 moray_status sensitivity_predict(sensitivity *run, moray_sensitivity *slopes)
 {
-    const double *current = run->job.common.current, further = 0.1;
+    const double *current = run->job.snake.current, further = 0.1;
     sensitivity_forecast *f = &run->forecast;
     const bool given = !isnan(run->predicted[0]);
     f->current[0] = given ? run->predicted[0] : current[0] + further;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,21 +15,13 @@ static double worst_deviation(const sensitivity *run)
     return worst;
 }
 
-__attribute__((format(printf, 2, 3))) static void say(sensitivity_findings *f, const char *format, ...)
-{
-    const size_t used = strlen(f->text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(f->text + used, SENSITIVITY_TEXT - used, format, arguments);
-    va_end(arguments);
-}
-
 static void say_confirmation(const sensitivity *run, sensitivity_findings *f)
 {
     int unsteady = 0;
     for (int k = 0; k < run->rows; k++)
         unsteady += run->row[k].unsteady;
-    say(f,
+    moray_text_add(
+        f->text, SENSITIVITY_TEXT,
         "Solved again on both sides of each parameter, the optimum moves as the slopes say: they differ by at most "
         "%.1e %% per per cent%s.\n",
         worst_deviation(run), unsteady > 0 ? ", those aside whose active set changes on the way" : "");
@@ -52,7 +43,8 @@ static void say_disagreement(const sensitivity *run, sensitivity_findings *f)
         }
     }
     if (worst >= 0)
-        say(f,
+        moray_text_add(
+            f->text, SENSITIVITY_TEXT,
             "These are slopes of the control-oriented model. The same changes of parameter and gait swum on the "
             "first-principles model are in the lines and columns beside; in per cent of speed they differ most for %s: "
             "%+.3f predicted, %+.3f swum.\n",
@@ -71,23 +63,25 @@ static void say_changes(const sensitivity *run, sensitivity_findings *f)
             const double share = change->step / row->scale;
             if (fabs(share) > far)
                 continue;
-            say(f, "%s%s %+.2g %%: %s.\n",
-                fabs(share) < near ? "WARNING: the slopes hold only up to " : "Slopes hold up to ", row->name,
-                100 * share, change->what);
+            moray_text_add(f->text, SENSITIVITY_TEXT, "%s%s %+.2g %%: %s.\n",
+                           fabs(share) < near ? "WARNING: the slopes hold only up to " : "Slopes hold up to ",
+                           row->name, 100 * share, change->what);
             told++;
         }
-    say(f, "%s that no slope will jump for changes of up to %g %%, by their tangents.\n",
+    moray_text_add(
+        f->text, SENSITIVITY_TEXT, "%s that no slope will jump for changes of up to %g %%, by their tangents.\n",
         told > 0 ? "Otherwise no constraint comes or goes, so" : "No constraint comes or goes, so", 100 * far);
 }
 
 static void say_reservations(const sensitivity *run, sensitivity_findings *f)
 {
     if (run->weak[0])
-        say(f, "WARNING: active or not, that is not certain: %s.\n", run->weak);
+        moray_text_add(f->text, SENSITIVITY_TEXT, "WARNING: active or not, that is not certain: %s.\n", run->weak);
     if (run->left_out[0])
-        say(f, "Without slopes: %s.\n", run->left_out);
+        moray_text_add(f->text, SENSITIVITY_TEXT, "Without slopes: %s.\n", run->left_out);
     if (run->unreached[0])
-        say(f, "Limits that are not reached, so that nothing depends on them: %s.\n", run->unreached);
+        moray_text_add(f->text, SENSITIVITY_TEXT, "Limits that are not reached, so that nothing depends on them: %s.\n",
+                       run->unreached);
 }
 
 static double percent(double value, double reference)
@@ -100,15 +94,17 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
     const sensitivity_forecast *forecast = &run->forecast;
     double predicted[SLOPES], again[SLOPES], worst = 0;
     if (forecast->why.code) {
-        say(f, "No gait is predicted for a current of (%g, %g) m/s: %s.\n", forecast->current[0], forecast->current[1],
-            forecast->why.text);
+        moray_text_add(f->text, SENSITIVITY_TEXT, "No gait is predicted for a current of (%g, %g) m/s: %s.\n",
+                       forecast->current[0], forecast->current[1], forecast->why.text);
         return;
     }
     sensitivity_values(&run->job, &forecast->prediction[1].gait, 0, 0, predicted);
     sensitivity_values(&run->job, &forecast->prediction[2].gait, 0, 0, again);
     for (int i = SLOPE_THETA_MAX; i < SLOPES; i++)
         worst = fmax(worst, fabs(predicted[i] - again[i]) / fabs(run->size[i]));
-    say(f, "The gait predicted for a current of (%g, %g) m/s is within %.2g %% of that found by solving there%s.",
+    moray_text_add(
+        f->text, SENSITIVITY_TEXT,
+        "The gait predicted for a current of (%g, %g) m/s is within %.2g %% of that found by solving there%s.",
         forecast->current[0], forecast->current[1], 100 * worst, forecast->solved ? "" : " (which did not converge)");
     const moray_steady *swum[SENSITIVITY_GAITS];
     bool held = true;
@@ -116,26 +112,27 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
         swum[k] = &forecast->trial[k].steady[MORAY_FIRST_PRINCIPLES];
         held = held && forecast->trial[k].held[MORAY_FIRST_PRINCIPLES];
     }
-    const double course = run->job.common.course, best = moray_course_speed(swum[2], course);
+    const double course = run->job.snake.course, best = moray_course_speed(swum[2], course);
     if (held)
-        say(f,
+        moray_text_add(
+            f->text, SENSITIVITY_TEXT,
             " Swum on the first-principles model, it is off by %+.3f %% in speed and %+.3f %% in power; the gait kept "
             "as it "
             "was, by %+.3f %% and %+.3f %%.",
             percent(moray_course_speed(swum[1], course), best), percent(swum[1]->power, swum[2]->power),
             percent(moray_course_speed(swum[0], course), best), percent(swum[0]->power, swum[2]->power));
-    say(f, " The speed that the slopes alone prediction is off by %+.2f %%.",
-        percent(forecast->prediction[1].course_speed, forecast->prediction[2].course_speed));
+    moray_text_add(f->text, SENSITIVITY_TEXT, " The speed that the slopes alone prediction is off by %+.2f %%.",
+                   percent(forecast->prediction[1].course_speed, forecast->prediction[2].course_speed));
     if (fabs(forecast->change.step) < 1)
-        say(f, " WARNING: after %.2g %% of the way the active set changes: %s.", 100 * forecast->change.step,
-            forecast->change.what);
-    say(f, "\n");
+        moray_text_add(f->text, SENSITIVITY_TEXT, " WARNING: after %.2g %% of the way the active set changes: %s.",
+                       100 * forecast->change.step, forecast->change.what);
+    moray_text_add(f->text, SENSITIVITY_TEXT, "\n");
 }
 
 static void find_words(const sensitivity *run, sensitivity_findings *f)
 {
     say_confirmation(run, f);
-    if (run->job.common.model == MORAY_CONTROL_ORIENTED)
+    if (run->job.snake.model == MORAY_CONTROL_ORIENTED)
         say_disagreement(run, f);
     say_changes(run, f);
     say_reservations(run, f);
@@ -185,18 +182,18 @@ static void json_forecast(moray_json *json, const sensitivity *run)
     moray_json_text(json, "why_not", forecast->why.code ? forecast->why.text : NULL);
     for (int k = 0; k < SENSITIVITY_GAITS && !forecast->why.code; k++) {
         moray_json_open(json, keys[k]);
-        moray_gait_to_json(json, "gait", &run->job.common.robot, forecast->trial[k].gait);
+        moray_gait_to_json(json, "gait", &run->job.snake.robot, forecast->trial[k].gait);
         moray_json_number(json, "predicted_course_speed_m_s", forecast->prediction[k].course_speed);
         moray_json_number(json, "predicted_power_W", forecast->prediction[k].power);
-        moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &forecast->trial[k], run->job.common.course);
+        moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &forecast->trial[k], run->job.snake.course);
         moray_json_close(json);
     }
     moray_json_close(json);
 }
 
-static moray_json *json_of(const sensitivity *run)
+static void summarise(const void *found, moray_json *json)
 {
-    moray_json *json = moray_json_new();
+    const sensitivity *run = found;
     gait_job_json_head(json, &run->job);
     gait_job_json_stage(json, &run->job, last_stage(&run->job));
     moray_json_open_list(json, "sensitivities");
@@ -208,61 +205,46 @@ static moray_json *json_of(const sensitivity *run)
     moray_json_text(json, "left_out", run->left_out);
     if (run->forecast.asked)
         json_forecast(json, run);
-    return json;
 }
 
-static moray_status write_files(const sensitivity *run, const sensitivity_findings *found, const moray_json *json)
+static moray_status write(const void *found, moray_output *output)
 {
-    const moray_common *common = &run->job.common;
-    FILE *file;
-    MORAY_TRY(moray_output_file(common->output, "summary.json", &file));
-    MORAY_TRY(moray_json_write(json, file));
-    MORAY_TRY(gait_job_trajectory(&run->job, last_stage(&run->job), common->output));
-    const moray_section section = {.title = "Sensitivities",
-                                   .text = found->text,
-                                   .figures = "",
-                                   .tables = found->table,
-                                   .n_tables = found->tables};
-    const moray_report report = {
-        .title = run->job.name, .sections = &section, .n_sections = 1, .argc = common->argc, .argv = common->argv};
-    MORAY_TRY(moray_output_report(common->output, &report));
-    return moray_output_commit(common->output);
+    const sensitivity *run = found;
+    return gait_job_trajectory(&run->job, last_stage(&run->job), output);
 }
 
-static void print(const sensitivity *run, const sensitivity_findings *found)
+static void print(const void *found, const moray_report *report)
 {
-    const moray_common *common = &run->job.common;
+    const sensitivity *run = found;
+    const moray_section *section = report->sections;
     char text[500];
-    printf("%d links, current (%g, %g) m/s, course %g deg", common->robot.links, common->current[0], common->current[1],
-           common->course / DEG);
+    gait_job_print_head(&run->job);
     if (isfinite(last_stage(&run->job)->power))
         printf("; mean joint power at most %.4g W whatever changes", last_stage(&run->job)->power);
     printf("\n\n");
-    for (int t = 0; t < found->tables; t++) {
-        moray_table_print(&found->table[t], stdout);
-        printf("\n");
-    }
-    printf("%s", found->text);
+    moray_tables_print(section->tables, section->n_tables, stdout);
     moray_certificate_line(&last_stage(&run->job)->certificate, text, sizeof text);
-    printf("%s\n", text);
+    printf("%s%s\n", section->text, text);
 }
 
 moray_status sensitivity_report(gait_job *job)
 {
     const sensitivity *run = (const sensitivity *)job;
-    moray_json *json = json_of(run);
-    moray_status status = moray_error(MORAY_MEMORY, "no memory for a report");
     sensitivity_findings *found = calloc(1, sizeof *found);
-    if (found) {
-        sensitivity_tables(run, found);
-        find_words(run, found);
-        status = job->common.output ? write_files(run, found, json) : moray_ok();
-        if (!moray_failed(status) && !job->common.json)
-            print(run, found);
-    }
-    if (!moray_failed(status) && job->common.json)
-        status = moray_json_write(json, stdout);
+    if (!found)
+        return moray_error(MORAY_MEMORY, "no memory for a report");
+    sensitivity_tables(run, found);
+    find_words(run, found);
+    const moray_section section = {.title = "Sensitivities",
+                                   .text = found->text,
+                                   .figures = "",
+                                   .tables = found->table,
+                                   .n_tables = found->tables};
+    const moray_report report = {.title = job->name, .sections = &section, .n_sections = 1};
+    const moray_status status = moray_app_show(
+        &job->common,
+        &(moray_results){
+            .name = job->name, .found = run, .summary = summarise, .print = print, .write = write, .report = &report});
     free(found);
-    moray_json_free(json);
     return status;
 }

@@ -11,16 +11,16 @@ const char *const sensitivity_names[SLOPES] = {"speed", "power", "theta_max", "o
 const char *sensitivity_unit(const gait_job *job, int quantity)
 {
     static const char *const units[SLOPES] = {"m/s", "W", "deg", "deg/s", "deg", "deg", "1"};
-    return quantity == SLOPE_OFFSET && job->common.model == MORAY_CONTROL_ORIENTED ? "cm" : units[quantity];
+    return quantity == SLOPE_OFFSET && job->snake.model == MORAY_CONTROL_ORIENTED ? "cm" : units[quantity];
 }
 
 void sensitivity_values(const gait_job *job, const moray_gait *gait, double speed, double power, double value[SLOPES])
 {
-    const moray_model model = job->common.model;
+    const moray_model model = job->snake.model;
     value[SLOPE_SPEED] = speed;
     value[SLOPE_POWER] = power;
     value[SLOPE_THETA_MAX] =
-        moray_theta_max_from_amplitude(&job->common.robot, model, gait->amplitude, gait->delta) / DEG;
+        moray_theta_max_from_amplitude(&job->snake.robot, model, gait->amplitude, gait->delta) / DEG;
     value[SLOPE_OMEGA] = gait->omega / DEG;
     value[SLOPE_DELTA] = gait->delta / DEG;
     value[SLOPE_OFFSET] = gait->offset * (model == MORAY_CONTROL_ORIENTED ? 100 : 1 / DEG);
@@ -64,7 +64,7 @@ static moray_status displace(const sensitivity *run, const sensitivity_parameter
     for (int k = 0; k < SIDES; k++) {
         sensitivity_displace(parameter, &run->job, side_steps[k] * row->step, &to->moved[k]);
         const gait_job *job = &to->moved[k].job;
-        MORAY_TRY(gait_job_problem(job, &to->moved[k].at, job->goal, job->common.current, &to->problem[k]));
+        MORAY_TRY(gait_job_problem(job, &to->moved[k].at, job->goal, job->snake.current, &to->problem[k]));
     }
     return moray_ok();
 }
@@ -132,13 +132,13 @@ static moray_status swim(const gait_job *job, const moray_gait *gait, double val
     const moray_model model = MORAY_FIRST_PRINCIPLES;
     moray_test_rig rig;
     moray_steady steady;
-    MORAY_TRY(moray_test_rig_new(&rig, &job->common.robot, job->common.current, job->common.course));
+    MORAY_TRY(moray_test_rig_new(&rig, &job->snake.robot, job->snake.current, job->snake.course));
     rig.settings.agreement = 1e-9;
     const moray_swim_setup setup = moray_test_rig_setup(&rig, model);
-    const moray_gait mapped = moray_gait_map(&job->common.robot, gait, job->common.model, model);
-    const moray_status status = moray_swim_hold_course(&setup, &mapped, job->common.course, &steady);
+    const moray_gait mapped = moray_gait_map(&job->snake.robot, gait, job->snake.model, model);
+    const moray_status status = moray_swim_hold_course(&setup, &mapped, job->snake.course, &steady);
     moray_test_rig_free(&rig);
-    value[0] = moray_failed(status) ? NAN : moray_course_speed(&steady, job->common.course);
+    value[0] = moray_failed(status) ? NAN : moray_course_speed(&steady, job->snake.course);
     value[1] = moray_failed(status) ? NAN : steady.power;
     return status.code == MORAY_NOT_SOLVED ? moray_ok() : status;
 }
@@ -233,7 +233,7 @@ static void fill_sizes(sensitivity *run)
 // Solves more tightly, so that what is active stands out from what is only near.
 static moray_status polish(sensitivity *run)
 {
-    stage *best = &run->job.stage[run->job.common.model];
+    stage *best = &run->job.stage[run->job.snake.model];
     moray_solution *solution;
     MORAY_TRY(sensitivity_solve(run, best->problem, best->solution, &solution));
     if (!sensitivity_solved(solution)) {

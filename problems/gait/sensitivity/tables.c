@@ -3,8 +3,6 @@
 
 #include "sensitivity.h"
 
-static const char *const model_names[] = {"control-oriented", "first-principles"};
-
 // ---- Numbers -------------------------------------------------------------------------------------------------------
 
 static const double rounding = 1e-7, steadiness = 1e-5;
@@ -24,7 +22,7 @@ static double elasticity(const sensitivity *run, const sensitivity_row *row, int
 double sensitivity_swum_share(const sensitivity *run, const sensitivity_row *row, int quantity)
 {
     const moray_steady *swum = &last_stage(&run->job)->trial.steady[MORAY_FIRST_PRINCIPLES];
-    const double speed = moray_course_speed(swum, run->job.common.course);
+    const double speed = moray_course_speed(swum, run->job.snake.course);
     const double size = quantity == SLOPE_SPEED ? speed : swum->power, scale = row->current ? speed : row->scale;
     return shown(run, row, row->swum[quantity], quantity, steadiness) * scale / size;
 }
@@ -64,7 +62,8 @@ static void tell_optimum(const sensitivity *run, sensitivity_findings *f)
     const moray_steady *swum = &at->trial.steady[MORAY_FIRST_PRINCIPLES];
     double value[SLOPES];
     moray_table *table = open_table(f, 2);
-    snprintf(f->title[f->tables - 1], sizeof *f->title, "The fastest gait on the %s model", model_names[at->model]);
+    snprintf(f->title[f->tables - 1], sizeof *f->title, "The fastest gait on the %s model",
+             moray_model_name(at->model));
     table->columns[0] = "predicted";
     table->columns[1] = "swum, first-pr.";
     sensitivity_values(&run->job, &at->prediction.gait, at->prediction.course_speed, at->prediction.power, value);
@@ -72,7 +71,7 @@ static void tell_optimum(const sensitivity *run, sensitivity_findings *f)
         moray_table_row *row = add_row(f, sensitivity_names[i], sensitivity_unit(&run->job, i));
         row->value[0] = fabs(value[i]) < 1e-9 * fabs(run->size[i]) ? 0 : value[i];
         if (i == SLOPE_SPEED && at->trial.held[MORAY_FIRST_PRINCIPLES])
-            row->value[1] = moray_course_speed(swum, run->job.common.course);
+            row->value[1] = moray_course_speed(swum, run->job.snake.course);
         if (i == SLOPE_POWER)
             row->value[1] = swum->power;
     }
@@ -151,7 +150,7 @@ static void tell_forecast(const sensitivity *run, sensitivity_findings *f)
             rows[i].value[k] = fabs(value[i]) < 1e-9 * fabs(run->size[i]) ? 0 : value[i];
         if (!forecast->trial[k].held[MORAY_FIRST_PRINCIPLES])
             continue;
-        rows[n].value[k] = moray_course_speed(swum, run->job.common.course);
+        rows[n].value[k] = moray_course_speed(swum, run->job.snake.course);
         rows[n + 1].value[k] = swum->power;
     }
 }

@@ -24,7 +24,7 @@ static double way(double t)
 
 static moray_gait gait_of(const heading_job *job, moray_model model)
 {
-    return (moray_gait){.amplitude = moray_amplitude_from_theta_max(&job->steer.common.robot, model, theta_max, delta),
+    return (moray_gait){.amplitude = moray_amplitude_from_theta_max(&job->steer.snake.robot, model, theta_max, delta),
                         .omega = omega,
                         .delta = delta};
 }
@@ -76,10 +76,10 @@ moray_status heading_fig8_prepare(heading_job *job)
     }
     if (isnan(job->horizon))
         job->horizon = horizon;
-    MORAY_TRY(moray_straight_motion_find(&straight, &job->steer.common.robot, MORAY_FIRST_PRINCIPLES, &gait));
-    const moray_swim_closed_loop_spec plan = {.robot = &job->steer.common.robot,
+    MORAY_TRY(moray_straight_motion_find(&straight, &job->steer.snake.robot, MORAY_FIRST_PRINCIPLES, &gait));
+    const moray_swim_closed_loop_spec plan = {.robot = &job->steer.snake.robot,
                                               .straight = &straight,
-                                              .current = {job->steer.common.current[0], job->steer.common.current[1]},
+                                              .current = {job->steer.snake.current[0], job->steer.snake.current[1]},
                                               .controller = &controller,
                                               .duration = job->horizon,
                                               .intervals = (int)ceil(per_second * job->horizon),
@@ -128,7 +128,7 @@ moray_status heading_fig8_draw(const heading_job *job)
         t[k] = job->horizon * k / (points - 1);
         paper[k] = paper_offset(job, MORAY_FIRST_PRINCIPLES, t[k]) / DEG;
     }
-    for (int model = 0; model <= (int)job->steer.common.model; model++) {
+    for (int model = 0; model <= (int)job->steer.snake.model; model++) {
         double *found = paper + n * points;
         const double scale = steer_offset_ratio(&job->steer, 1 + model, (moray_model)model, MORAY_FIRST_PRINCIPLES);
         for (int k = 0; k < points; k++)

@@ -98,7 +98,7 @@ moray_status heading_search_gait(heading_job *job, const moray_gait *start, mora
 {
     hunt h = {.job = job, .spec = heading_spec(job, MORAY_FIRST_PRINCIPLES, false)};
     job->first_objective = job->best_objective = INFINITY;
-    moray_orbit_spec spec = moray_orbit_spec_default(&job->steer.common.robot, MORAY_FIRST_PRINCIPLES);
+    moray_orbit_spec spec = moray_orbit_spec_default(&job->steer.snake.robot, MORAY_FIRST_PRINCIPLES);
     spec.steered = false;
     MORAY_TRY(moray_orbit_new(&h.orbit, &spec));
     const moray_status status = search(&h, start);

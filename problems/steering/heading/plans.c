@@ -5,11 +5,11 @@ static const double error_unit = 10 * DEG; // of the heading, in the objective
 
 moray_heading_spec heading_spec(const heading_job *job, moray_model model, bool averaged)
 {
-    const moray_common *common = &job->steer.common;
-    return (moray_heading_spec){.robot = common->robot,
+    const moray_snake_options *snake = &job->steer.snake;
+    return (moray_heading_spec){.robot = snake->robot,
                                 .model = model,
                                 .averaged = averaged,
-                                .current = {common->current[0], common->current[1]},
+                                .current = {snake->current[0], snake->current[1]},
                                 .limits = steer_limits(&job->steer, model),
                                 .weight = {.heading = 1 / (error_unit * error_unit),
                                            .power = job->weight_power,
@@ -34,25 +34,27 @@ static double largest_jump(const heading_job *job)
 void heading_explain(const steer_job *steer, char *text, size_t size)
 {
     const heading_job *job = (const heading_job *)steer;
-    const moray_model model = steer->common.model;
+    const moray_model model = steer->snake.model;
     const moray_steering_limits limits = steer_limits(steer, model);
     const double fastest = moray_reference_fastest(&job->reference, 0, job->horizon), jump = largest_jump(job);
     const double sustained = fabs(steer->turn_rate[model]), build_up = limits.offset / limits.offset_rate;
-    const double water = hypot(steer->common.current[0], steer->common.current[1]);
+    const double water = hypot(steer->snake.current[0], steer->snake.current[1]);
     const double speed = steer_last_plan(steer)->straight.speed;
     steer_say_limit(steer, text, size);
-    steer_say(text, size, " at %.2f deg/s, which takes %.3g s to build up.", sustained / DEG, build_up);
+    moray_text_add(text, size, " at %.2f deg/s, which takes %.3g s to build up.", sustained / DEG, build_up);
     if (fastest > sustained)
-        steer_say(text, size,
-                  " The reference turns at up to %.2f deg/s, beyond that: there the error grows however the robot is "
-                  "steered.",
-                  fastest / DEG);
+        moray_text_add(
+            text, size,
+            " The reference turns at up to %.2f deg/s, beyond that: there the error grows however the robot is "
+            "steered.",
+            fastest / DEG);
     if (jump > 0)
-        steer_say(text, size, " A jump of %.4g deg takes %.3g s at least.", jump / DEG, jump / sustained + build_up);
-    steer_say(text, size, " T");
+        moray_text_add(text, size, " A jump of %.4g deg takes %.3g s at least.", jump / DEG,
+                       jump / sustained + build_up);
+    moray_text_add(text, size, " T");
     steer_say_saturation(steer, text, size);
     if (water > speed)
-        steer_say(
+        moray_text_add(
             text, size,
             " The current of %.3g m/s is stronger than the robot, which swims %.3g m/s: it holds its heading, but "
             "over ground it is carried away.",
@@ -110,7 +112,7 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
 moray_status heading_plan_first(heading_job *job)
 {
     steer_job *steer = &job->steer;
-    const moray_gait paper = moray_gait_paper(&steer->common.robot), first = steer_first_gait(steer);
+    const moray_gait paper = moray_gait_paper(&steer->snake.robot), first = steer_first_gait(steer);
     MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
     const moray_heading_spec averaged = heading_spec(job, MORAY_CONTROL_ORIENTED, true);
     const moray_settings coarse = heading_settings(job, true, 2 * M_PI / first.omega);
@@ -123,7 +125,7 @@ moray_status heading_plan_last(heading_job *job)
 {
     const moray_gait first = steer_first_gait(&job->steer);
     const moray_gait gait =
-        moray_gait_map(&job->steer.common.robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+        moray_gait_map(&job->steer.snake.robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
     if (job->gait_evaluations == 0 || steer_gait_given(&job->steer))
         return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->plan[MORAY_CONTROL_ORIENTED]);
     moray_heading_plan best;

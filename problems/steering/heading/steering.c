@@ -61,7 +61,7 @@ static const steer_law laws[] = {
 static void choose_trials(steer_job *job)
 {
     const moray_model any = MORAY_CONTROL_ORIENTED;
-    const int found = 1 + (int)job->common.model;
+    const int found = 1 + (int)job->snake.model;
     const bool given = steer_gait_given(job);
     if (!given)
         steer_add(job, "feedback, paper's gait", &laws[FEEDBACK], 0, any);
@@ -114,10 +114,10 @@ static void fig8_table(const heading_job *job, steer_tables *tables)
     const moray_table table = {.title = "Offset that the plans found beside the paper's",
                                .columns = {"paper's", "turning", "back", "straight on", "RMS difference"},
                                .n_columns = FIG8_VALUES,
-                               .n_rows = 1 + (int)job->steer.common.model};
+                               .n_rows = 1 + (int)job->steer.snake.model};
     for (int model = 0; model < table.n_rows; model++) {
         moray_table_row *row = &tables->rows[tables->n][model];
-        *row = (moray_table_row){.label = steer_model_names[model], .unit = units[model]};
+        *row = (moray_table_row){.label = moray_model_name(model), .unit = units[model]};
         heading_fig8_compare(job, (moray_model)model, row->value);
         for (int k = 0; k < FIG8_VALUES; k++)
             row->value[k] /= model == MORAY_CONTROL_ORIENTED ? 0.01 : DEG;
@@ -196,7 +196,7 @@ static void json_fig8(moray_json *json, const heading_job *job)
         {"paper_m", "turning_m", "back_m", "straight_m", "rms_difference_m"},
         {"paper_deg", "turning_deg", "back_deg", "straight_deg", "rms_difference_deg"}};
     moray_json_open(json, "fig8_offset");
-    for (int model = 0; model <= (int)job->steer.common.model; model++) {
+    for (int model = 0; model <= (int)job->steer.snake.model; model++) {
         double match[FIG8_VALUES];
         heading_fig8_compare(job, (moray_model)model, match);
         moray_json_open(json, models[model]);
@@ -216,9 +216,9 @@ static void json_tail(const steer_job *steer, moray_json *json)
         json_fig8(json, job);
     moray_json_number(json, "gaits_tried", job->gaits_tried);
     moray_json_open(json, "limits");
-    moray_json_number(json, "turn_rate_deg_s", fabs(steer->turn_rate[steer->common.model]) / DEG);
+    moray_json_number(json, "turn_rate_deg_s", fabs(steer->turn_rate[steer->snake.model]) / DEG);
     moray_json_number(json, "reference_rate_deg_s", moray_reference_fastest(&job->reference, 0, job->horizon) / DEG);
-    steer_json_saturation(steer, json, steer->common.model);
+    steer_json_saturation(steer, json, steer->snake.model);
     moray_json_text(json, "in_words", text);
     moray_json_close(json);
 }
@@ -246,7 +246,7 @@ static moray_status draw(const steer_job *steer)
 // Who swims on the paper's gait where that takes more than the power allowed is no rival.
 static void bar_trials(steer_job *job)
 {
-    const moray_model model = job->common.model;
+    const moray_model model = job->snake.model;
     const bool beyond = job->straight[0][model].power > (1 + 1e-6) * steer_limits(job, model).power;
     for (int k = 0; k < job->n_trials; k++)
         job->trial[k].barred = job->trial[k].gait == 0 && beyond;
@@ -265,7 +265,7 @@ static moray_status work(steer_job *steer)
     MORAY_TRY(heading_plan_first(job));
     bar_trials(steer);
     MORAY_TRY(steer_run_trials(steer));
-    if (steer->common.model == MORAY_CONTROL_ORIENTED)
+    if (steer->snake.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
     MORAY_TRY(heading_plan_last(job));
     return steer_run_trials(steer);

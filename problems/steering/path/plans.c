@@ -5,13 +5,13 @@ static const double across_unit = 0.1; // m of cross-track error, in the objecti
 
 moray_path_spec path_spec(const path_job *job, moray_model model, bool averaged)
 {
-    const moray_common *common = &job->steer.common;
+    const moray_snake_options *snake = &job->steer.snake;
     // The objective as a tenth of a mean over time: multipliers of the order of one.
     const double seconds = 10 * job->path.length / job->steer.straight[0][model].speed;
-    return (moray_path_spec){.robot = common->robot,
+    return (moray_path_spec){.robot = snake->robot,
                              .model = model,
                              .averaged = averaged,
-                             .current = {common->current[0], common->current[1]},
+                             .current = {snake->current[0], snake->current[1]},
                              .limits = steer_limits(&job->steer, model),
                              .weight = {.across = 1 / (across_unit * across_unit * seconds),
                                         .time = job->weight_time / seconds,
@@ -26,7 +26,7 @@ moray_path_spec path_spec(const path_job *job, moray_model model, bool averaged)
 // Speed over ground along a course, crabbing.
 static double way(const path_job *job, double speed, double course)
 {
-    const double *V = job->steer.common.current, c = cos(course), s = sin(course);
+    const double *V = job->steer.snake.current, c = cos(course), s = sin(course);
     const double side = V[1] * c - V[0] * s;
     return sqrt(fmax(speed * speed - side * side, 0)) + V[0] * c + V[1] * s;
 }
@@ -52,7 +52,7 @@ void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, 
 {
     enum { points = 4000 };
     const steer_plan *plan = steer_last_plan(&job->steer);
-    const double *V = job->steer.common.current, speed = plan->straight.speed, course = leg->course;
+    const double *V = job->steer.snake.current, speed = plan->straight.speed, course = leg->course;
     double t0, tf, x[MORAY_STEERING_STATES], u[2], sum = 0;
     int n = 0;
     *asked = -asin((V[1] * cos(course) - V[0] * sin(course)) / speed);
@@ -71,32 +71,33 @@ void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, 
 
 static void say_corner(const path_job *job, const moray_path_piece *corner, double turn_rate, char *text, size_t size)
 {
-    steer_say(text, size,
-              "the corner behind leg %d turns by %.4g deg on a radius of %.4g m: at the robot's speed over ground that "
-              "is %.3g deg/s, and with its offset at the limit it turns at %.3g deg/s",
-              corner->leg, fabs(corner->curvature) * corner->length / DEG, fabs(1 / corner->curvature),
-              path_turning(job, corner) / DEG, turn_rate / DEG);
+    moray_text_add(
+        text, size,
+        "the corner behind leg %d turns by %.4g deg on a radius of %.4g m: at the robot's speed over ground that "
+        "is %.3g deg/s, and with its offset at the limit it turns at %.3g deg/s",
+        corner->leg, fabs(corner->curvature) * corner->length / DEG, fabs(1 / corner->curvature),
+        path_turning(job, corner) / DEG, turn_rate / DEG);
 }
 
 void path_explain(const steer_job *steer, char *text, size_t size)
 {
     const path_job *job = (const path_job *)steer;
-    const moray_model model = steer->common.model;
+    const moray_model model = steer->snake.model;
     const moray_steering_limits limits = steer_limits(steer, model);
     const double speed = steer_last_plan(steer)->straight.speed, turn_rate = fabs(steer->turn_rate[model]);
     const moray_path_piece *corner = tightest(job);
     steer_say_limit(steer, text, size);
-    steer_say(text, size, " at %.2f deg/s, in still water on a circle of %.3g m, which takes %.3g s to build up.",
-              turn_rate / DEG, speed / turn_rate, limits.offset / limits.offset_rate);
+    moray_text_add(text, size, " at %.2f deg/s, in still water on a circle of %.3g m, which takes %.3g s to build up.",
+                   turn_rate / DEG, speed / turn_rate, limits.offset / limits.offset_rate);
     if (corner && path_turning(job, corner) > turn_rate) {
-        steer_say(text, size, " That is too slow: ");
+        moray_text_add(text, size, " That is too slow: ");
         say_corner(job, corner, turn_rate, text, size);
-        steer_say(text, size, ".");
+        moray_text_add(text, size, ".");
     } else if (corner)
-        steer_say(text, size, " The corners ask for up to %.2f deg/s.", path_turning(job, corner) / DEG);
-    steer_say(text, size,
-              " Swimming straight along the path, crabbing, would take %.1f s by the triangle of velocities. T",
-              moray_path_duration(&job->path, 0, speed, steer->common.current));
+        moray_text_add(text, size, " The corners ask for up to %.2f deg/s.", path_turning(job, corner) / DEG);
+    moray_text_add(text, size,
+                   " Swimming straight along the path, crabbing, would take %.1f s by the triangle of velocities. T",
+                   moray_path_duration(&job->path, 0, speed, steer->snake.current));
     steer_say_saturation(steer, text, size);
 }
 
@@ -119,7 +120,7 @@ static moray_settings settings_of(path_job *job, bool averaged, const moray_stra
 {
     const double per_period = averaged ? 1.2 : job->steer.intervals_per_period,
                  period = 2 * M_PI / straight->gait.omega;
-    const double seconds = moray_path_duration(&job->path, 0, straight->speed, job->steer.common.current);
+    const double seconds = moray_path_duration(&job->path, 0, straight->speed, job->steer.snake.current);
     return steer_settings(&job->steer, averaged, (int)ceil(seconds / period * per_period) + 4, 1e-4, 1e-4);
 }
 
@@ -149,14 +150,14 @@ static moray_status make_plan(path_job *job, moray_model model, const moray_gait
 moray_status path_make_plans(path_job *job)
 {
     steer_job *steer = &job->steer;
-    const moray_robot *robot = &steer->common.robot;
+    const moray_robot *robot = &steer->snake.robot;
     const moray_gait paper = moray_gait_paper(robot), first = steer_first_gait(steer);
     if (isnan(job->heading))
         job->heading = job->path.piece->course;
     MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
     MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, true, &first, NULL, &job->averaged));
     MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged.straight.gait, &job->averaged));
-    if (steer->common.model == MORAY_CONTROL_ORIENTED)
+    if (steer->snake.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
     moray_gait gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
     if (job->find_gait && !steer_gait_given(steer))

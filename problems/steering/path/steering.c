@@ -42,7 +42,7 @@ static moray_status set_receding(steer_steersman *h)
                                         .horizon = h->job->look_ahead_periods * 2 * M_PI / straight->gait.omega};
     replanner->spec.tube = MORAY_INFINITY;
     replanner->spec.speed =
-        job->path.length / moray_path_duration(&job->path, 0, straight->speed, h->job->common.current);
+        job->path.length / moray_path_duration(&job->path, 0, straight->speed, h->job->snake.current);
     return steer_set_receding(h, "radau4", moray_path_replan(replanner), &replanner->spec.limits, 0, h->plan.solution);
 }
 
@@ -61,7 +61,7 @@ static const steer_law laws[] = {
 
 static void choose_trials(steer_job *job)
 {
-    const int found = 1 + (int)job->common.model;
+    const int found = 1 + (int)job->snake.model;
     steer_trial *paper = steer_add(job, "ILOS, paper's gait", &laws[ILOS], 0, MORAY_CONTROL_ORIENTED);
     steer_trial *sight = steer_add(job, "LOS, gait found", &laws[LOS], found, MORAY_CONTROL_ORIENTED);
     sight->like = paper;
@@ -207,9 +207,9 @@ static void json_tail(const steer_job *steer, moray_json *json)
     for (int k = 0; k < job->path.n; k++)
         turning = fmax(turning, path_turning(job, &job->path.piece[k]));
     moray_json_open(json, "limits");
-    moray_json_number(json, "turn_rate_deg_s", fabs(steer->turn_rate[steer->common.model]) / DEG);
+    moray_json_number(json, "turn_rate_deg_s", fabs(steer->turn_rate[steer->snake.model]) / DEG);
     moray_json_number(json, "corner_turn_rate_deg_s", turning / DEG);
-    steer_json_saturation(steer, json, steer->common.model);
+    steer_json_saturation(steer, json, steer->snake.model);
     moray_json_close(json);
 }
 

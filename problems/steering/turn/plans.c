@@ -3,11 +3,11 @@
 
 static moray_turn_spec spec_of(const turn_job *job, moray_model model, bool averaged)
 {
-    const moray_common *common = &job->steer.common;
-    return (moray_turn_spec){.robot = common->robot,
+    const moray_snake_options *snake = &job->steer.snake;
+    return (moray_turn_spec){.robot = snake->robot,
                              .model = model,
                              .averaged = averaged,
-                             .current = {common->current[0], common->current[1]},
+                             .current = {snake->current[0], snake->current[1]},
                              .limits = steer_limits(&job->steer, model),
                              .heading = job->angle,
                              .to_position = turn_to_position(job),
@@ -17,7 +17,7 @@ static moray_turn_spec spec_of(const turn_job *job, moray_model model, bool aver
 
 static moray_status why_not(const turn_job *job, const moray_turn_plan *plan)
 {
-    const double *V = job->steer.common.current, water = hypot(V[0], V[1]), speed = plan->straight.speed;
+    const double *V = job->steer.snake.current, water = hypot(V[0], V[1]), speed = plan->straight.speed;
     const moray_status told = steer_not_solved(plan->solution);
     if (told.code != MORAY_NOT_SOLVED || !turn_to_position(job))
         return told;
@@ -81,7 +81,7 @@ moray_status turn_make_plans(turn_job *job)
     MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, &first, NULL, &job->averaged));
     MORAY_TRY(steer_straight_motions(steer, 0, &job->averaged.straight.gait, MORAY_CONTROL_ORIENTED));
     const moray_turn_plan *from = &job->averaged;
-    for (int model = 0; model <= (int)steer->common.model; model++) {
+    for (int model = 0; model <= (int)steer->snake.model; model++) {
         MORAY_TRY(solve(job, (moray_model)model, &steer->straight[0][model].gait, from, &job->plan[model]));
         from = &job->plan[model];
     }

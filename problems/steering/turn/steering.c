@@ -167,7 +167,7 @@ static void conclude(const steer_job *steer, char *text, size_t size)
 
 static void turn_explain(const steer_job *job, char *text, size_t size)
 {
-    const moray_model model = job->common.model;
+    const moray_model model = job->snake.model;
     const moray_steering_limits limits = steer_limits(job, model);
     const steer_saturation share = steer_saturation_of(job, model);
     const double rate = fabs(job->turn_rate[model]), angle = ((const turn_job *)job)->angle;
@@ -175,14 +175,16 @@ static void turn_explain(const steer_job *job, char *text, size_t size)
                           : share.rate > 2 * share.offset ? "The rate of the offset decides"
                                                           : "Offset and rate decide together";
     steer_say_limit(job, text, size);
-    steer_say(text, size,
-              " steadily at %.2f deg/s, %.4g deg in %.2f s; to bring the offset there and back takes %.3g s each. %s: "
-              "t",
-              rate / DEG, angle / DEG, fabs(angle) / rate, limits.offset / limits.offset_rate, limited);
+    moray_text_add(
+        text, size,
+        " steadily at %.2f deg/s, %.4g deg in %.2f s; to bring the offset there and back takes %.3g s each. %s: "
+        "t",
+        rate / DEG, angle / DEG, fabs(angle) / rate, limits.offset / limits.offset_rate, limited);
     steer_say_saturation(job, text, size);
-    steer_say(text, size,
-              " The heading swings with every stroke: it counts without the undulation of straight swimming, and the "
-              "turn may end in any part of a stroke.");
+    moray_text_add(
+        text, size,
+        " The heading swings with every stroke: it counts without the undulation of straight swimming, and the "
+        "turn may end in any part of a stroke.");
 }
 
 // ---- JSON, figures -------------------------------------------------------------------------------------------------

@@ -2,10 +2,9 @@
 #ifndef SRC_SNAKE_GAIT_ENDPOINT_H
 #define SRC_SNAKE_GAIT_ENDPOINT_H
 
-#include "base/triplets.h"
 #include "moray/snake/gait_problem.h"
 
-// The ends of the optimal-gait problem as a map with analytic derivatives. Objective: minus the speed along the course,
+// The ends of the optimal-gait problem. Objective: minus the speed along the course,
 // or the joint work per distance along it. Events: periodicity of every state but the position, displacement across the
 // course [m], omega T [rad], amplitude in the middle of the body as bounded by moray_gait_amplitude_bounds, its square
 // for the last and the first link where the taper may be positive and negative; then where limited mean power [W],
@@ -20,21 +19,21 @@ struct gait_endpoint {
     bool head, tail; // a taper above and below 0 is allowed
     moray_gait_goal goal;
     bool power, rate, speed;
-    int events;
-    int power_event; // place of the mean power among them
-    triplets jac, hess;
 };
 
-// The map uses `endpoint`, which must not move. Error: MORAY_MEMORY.
-moray_status moray_gait_endpoint_map(moray_map *map, struct gait_endpoint *endpoint);
-void moray_gait_endpoint_free(struct gait_endpoint *endpoint);
+// The endpoint function of moray_ocp_spec; data is a struct gait_endpoint.
+void moray_gait_ends(const moray_ends *at, moray_end_values *out, const void *data);
 
-// What the events are called, name[endpoint->events].
-void moray_gait_event_names(const struct gait_endpoint *endpoint, const char **name);
+int moray_gait_events(const struct gait_endpoint *endpoint);      // how many
+int moray_gait_power_event(const struct gait_endpoint *endpoint); // place of the mean power among them
+
+typedef char gait_name[32];
+
+// What the events are called, name[moray_gait_events(endpoint)]; text has room for nx names.
+void moray_gait_event_names(const struct gait_endpoint *endpoint, gait_name *text, const char **name);
 
 // What the n path outputs are called: joint efforts if any, then angles of the links, then rates of the joints. name[n]
 // into text[n].
-typedef char gait_name[32];
 void moray_gait_path_names(int n, int efforts, int links, gait_name *text, const char **name);
 
 // Bounds of the amplitude event for a range of theta_max: (33) a / (L cos(delta/2)) = sin theta_max, or

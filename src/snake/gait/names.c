@@ -3,10 +3,12 @@
 
 #include "snake/gait/endpoint.h"
 
-void moray_gait_event_names(const struct gait_endpoint *e, const char **name)
+void moray_gait_event_names(const struct gait_endpoint *e, gait_name *text, const char **name)
 {
-    for (int r = 0; r < e->nx - 2; r++)
-        *name++ = "periodicity";
+    for (int r = 0; r < e->nx - 2; r++) {
+        snprintf(text[r], sizeof *text, "periodicity %d", r + 1);
+        *name++ = text[r];
+    }
     *name++ = "way across the course";
     *name++ = "omega T";
     if (!e->series)
@@ -17,8 +19,10 @@ void moray_gait_event_names(const struct gait_endpoint *e, const char **name)
         *name++ = "theta_max of the tail";
     if (e->power)
         *name++ = "power";
-    for (int k = 0; k < (e->head && e->tail ? 2 : 1) && e->rate; k++)
-        *name++ = "joint rate";
+    if (e->rate && e->head && e->tail)
+        *name++ = "joint rate of the head";
+    if (e->rate)
+        *name++ = e->head && e->tail ? "joint rate of the tail" : "joint rate";
     if (e->speed)
         *name++ = "course speed";
 }

@@ -87,7 +87,7 @@ static moray_status make_plant(moray_gait_problem *problem)
                                                  : moray_fp_plant(&problem->plant, &plant);
 }
 
-static moray_status make_endpoint(moray_gait_problem *problem)
+static void make_endpoint(moray_gait_problem *problem)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
     const int joints = spec->joints == MORAY_JOINTS_CLOSED_LOOP ? spec->robot.links - 1 : 0;
@@ -105,7 +105,6 @@ static moray_status make_endpoint(moray_gait_problem *problem)
                                                .power = limited(spec->limits.power),
                                                .rate = !series && limited(spec->limits.joint_rate),
                                                .speed = least_speed(spec) > 0};
-    return moray_gait_endpoint_map(&problem->ends, &problem->endpoint);
 }
 
 static int path_efforts(const moray_gait_problem *problem)
@@ -178,11 +177,11 @@ static void fill_parameter_bounds(const moray_gait_problem *problem, moray_bound
 static moray_status make_ocp(moray_gait_problem *problem)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
-    const int nx = problem->size.nx, nc = problem->size.nc, ne = problem->endpoint.events, ns = problem->size.ns,
-              at = problem->endpoint.position;
+    const int nx = problem->size.nx, nc = problem->size.nc, ne = moray_gait_events(&problem->endpoint),
+              ns = problem->size.ns, at = problem->endpoint.position;
     problem->block = calloc((size_t)(nx + nc + ne + ns), sizeof *problem->block);
     problem->names = calloc((size_t)(ne + nc), sizeof *problem->names);
-    problem->path_names = calloc((size_t)nc + 1, sizeof *problem->path_names);
+    problem->path_names = calloc((size_t)(nc + nx), sizeof *problem->path_names);
     if (!problem->block || !problem->names || !problem->path_names)
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
     moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc, *s = e + ne;
@@ -191,7 +190,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
     fill_path_bounds(problem, c);
     fill_event_bounds(problem, e);
     fill_parameter_bounds(problem, s);
-    moray_gait_event_names(&problem->endpoint, problem->names);
+    moray_gait_event_names(&problem->endpoint, problem->path_names + nc, problem->names);
     moray_gait_path_names(nc, path_efforts(problem), problem->spec.robot.links, problem->path_names,
                           problem->names + ne);
     const moray_phase_spec phase = {
@@ -218,7 +217,8 @@ static moray_status make_ocp(moray_gait_problem *problem)
                                            .ne = ne,
                                            .e = {e, ne},
                                            .e_names = problem->names,
-                                           .endpoint_map = &problem->ends});
+                                           .endpoint = moray_gait_ends,
+                                           .data = &problem->endpoint});
 }
 
 moray_status moray_gait_problem_new(moray_gait_problem **result, const moray_gait_problem_spec *spec)
@@ -230,8 +230,7 @@ moray_status moray_gait_problem_new(moray_gait_problem **result, const moray_gai
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
     problem->spec = *spec;
     moray_status status = make_plant(problem);
-    if (!moray_failed(status))
-        status = make_endpoint(problem);
+    make_endpoint(problem);
     if (!moray_failed(status))
         status = make_ocp(problem);
     if (moray_failed(status))
@@ -247,7 +246,6 @@ void moray_gait_problem_free(moray_gait_problem *problem)
         return;
     moray_ocp_free(problem->ocp);
     moray_map_release(&problem->plant);
-    moray_gait_endpoint_free(&problem->endpoint);
     free(problem->block);
     free(problem->names);
     free(problem->path_names);

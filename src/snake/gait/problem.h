@@ -7,7 +7,7 @@
 struct moray_gait_problem {
     moray_gait_problem_spec spec;
     moray_plant_size size;
-    moray_map plant, ends;
+    moray_map plant;
     struct gait_endpoint endpoint;
     moray_bounds *block;   // x0, c, e, s in turn
     const char **names;    // of e, then of c

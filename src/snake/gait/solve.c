@@ -27,7 +27,7 @@ moray_gait_prediction moray_gait_problem_prediction(const moray_gait_problem *pr
     prediction.course_speed = prediction.v_x * cos(spec->course) + prediction.v_y * sin(spec->course);
     prediction.power = moray_solution_integrals(solution, 0)[0] / tf;
     if (problem->endpoint.power)
-        prediction.power_price = moray_solution_event_multipliers(solution)[problem->endpoint.power_event];
+        prediction.power_price = moray_solution_event_multipliers(solution)[moray_gait_power_event(&problem->endpoint)];
     return prediction;
 }
 

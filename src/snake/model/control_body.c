@@ -19,6 +19,7 @@ control_body moray_body_of(const moray_robot *robot, const double current[2])
                           .ch_n = k.c_n_hat,
                           .damping = robot->rot_damping,
                           .turning = robot->rot_gain / (robot->links - 1),
+                          .frame = robot->hydro.frame == MORAY_FRAME_INVARIANT,
                           .V_x = current[0],
                           .V_y = current[1]};
 }
@@ -92,8 +93,8 @@ void moray_body_rates(const control_body *body, const body_point *at, double v_t
     dpose[1] = at->v_t * at->cosine - at->v_n * at->sine;
     dpose[2] = at->v_t * at->sine + at->v_n * at->cosine;
     dvelocity[0] = body->turning * at->v_tr * at->y[FEATURE_S] - body->damping * v_theta;
-    dvelocity[1] = at->dv_t;
-    dvelocity[2] = at->dv_n;
+    dvelocity[1] = at->dv_t + body->frame * v_theta * at->v_n;
+    dvelocity[2] = at->dv_n - body->frame * v_theta * at->v_t;
 }
 
 // (14b) in (15a): D D^T u = mt ubar + c_n v_phi - kappa A D^T phi, and G A D^T = -(A Dbar)^T.

@@ -5,7 +5,9 @@
 // accelerations,
 //     N m  dv_t - 2 mu_p s dv_n = -mu_p z - c_p w + 2 c_p s v_nr - (N c_t + c_n^ q) v_tr
 //     N mt dv_n - 2 mu_p s dv_t = 2 c_p s v_tr - N c_n v_nr,        mt = m + mu_n,
-// whose solution is (16b), (16c). Derivatives follow by differentiating the equations rather than the solution.
+// whose solution is (16b), (16c). In the invariant frame they stand for dv_t - theta' v_n and dv_n + theta' v_t, the
+// accelerations in the plane, here and in the added mass. Derivatives follow by differentiating the equations rather
+// than the solution.
 #ifndef SRC_SNAKE_MODEL_CONTROL_BODY_H
 #define SRC_SNAKE_MODEL_CONTROL_BODY_H
 
@@ -20,6 +22,7 @@ typedef struct control_body {
     double N, m, mt, c_t, c_n;
     double c_p, mu_p, ch_n;  // c_p, mu_p, c_n^ of (13)
     double damping, turning; // of v_theta and of v_tr s in (20)
+    double frame;            // of theta' v_n, -theta' v_t in (15b), (15c): 0 as printed, 1 invariant (erratum E7)
     double V_x, V_y;
 } control_body;
 
@@ -29,8 +32,8 @@ typedef struct body_point {
     double v_t, v_n, sine, cosine; // of theta
     double V_t, V_n, v_tr, v_nr;   // current and relative velocity in the body frame
     double h_1;                    // (17); NaN where the inertia is not positive definite
-    double dv_t, dv_n;
-    double kappa; // mu_p dv_t + c_p v_tr: the normal force (14b) that bends the body, per A^T phi
+    double dv_t, dv_n;             // without the turning of the frame
+    double kappa;                  // mu_p dv_t + c_p v_tr: the normal force (14b) that bends the body, per A^T phi
     double dv_t_y[FEATURES], dv_n_y[FEATURES], kappa_y[FEATURES];
     double tr_b[BODY_INPUTS], nr_b[BODY_INPUTS];
     double dv_t_b[BODY_INPUTS], dv_n_b[BODY_INPUTS], kappa_b[BODY_INPUTS];

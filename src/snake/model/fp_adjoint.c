@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// With N_k = f_k - (m I + F^a_k) a_k the net force on link k and Q_k = (J + lambda_1) theta_k'' + resistance, both zero
+// With N_k = f_k - (m I + F^a_k) a_k the net force on link k and Q_k = inertia theta_k'' - tau_k, both zero
 // in sum by the balances, any F is
 //     F = lambda . y + sum_k (N_k . xi_k - turn_k Q_k)
 // where turn_k = mu_0 - W_k, xi_k = (mu_1, mu_2) + sum_m C_km l n_m turn_m moves the centres as the chain does, and
@@ -34,7 +34,7 @@ static vector across(const fp_link_z *link)
 }
 
 // (m I + F^a) a
-static vector inertia(const moray_robot *robot, const fp_link_z *link, vector a)
+static vector inertia(const fp_robot *robot, const fp_link_z *link, vector a)
 {
     return sum(robot->m, a, robot->mu_n * dot(across(link), a), across(link));
 }
@@ -65,8 +65,8 @@ static void follow_chain(int N, double l, const fp_link_z *links, vector shift, 
 }
 
 // mu from S mu = lambda - what the own rotations weigh on the accelerations already.
-static void balance(const moray_robot *robot, const fp_motion_z *motion, const fp_link_z *links,
-                    const fp_weights *weight, fp_dual_link *dual)
+static void balance(const fp_robot *robot, const fp_motion_z *motion, const fp_link_z *links, const fp_weights *weight,
+                    fp_dual_link *dual)
 {
     const int N = robot->links;
     num mu[3] = {weight->lambda[0], weight->lambda[1], weight->lambda[2]};
@@ -74,7 +74,7 @@ static void balance(const moray_robot *robot, const fp_motion_z *motion, const f
     follow_chain(N, robot->l, links, (vector){0, 0}, dual);
     for (int k = 0; k < N; k++) {
         const vector load = inertia(robot, &links[k], dual[k].xi);
-        mu[0] -= links[k].r.x * load.y - links[k].r.y * load.x + (robot->J + robot->lambda_1) * dual[k].turn;
+        mu[0] -= links[k].r.x * load.y - links[k].r.y * load.x + robot->inertia * dual[k].turn;
         mu[1] -= load.x;
         mu[2] -= load.y;
     }
@@ -84,25 +84,52 @@ static void balance(const moray_robot *robot, const fp_motion_z *motion, const f
     follow_chain(N, robot->l, links, (vector){mu[1], mu[2]}, dual);
 }
 
-// What a link's own orientation, rate, velocity and acceleration do to N_k . xi_k - turn_k Q_k. Along and across the
-// link, rel = v - V: f = -c_t rel_t, -c_n rel_n - mu_n theta' V_t.
-static void own_derivatives(const moray_robot *robot, const double V[2], const fp_link_z *link, num w,
-                            fp_dual_link *dual, num *on_theta, num *on_w)
+// Derivatives of a link's f_t, f_n and tau by rel_t, rel_n and theta'.
+typedef struct slopes {
+    num t_t, n_t, n_n, n_w, tau_n, tau_w;
+} slopes;
+
+static num modulus(num x)
+{
+    return creal(x) < 0 ? -x : x;
+}
+
+static slopes fluid_slopes(const fp_robot *robot, num rel_t, num rel_n, num w, num turned)
+{
+    const double l = robot->l;
+    slopes by = {.t_t = -robot->c_t - 2 * robot->q_t * modulus(rel_t),
+                 .n_t = robot->invariant ? robot->mu_n * w : 0,
+                 .n_n = -robot->c_n,
+                 .n_w = robot->mu_n * turned,
+                 .tau_w = -(robot->lambda_2 + 2 * robot->lambda_3 * modulus(w))};
+    if (robot->q_n > 0) {
+        const fp_drag_z drag = moray_fp_drag_slopes_z(robot, rel_n, w);
+        by.n_n -= robot->q_n * drag.aa;
+        by.n_w -= robot->q_n * l * drag.ab;
+        by.tau_n = -robot->q_n * l * drag.ab;
+        by.tau_w -= robot->q_n * l * l * drag.bb;
+    }
+    return by;
+}
+
+// What a link's own orientation, rate, velocity and acceleration do to N_k . xi_k - turn_k Q_k. As the link turns, its
+// axes do: d rel_t = rel_n, d rel_n = -rel_t.
+static void own_derivatives(const fp_robot *robot, const double V[2], const fp_link_z *link, num w, fp_dual_link *dual,
+                            num *on_theta, num *on_w)
 {
     const vector t = along(link), n = across(link), xi = dual->xi, water = {V[0], V[1]};
     const vector rel = sum(1, link->v, -1, water);
-    const num rel_t = dot(t, rel), rel_n = dot(n, rel), V_t = dot(t, water), V_n = dot(n, water);
-    const num xi_t = dot(t, xi), xi_n = dot(n, xi), f_t = -robot->c_t * rel_t;
-    const num f_n = -robot->c_n * rel_n - robot->mu_n * w * V_t;
-    const num turned_t = -robot->c_t * rel_n - f_n; // of d f / d theta
-    const num turned_n = f_t + robot->c_n * rel_t - robot->mu_n * w * V_n;
+    const num rel_t = dot(t, rel), rel_n = dot(n, rel), xi_t = dot(t, xi), xi_n = dot(n, xi);
+    const num turned = robot->invariant ? rel_t : -dot(t, water), turned_on = robot->invariant ? rel_n : -dot(n, water);
+    const slopes by = fluid_slopes(robot, rel_t, rel_n, w, turned);
+    const num by_theta_t = by.t_t * rel_n - link->f_n; // of d f / d theta
+    const num by_theta_n = link->f_t - by.n_n * rel_t + robot->mu_n * w * turned_on;
     const num added = robot->mu_n * (dot(n, link->a) * xi_t + dot(t, link->a) * xi_n); // -d(xi F^a a) / d theta
-    const num modulus = creal(w) < 0 ? -w : w;
     dual->net = sum(1, link->f, -1, inertia(robot, link, link->a));
-    dual->on_v = sum(-robot->c_t * xi_t, t, -robot->c_n * xi_n, n);
+    dual->on_v = sum(by.t_t * xi_t + by.n_t * xi_n, t, by.n_n * xi_n + by.tau_n * dual->turn, n);
     dual->on_a = sum(-1, inertia(robot, link, xi), 0, xi);
-    *on_theta = turned_t * xi_t + turned_n * xi_n + added;
-    *on_w = -robot->mu_n * V_t * xi_n - dual->turn * (robot->lambda_2 + 2 * robot->lambda_3 * modulus);
+    *on_theta = by_theta_t * xi_t + by_theta_n * xi_n + added - by.tau_n * dual->turn * rel_t;
+    *on_w = by.n_w * xi_n + dual->turn * by.tau_w;
 }
 
 // One more sum along the chain, from the head on: sum_k C_km z_k = z_m + 2 sum_{k > m} z_k of z less its mean.
@@ -117,7 +144,7 @@ static vector next_column(column *at, vector z)
     return all;
 }
 
-static void chain_derivatives(const moray_robot *robot, const fp_motion_z *motion, const fp_link_z *links,
+static void chain_derivatives(const fp_robot *robot, const fp_motion_z *motion, const fp_link_z *links,
                               const num *ddtheta, const fp_dual_link *dual, fp_gradient *out)
 {
     const int N = robot->links;
@@ -138,11 +165,11 @@ static void chain_derivatives(const moray_robot *robot, const fp_motion_z *motio
         out->theta[k] -=
             l * (dual[k].turn * dot(t, by_xi) + w * dot(t, by_v) + ddtheta[k] * dot(t, by_a) + w * w * dot(n, by_a));
         out->dtheta[k] += l * (dot(n, by_v) - 2 * w * dot(t, by_a));
-        out->ddtheta[k] = l * dot(n, by_a) - dual[k].turn * (robot->J + robot->lambda_1);
+        out->ddtheta[k] = l * dot(n, by_a) - dual[k].turn * robot->inertia;
     }
 }
 
-void moray_fp_adjoint(const moray_robot *robot, const double V[2], const fp_motion_z *motion, const fp_link_z *links,
+void moray_fp_adjoint(const fp_robot *robot, const double V[2], const fp_motion_z *motion, const fp_link_z *links,
                       const num *ddtheta, const num *u, const fp_weights *weight, fp_dual_link *dual, fp_gradient *out)
 {
     const int N = robot->links;

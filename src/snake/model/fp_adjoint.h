@@ -31,7 +31,7 @@ typedef struct fp_gradient {
 
 // After moray_fp_accelerations_z and moray_fp_torques_z with the same motion and links; ddtheta[N] and u[N-1] from
 // there.
-void moray_fp_adjoint(const moray_robot *robot, const double V[2], const fp_motion_z *motion, const fp_link_z *links,
+void moray_fp_adjoint(const fp_robot *robot, const double V[2], const fp_motion_z *motion, const fp_link_z *links,
                       const double complex *ddtheta, const double complex *u, const fp_weights *weight,
                       fp_dual_link *dual, fp_gradient *out);
 

@@ -8,11 +8,21 @@ typedef struct TYPED(fp_vector) {
 } TYPED(fp_vector);
 
 // Link i: cosine and sine of theta_i; position relative to (p_x, p_y), velocity and acceleration of its centre; fluid
-// force (2) without its first term.
+// force (2) without its first term, in the plane and along and across the link; fluid torque (4) likewise.
 typedef struct TYPED(fp_link) {
     REAL c, s;
     TYPED(fp_vector) r, v, a, f;
+    REAL f_t, f_n, tau;
 } TYPED(fp_link);
+
+// Second derivatives of the potential P(a, b) of the quadratic drag across a link, for a drag of 1 [m/s]; by Euler's
+// theorem dP/da = (aa a + ab b) / 2 and dP/db = (ab a + bb b) / 2.
+typedef struct TYPED(fp_drag) {
+    REAL aa, ab, bb;
+} TYPED(fp_drag);
+
+// At rel_n and theta' of a link; fp_drag.inc has the formulas.
+TYPED(fp_drag) TYPED(moray_fp_drag_slopes)(const fp_robot *robot, REAL rel_n, REAL w);
 
 // theta_1..N and their rates, velocity of (p_x, p_y), and phi''[N-1].
 typedef struct TYPED(fp_motion) {
@@ -27,14 +37,14 @@ void TYPED(moray_fp_angles)(int N, REAL mean, const REAL *joints, REAL *angles);
 
 // Accelerations of the links ddtheta[N] and of (p_x, p_y) ddp[2] in the current V, by the three balances of the whole
 // chain; leaves the state of every link in links[N]. False where the balances are singular.
-bool TYPED(moray_fp_accelerations)(const moray_robot *robot, const double V[2], const TYPED(fp_motion) * motion,
+bool TYPED(moray_fp_accelerations)(const fp_robot *robot, const double V[2], const TYPED(fp_motion) * motion,
                                    TYPED(fp_link) * links, REAL *ddtheta, REAL *ddp);
 
 // Solves the three balances of the chain for other loads h: moment about (p_x, p_y) and forces, overwritten with the
 // mean theta'' and p_x'', p_y''. Needs c, s, r of the links. False where they are singular.
-bool TYPED(moray_fp_balances)(const moray_robot *robot, const TYPED(fp_link) * links, REAL h[3]);
+bool TYPED(moray_fp_balances)(const fp_robot *robot, const TYPED(fp_link) * links, REAL h[3]);
 
 // Joint torques u[N-1] of (5a) by inverse dynamics, after fp_accelerations; returns the joint power
 // sum u_i phi_i'.
-REAL TYPED(moray_fp_torques)(const moray_robot *robot, const TYPED(fp_motion) * motion, const TYPED(fp_link) * links,
+REAL TYPED(moray_fp_torques)(const fp_robot *robot, const TYPED(fp_motion) * motion, const TYPED(fp_link) * links,
                              const REAL *ddtheta, REAL *u);

@@ -8,12 +8,14 @@
 
 #define REAL double
 #define TYPED(name) name##_d
+#include "snake/model/fp_drag.inc"
 #include "snake/model/fp_core.inc"
 #undef REAL
 #undef TYPED
 
 #define REAL double complex
 #define TYPED(name) name##_z
+#include "snake/model/fp_drag.inc"
 #include "snake/model/fp_core.inc"
 #undef REAL
 #undef TYPED
@@ -67,13 +69,14 @@ static bool rates(const moray_robot *robot, const double current[2], const doubl
                   double *u, void *scratch)
 {
     const int N = robot->links, half = N + 2;
+    const fp_robot made = moray_fp_robot_of(robot);
     const fp_motion_d motion = {
         .theta = x, .dtheta = x + half, .v_x = x[half + N], .v_y = x[half + N + 1], .ubar = ubar};
     for (int i = 0; i < half; i++)
         dx[i] = x[half + i];
-    const bool regular = moray_fp_accelerations_d(robot, current, &motion, scratch, dx + half, dx + half + N);
+    const bool regular = moray_fp_accelerations_d(&made, current, &motion, scratch, dx + half, dx + half + N);
     if (u != NULL)
-        moray_fp_torques_d(robot, &motion, scratch, dx + half, u);
+        moray_fp_torques_d(&made, &motion, scratch, dx + half, u);
     return regular;
 }
 

@@ -7,7 +7,7 @@
 
 #include <complex.h>
 
-#include "moray/snake/model.h"
+#include "snake/model/fp_robot.h"
 
 #define REAL double
 #define TYPED(name) name##_d

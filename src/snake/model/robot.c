@@ -3,6 +3,16 @@
 
 #include <math.h>
 
+const char *moray_model_name(moray_model model)
+{
+    return model == MORAY_CONTROL_ORIENTED ? "control-oriented" : "first-principles";
+}
+
+const char *moray_model_key(moray_model model)
+{
+    return model == MORAY_CONTROL_ORIENTED ? "control" : "fp";
+}
+
 moray_link_geometry moray_link_geometry_paper(void)
 {
     return (moray_link_geometry){
@@ -11,7 +21,8 @@ moray_link_geometry moray_link_geometry_paper(void)
 
 moray_robot moray_robot_paper(void)
 {
-    moray_robot robot = {.links = 10, .rot_damping = 1.15, .rot_gain = 40, .k_p = 200, .k_d = 50};
+    moray_robot robot = {
+        .links = 10, .rot_damping = 1.15, .rot_gain = 40, .k_p = 200, .k_d = 50, .hydro = {.pieces = 1}};
     moray_link_geometry geometry = moray_link_geometry_paper();
     moray_robot_from_geometry(&robot, &geometry);
     return robot;
@@ -31,6 +42,34 @@ void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *g)
     robot->lambda_1 = g->rho * M_PI * g->C_M * focal2 * focal2 * l * l * l / 12;
     robot->lambda_2 = g->rho * M_PI * g->C_f * perimeter * l * l * l / 6;
     robot->lambda_3 = g->rho * M_PI * g->C_f * perimeter * l * l * l * l / 8;
+}
+
+moray_hydrodynamics moray_hydrodynamics_consistent(void)
+{
+    return (moray_hydrodynamics){.rotation = MORAY_ROTATION_STRIP,
+                                 .drag = MORAY_DRAG_BOTH,
+                                 .added_mass = MORAY_ADDED_MASS_INVARIANT,
+                                 .frame = MORAY_FRAME_INVARIANT,
+                                 .pieces = 1};
+}
+
+static moray_status check_hydrodynamics(const moray_hydrodynamics *hydro)
+{
+    const struct {
+        const char *name;
+        int value, last;
+    } choices[] = {{"rotation", (int)hydro->rotation, MORAY_ROTATION_STRIP},
+                   {"drag", (int)hydro->drag, MORAY_DRAG_BOTH},
+                   {"added_mass", (int)hydro->added_mass, MORAY_ADDED_MASS_INVARIANT},
+                   {"frame", (int)hydro->frame, MORAY_FRAME_INVARIANT},
+                   {"pieces", hydro->pieces, 1000}};
+    for (unsigned i = 0; i < sizeof choices / sizeof *choices; i++)
+        if (choices[i].value < 0 || choices[i].value > choices[i].last)
+            return moray_error(MORAY_INPUT, "%s = %d: must be within 0:%d", choices[i].name, choices[i].value,
+                               choices[i].last);
+    if (hydro->pieces > 1 && hydro->rotation == MORAY_ROTATION_STRIP)
+        return moray_error(MORAY_INPUT, "pieces = %d: with rotation = strip a link is not cut", hydro->pieces);
+    return moray_ok();
 }
 
 moray_status moray_robot_check(const moray_robot *robot)
@@ -62,5 +101,5 @@ moray_status moray_robot_check(const moray_robot *robot)
             return moray_error(MORAY_INPUT, "%s = %g: must be finite and %s 0", fields[i].name, value,
                                fields[i].may_be_zero ? "at least" : "above");
     }
-    return moray_ok();
+    return check_hydrodynamics(&robot->hydro);
 }

@@ -5,7 +5,8 @@
 //   s: (N-1) phi_0     q: a^2 Q_1 / 2 + phi_0^2 Q_0     w: a^2 omega W     z: 0
 // for B = A Dbar has entries of which only the antisymmetric part, 1 - (k-j)/N, survives, and in w alone. To second
 // order in a the wave of s also drives one of v_n, which works back on the means: <s v_n> and <s dv_n> below, from
-//   mt N dv_n + N c_n v_n = 2 kappa s,     kappa = mu_p dv_t + c_p v_tr.
+//   mt N dv_n + N c_n v_n = 2 kappa s,     kappa = mu_p dv_t + c_p v_tr,
+// and in the invariant frame one of v_theta with it, dv_n + v_theta v_t for dv_n.
 #include <complex.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,7 +55,25 @@ static wave wave_of(const average *self, double complex delta)
 
 typedef struct means {
     double complex s, q, w, v_tr, v_nr;
+    double complex push; // of the wave on dv_t, in the invariant frame
 } means;
+
+// Invariant frame: per wave of s, that of v_theta is h = turning v_tr / (damping + i omega) and that of v_n has, beside
+// what kappa drives, e = -mt v_t h / (c_n + i omega mt); real and imaginary parts apart.
+typedef struct wagging {
+    double complex h_r, h_i, e_r, e_i, share; // share: of kappa in <v_theta v_n>, per |wave of s|^2
+} wagging;
+
+static wagging wagging_of(const control_body *b, double complex omega, double complex v_tr, double complex v_t)
+{
+    const double complex slow = b->turning * v_tr / (b->damping * b->damping + omega * omega);
+    const double complex D = b->c_n * b->c_n + b->mt * b->mt * omega * omega, lag = omega * b->mt;
+    wagging out = {.h_r = slow * b->damping, .h_i = -slow * omega};
+    out.e_r = -b->mt * v_t * (out.h_r * b->c_n + out.h_i * lag) / D;
+    out.e_i = -b->mt * v_t * (out.h_i * b->c_n - out.h_r * lag) / D;
+    out.share = 2 * (out.h_r * b->c_n - out.h_i * lag) / (b->N * D);
+    return out;
+}
 
 // Mean accelerations by the averaged (15b), (15c), linear in them; the wave's part is `lift` kappa, with lift =
 // 2 a^2 sigma (c_p c_n + mu_p mt omega^2) / (N (c_n^2 + mt^2 omega^2)).
@@ -63,8 +82,8 @@ static void accelerations(const control_body *b, const means *y, double complex 
 {
     const double complex coupling = 2 * b->mu_p * y->s;
     const double complex M_tt = b->N * b->m - lift * b->mu_p, M_nn = b->N * b->mt;
-    const double complex f_t =
-        -b->c_p * y->w + 2 * b->c_p * y->s * y->v_nr - (b->N * b->c_t + b->ch_n * y->q - lift * b->c_p) * y->v_tr;
+    const double complex f_t = -b->c_p * y->w + 2 * b->c_p * y->s * y->v_nr -
+                               (b->N * b->c_t + b->ch_n * y->q - lift * b->c_p) * y->v_tr + y->push;
     const double complex f_n = 2 * b->c_p * y->s * y->v_tr - b->N * b->c_n * y->v_nr;
     const double complex determinant = M_tt * M_nn - coupling * coupling;
     *dv_t = (M_nn * f_t + coupling * f_n) / determinant;
@@ -81,13 +100,19 @@ static void evaluate(void *context, const double complex *in, double complex *ou
     const double complex phi_0 = in[MORAY_STATE_PHI_0], v_phi_0 = in[MORAY_STATE_V_PHI_0], dv_phi_0 = in[STEERING];
     const double complex a2 = in[AMPLITUDE] * in[AMPLITUDE], omega = in[OMEGA];
     const wave of = wave_of(self, in[DELTA]);
-    const means y = {.s = self->n * phi_0,
-                     .q = a2 * of.Q_1 / 2 + phi_0 * phi_0 * self->Q_0,
-                     .w = a2 * omega * of.W,
-                     .v_tr = v_t - (b->V_x * c + b->V_y * s),
-                     .v_nr = v_n - (-b->V_x * s + b->V_y * c)};
+    means y = {.s = self->n * phi_0,
+               .q = a2 * of.Q_1 / 2 + phi_0 * phi_0 * self->Q_0,
+               .w = a2 * omega * of.W,
+               .v_tr = v_t - (b->V_x * c + b->V_y * s),
+               .v_nr = v_n - (-b->V_x * s + b->V_y * c)};
     const double complex lift = 2 * a2 * of.sigma * (b->c_p * b->c_n + b->mu_p * b->mt * omega * omega) /
                                 (b->N * (b->c_n * b->c_n + b->mt * b->mt * omega * omega));
+    const double complex square = a2 * of.sigma; // of the wave of s
+    wagging wag = {0};
+    if (b->frame != 0) {
+        wag = wagging_of(b, omega, y.v_tr, v_t);
+        y.push = square * (b->mu_p * (v_t * wag.h_r - omega * wag.e_i) + b->c_p * wag.e_r);
+    }
     double complex dv_t, dv_n;
     accelerations(b, &y, lift, &dv_t, &dv_n);
     const double complex kappa = b->mu_p * dv_t + b->c_p * y.v_tr;
@@ -97,6 +122,11 @@ static void evaluate(void *context, const double complex *in, double complex *ou
     out[MORAY_STATE_V_THETA] = b->turning * y.v_tr * y.s - b->damping * v_theta; // (20)
     out[MORAY_STATE_V_1] = dv_t;
     out[MORAY_STATE_V_2] = dv_n;
+    if (b->frame != 0) {
+        out[MORAY_STATE_V_1] +=
+            v_theta * v_n + square / 2 * (wag.share * kappa + wag.h_r * wag.e_r + wag.h_i * wag.e_i);
+        out[MORAY_STATE_V_2] -= v_theta * v_t;
+    }
     out[MORAY_STATE_PHI_0] = v_phi_0;
     out[MORAY_STATE_V_PHI_0] = dv_phi_0;
     out[states] = b->c_n * (a2 * omega * omega * of.G_1 / 2 + v_phi_0 * v_phi_0 * self->G_0) +

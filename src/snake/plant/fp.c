@@ -16,6 +16,7 @@ enum { body = MORAY_BODY_STATES, most_inputs = 13 };
 
 struct fp_plant {
     moray_plant_spec spec;
+    fp_robot robot;
     moray_plant_size size;
     double complex *block;
     double complex *sine, *cosine, *growth;                           // of omega t + (i-1) delta; 1 + taper s_i
@@ -46,7 +47,7 @@ static void gait_motion(struct fp_plant *plant, const double complex *s, double 
 // phi_0, phi_0', phi_0'' before alpha and no taper; then their accelerations and torques. Returns the joint power.
 static double complex move(struct fp_plant *plant, const double complex *in, fp_motion_z *motion, double complex ddp[2])
 {
-    const moray_robot *robot = &plant->spec.robot;
+    const fp_robot *robot = &plant->robot;
     const double complex *s = in + plant->size.nx + plant->size.nu;
     if (plant->spec.joints == MORAY_JOINTS_STEERED)
         gait_motion(plant, s, 0, s[3], in + body);
@@ -122,7 +123,7 @@ static void weighted_gradient(struct fp_plant *plant, const double complex *in, 
                           ddp[2];
     fp_motion_z motion;
     move(plant, in, &motion, ddp);
-    moray_fp_adjoint(&spec->robot, spec->current, &motion, plant->links, plant->ddtheta, plant->u, &weights,
+    moray_fp_adjoint(&plant->robot, spec->current, &motion, plant->links, plant->ddtheta, plant->u, &weights,
                      plant->dual, &by);
     for (int i = 0; i < N && spec->path_angles; i++)
         by.theta[i] += on_angles[i];
@@ -201,6 +202,7 @@ static moray_status plant_new(struct fp_plant **result, const moray_plant_spec *
     struct fp_plant *plant = calloc(1, sizeof *plant);
     if (plant) {
         plant->spec = *spec;
+        plant->robot = moray_fp_robot_of(&spec->robot);
         plant->size = moray_plant_sizes(spec);
         plant->block = calloc(14 * N, sizeof *plant->block);
         plant->links = calloc(N, sizeof *plant->links);

@@ -15,6 +15,7 @@ typedef double complex num;
 
 typedef struct free_plant {
     moray_plant_spec spec;
+    fp_robot robot;
     moray_plant_size size;
     int N, n, n_in, ubar;                   // links, joints, inputs, place of ubar
     num *in, *gradient;                     // n_in each, in one block with the next
@@ -31,7 +32,7 @@ typedef struct free_plant {
 // Motion of the links at plant->in, their accelerations, torques and power.
 static void move(free_plant *plant)
 {
-    const moray_robot *robot = &plant->spec.robot;
+    const fp_robot *robot = &plant->robot;
     const int N = plant->N, n = plant->n;
     const num *in = plant->in, *rates = in + n + 3;
     moray_fp_angles_z(N, in[n], in, plant->theta);
@@ -79,7 +80,7 @@ static void find_gradient(free_plant *plant, const double *weight)
     const fp_weights weights = {weight + 2 * n + 3, plant->spec.path_forces ? weight + plant->size.nx : NULL,
                                 weight[plant->size.nx + plant->size.nc]};
     fp_gradient by = {plant->on_theta, plant->on_dtheta, plant->on_ddtheta, 0, 0};
-    moray_fp_adjoint(&plant->spec.robot, plant->spec.current, &plant->motion, plant->links, plant->ddtheta, plant->u,
+    moray_fp_adjoint(&plant->robot, plant->spec.current, &plant->motion, plant->links, plant->ddtheta, plant->u,
                      &weights, plant->dual, &by);
     gradient[n] = moray_fp_pull_angles(N, by.theta, plant->by_phi);
     gradient[2 * n + 3] = moray_fp_pull_angles(N, by.dtheta, plant->by_v_phi);
@@ -216,7 +217,12 @@ static free_plant *plant_new(const moray_plant_spec *spec)
     if (!plant)
         return NULL;
     const int N = spec->robot.links, n = N - 1;
-    *plant = (free_plant){.spec = *spec, .size = moray_plant_sizes(spec), .N = N, .n = n, .ubar = 2 * n + 6};
+    *plant = (free_plant){.spec = *spec,
+                           .robot = moray_fp_robot_of(&spec->robot),
+                           .size = moray_plant_sizes(spec),
+                           .N = N,
+                           .n = n,
+                           .ubar = 2 * n + 6};
     plant->n_in = plant->size.nx + plant->size.nu + 1;
     plant->in = calloc((size_t)(2 * plant->n_in + 7 * N), sizeof *plant->in);
     plant->weight = calloc((size_t)(plant->size.nx + plant->size.nc + 1), sizeof *plant->weight);

@@ -77,6 +77,21 @@ static void power_jacobian(const plant *self, double *values)
         *values++ = w * self->at.kappa_b[b];
 }
 
+// Row of dv_t or dv_n: by the shape, theta, v_t, v_n and, where the frame turns, by v_theta; turning holds the
+// derivatives of what the frame adds by v_theta, v_t, v_n.
+static double *acceleration_jacobian(const plant *self, const double *by_shape, const double *by_body,
+                                     const double turning[3], double *values)
+{
+    values = put(values, self->n_shape, by_shape);
+    values = put(values, BODY_INPUTS, by_body);
+    if (self->body.frame == 0)
+        return values;
+    values[-2] += turning[1];
+    values[-1] += turning[2];
+    *values++ = turning[0];
+    return values;
+}
+
 void moray_plant_jacobian(void *context, const double *in, double *values)
 {
     plant *self = context;
@@ -84,10 +99,9 @@ void moray_plant_jacobian(void *context, const double *in, double *values)
     if (self->form->joint_rates_jacobian)
         values = self->form->joint_rates_jacobian(self, values);
     values = heading_jacobian(self, values);
-    values = put(values, self->n_shape, self->dv_t_x);
-    values = put(values, BODY_INPUTS, self->at.dv_t_b);
-    values = put(values, self->n_shape, self->dv_n_x);
-    values = put(values, BODY_INPUTS, self->at.dv_n_b);
+    const double v_theta = in[self->v_theta];
+    values = acceleration_jacobian(self, self->dv_t_x, self->at.dv_t_b, (double[]){self->at.v_n, 0, v_theta}, values);
+    values = acceleration_jacobian(self, self->dv_n_x, self->at.dv_n_b, (double[]){-self->at.v_t, -v_theta, 0}, values);
     if (self->forces >= 0)
         values = force_jacobian(self, values);
     if (self->angles >= 0)
@@ -146,7 +160,7 @@ static double *add_rank_terms(const plant *self, double *values)
     return values + self->n_last;
 }
 
-static void body_hessian(const plant *self, const body_curvature *second, double *values)
+static void body_hessian(const plant *self, const body_curvature *second, const body_weights *weight, double *values)
 {
     const double *s = self->y_x[FEATURE_S], *q = self->y_x[FEATURE_Q], *bend = self->bend_x;
     for (int b = 0; b < BODY_INPUTS; b++) {
@@ -154,7 +168,11 @@ static void body_hessian(const plant *self, const body_curvature *second, double
         for (int k = 0; k < self->n_curved; k++)
             *values++ = a_b * s[k] + e_b * q[k] + kappa_b * bend[k];
     }
-    put(values, BODY_INPUTS, second->bb);
+    values = put(values, BODY_INPUTS, second->bb);
+    if (self->body.frame == 0)
+        return;
+    *values++ = -weight->dv_n; // theta' v_t
+    *values = weight->dv_t;    // theta' v_n
 }
 
 void moray_plant_hessian(void *context, const double *in, const double *weight, double *values)
@@ -176,5 +194,5 @@ void moray_plant_hessian(void *context, const double *in, const double *weight, 
     self->form->hessian(self, second.g, weight, values);
     for (int k = 0; k < self->n_shape; k++)
         self->a_x[k] = second.a_dv_t * self->dv_t_x[k] + second.a_dv_n * self->dv_n_x[k];
-    body_hessian(self, &second, add_rank_terms(self, values));
+    body_hessian(self, &second, &body_weight, add_rank_terms(self, values));
 }

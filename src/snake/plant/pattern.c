@@ -41,8 +41,11 @@ void moray_plant_jacobian_pattern(const plant *self, entries *list)
     if (self->form->joint_rates_pattern)
         self->form->joint_rates_pattern(self, list);
     heading_pattern(self, list);
-    full_row(self, list, self->v_theta + 1);
-    full_row(self, list, self->v_theta + 2);
+    for (int row = self->v_theta + 1; row <= self->v_theta + 2; row++) {
+        full_row(self, list, row);
+        if (self->body.frame != 0)
+            add_entry(list, row, self->v_theta);
+    }
     if (self->forces >= 0)
         for (int i = 0; i < self->n; i++)
             full_row(self, list, self->forces + i);
@@ -64,4 +67,6 @@ void moray_plant_hessian_pattern(const plant *self, entries *list)
             add_lower(list, body_col(self, b), col[k]);
     for (int b = 0; b < BODY_INPUTS; b++)
         add_entry(list, body_col(self, b), self->theta);
+    for (int b = BODY_V_T; b <= BODY_V_N && self->body.frame != 0; b++)
+        add_entry(list, body_col(self, b), self->v_theta);
 }

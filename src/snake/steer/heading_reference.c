@@ -4,7 +4,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/csv.h"
+#include "base/number.h"
 #include "moray/angle.h"
 #include "moray/snake/heading.h"
 
@@ -74,48 +77,45 @@ static moray_status read_sine(moray_reference *reference, const char *text)
     return moray_ok();
 }
 
-static moray_status read_lines(moray_reference *reference, FILE *file, const char *path)
+static moray_status read_rows(moray_reference *reference, const moray_csv *csv)
 {
-    char line[256], extra;
-    int room = 0;
-    if (!fgets(line, sizeof line, file) || strncmp(line, "t_s,heading_deg", 15) != 0)
-        return moray_error(MORAY_INPUT, "%.120s:1: the first line must name the columns: t_s,heading_deg", path);
-    for (int number = 2; fgets(line, sizeof line, file); number++) {
+    static const char *const names[] = {"t_s", "heading_deg"};
+    int column[2], room = 0;
+    MORAY_TRY(moray_csv_match(csv, names, 2, column));
+    for (int row = 0; row < csv->rows; row++) {
         double t, heading;
-        if (line[strspn(line, " \t\r\n")] == 0)
-            continue;
-        if (sscanf(line, " %lf , %lf %c", &t, &heading, &extra) != 2)
-            return moray_error(MORAY_INPUT, "%.120s:%d: must be two numbers, t_s,heading_deg", path, number);
+        MORAY_TRY(moray_csv_number(csv, row, column[0], &t));
+        MORAY_TRY(moray_csv_number(csv, row, column[1], &heading));
         const moray_status status = add(reference, &room, t, heading);
         if (moray_failed(status))
-            return moray_error(status.code, "%.120s:%d: %.150s", path, number, status.text);
+            return moray_csv_error(csv, row, status);
     }
-    if (ferror(file))
-        return moray_error(MORAY_IO, "reference %.120s: cannot be read: %s", path, strerror(errno));
-    if (reference->n == 0)
-        return moray_error(MORAY_INPUT, "reference %.120s: holds no points", path);
     return moray_ok();
 }
 
 static moray_status read_file(moray_reference *reference, const char *path)
 {
-    FILE *file = fopen(path, "r");
-    if (!file)
+    moray_csv csv;
+    if (access(path, R_OK) != 0)
         return moray_error(MORAY_IO,
                            "reference %.120s: neither steps:, ramps:, sine: nor a file that can be opened: %s", path,
                            strerror(errno));
-    const moray_status status = read_lines(reference, file, path);
-    fclose(file);
+    moray_status status = moray_csv_read(&csv, path, "reference");
+    if (!moray_failed(status))
+        status = read_rows(reference, &csv);
+    moray_csv_free(&csv);
     return status;
 }
 
 moray_status moray_reference_read(moray_reference *reference, const char *text)
 {
     *reference = (moray_reference){0};
+    const locale_t before = moray_c_locale_begin();
     moray_status status = strncmp(text, "steps:", 6) == 0   ? read_points(reference, text + 6, true)
                           : strncmp(text, "ramps:", 6) == 0 ? read_points(reference, text + 6, false)
                           : strncmp(text, "sine:", 5) == 0  ? read_sine(reference, text + 5)
                                                             : read_file(reference, text);
+    moray_c_locale_end(before);
     if (moray_failed(status))
         moray_reference_free(reference);
     return status;

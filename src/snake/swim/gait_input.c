@@ -67,8 +67,7 @@ static moray_status amplitude_of(const moray_gait_input *input, const moray_robo
                 MORAY_INPUT,
                 "%s = %.10g: no link-angle amplitude below 90 deg belongs to it at delta_deg = %.10g, so "
                 "it cannot be mapped to the %s model",
-                said[i].key, said[i].given, delta / MORAY_DEGREE,
-                model == MORAY_CONTROL_ORIENTED ? "control-oriented" : "first-principles");
+                said[i].key, said[i].given, delta / MORAY_DEGREE, moray_model_name(model));
     return agree(said, 3, moray_amplitude_from_theta_max(robot, model, 20 * MORAY_DEGREE, delta), amplitude);
 }
 

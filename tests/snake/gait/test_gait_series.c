@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The optimal-gait problem with its joints on a Fourier series: its ends, its derivatives, its limits, and its optimum
+// The optimal-gait problem with its joints on a Fourier series: its ends, its limits, and its optimum
 // against gaits and against simulated neighbours.
 #include "degree.h"
 #include "tap.h"
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "snake/gait/endpoint.h"
+#include "gait_ends.h"
 #include "moray/snake/trial.h"
 
 enum { LINKS = 5, JOINTS = LINKS - 1, HARMONICS = 2, COEFFICIENTS = JOINTS * (1 + 2 * HARMONICS) };
@@ -21,27 +21,18 @@ static void test_endpoint(moray_gait_goal goal)
     enum { parameters = 7, inputs = 15 + parameters };
     struct gait_endpoint ends = {
         .nx = 6, .position = 1, .course = {0.6, 0.8}, .series = parameters, .goal = goal, .power = true, .speed = true};
-    moray_map map;
-    moray_derivative_report report;
-    double in[inputs], weight[inputs], out[1 + 4 + 4];
-    CHECK_OK(moray_gait_endpoint_map(&map, &ends), "ends");
-    CHECK(map.n_in == inputs && map.n_out == 9, "sizes: %d in, %d out", map.n_in, map.n_out);
-    for (int i = 0; i < inputs; i++) {
+    double in[inputs], out[1 + 4 + 4];
+    CHECK(moray_gait_events(&ends) == 8, "%d events", moray_gait_events(&ends));
+    for (int i = 0; i < inputs; i++)
         in[i] = tap_random(&seed, 0.3, 1.5);
-        weight[i] = tap_random(&seed, -1, 1);
-    }
     in[8] += 2;
-    CHECK_OK(moray_check_derivatives(&map, in, weight, &report), "check");
-    CHECK(report.jacobian_error < 1e-10 && report.hessian_error < 1e-9, "Jacobian %.1e, Hessian %.1e",
-          report.jacobian_error, report.hessian_error);
-    map.value(map.self, in, out);
+    gait_ends(&ends, in, parameters, out);
     const double along = 0.6 * (in[8] - in[1]) + 0.8 * (in[9] - in[2]);
     CHECK_NEAR(out[0], goal == MORAY_GAIT_FASTEST ? -along / in[13] : in[14] / along, 1e-14, "the goal");
     CHECK_NEAR(out[6], in[15] * in[13], 1e-14, "omega T");
     CHECK_NEAR(out[7], in[14] / in[13], 1e-14, "mean power");
     CHECK_NEAR(out[8], along / in[13], 1e-14, "speed along the course");
-    CHECK(ends.power_event == 6, "the power is event %d", ends.power_event);
-    moray_gait_endpoint_free(&ends);
+    CHECK(moray_gait_power_event(&ends) == 6, "the power is event %d", moray_gait_power_event(&ends));
 }
 
 // ---- Optima --------------------------------------------------------------------------------------------------------

@@ -41,8 +41,9 @@ static bool swim(const scene *s, double *accelerations, double *u)
 static void check_maximal_coordinates(random_seed *seed, int N)
 {
     double accelerations_error = 0, torques_error = 0, forward_error = 0;
-    for (int trial = 0; trial < 5; trial++) {
-        const scene s = random_scene(seed, N);
+    for (int trial = 0; trial < HYDRO_VARIANTS; trial++) {
+        scene s = random_scene(seed, N);
+        s.robot.hydro = hydro_variant(trial);
         const maximal_state state = maximal_from_reduced(&s.robot, s.V, s.x);
         double a[MAX_STATES], a_want[MAX_STATES], u[MAX_LINKS], u_want[MAX_LINKS];
         CHECK(swim(&s, a, u), "state %d of %d links is regular", trial, N);
@@ -221,19 +222,21 @@ enum { MAX_OUT = 2 * MAX_LINKS + 2 };
 static void outputs_d(const scene *s, const double *x, const double *ubar, double *out)
 {
     const int N = s->robot.links;
+    const fp_robot robot = moray_fp_robot_of(&s->robot);
     fp_link_d links[MAX_LINKS];
     const fp_motion_d motion = {x, x + N + 2, x[2 * N + 2], x[2 * N + 3], ubar};
-    moray_fp_accelerations_d(&s->robot, s->V, &motion, links, out, out + N);
-    out[2 * N + 1] = moray_fp_torques_d(&s->robot, &motion, links, out, out + N + 2);
+    moray_fp_accelerations_d(&robot, s->V, &motion, links, out, out + N);
+    out[2 * N + 1] = moray_fp_torques_d(&robot, &motion, links, out, out + N + 2);
 }
 
 static void outputs_z(const scene *s, const double complex *x, const double complex *ubar, double complex *out)
 {
     const int N = s->robot.links;
+    const fp_robot robot = moray_fp_robot_of(&s->robot);
     fp_link_z links[MAX_LINKS];
     const fp_motion_z motion = {x, x + N + 2, x[2 * N + 2], x[2 * N + 3], ubar};
-    moray_fp_accelerations_z(&s->robot, s->V, &motion, links, out, out + N);
-    out[2 * N + 1] = moray_fp_torques_z(&s->robot, &motion, links, out, out + N + 2);
+    moray_fp_accelerations_z(&robot, s->V, &motion, links, out, out + N);
+    out[2 * N + 1] = moray_fp_torques_z(&robot, &motion, links, out, out + N + 2);
 }
 
 // (f(h) - f(-h)) / 2h along a direction.
@@ -253,9 +256,11 @@ static void difference(const scene *s, const scene *direction, double h, double 
         out[k] = (ends[1][k] - ends[0][k]) / (2 * h);
 }
 
-static void check_number_types(random_seed *seed, int N)
+static void check_number_types(random_seed *seed, int N, moray_hydrodynamics hydro)
 {
-    const scene s = random_scene(seed, N), direction = random_scene(seed, N);
+    scene s = random_scene(seed, N);
+    const scene direction = random_scene(seed, N);
+    s.robot.hydro = hydro;
     const int n_out = 2 * N + 2;
     const double tiny = 1e-100, h = 1e-3;
     double complex x[MAX_STATES], ubar[MAX_LINKS], out_z[MAX_OUT];
@@ -284,9 +289,10 @@ static void check_number_types(random_seed *seed, int N)
 int main(void)
 {
     random_seed seed = 20;
+    for (int N = 2; N <= MAX_LINKS; N++)
+        check_maximal_coordinates(&seed, N);
     for (int k = 0; k < ROBOT_SIZES; k++) {
         const int N = robot_links[k];
-        check_maximal_coordinates(&seed, N);
         check_energy_balance(&seed, N, false);
         check_energy_balance(&seed, N, true);
         check_straight(&seed, N, 0, 0);
@@ -297,7 +303,8 @@ int main(void)
         check_moving_frame(&seed, N, false);
         check_moving_frame(&seed, N, true);
         check_turned(&seed, N);
-        check_number_types(&seed, N);
+        check_number_types(&seed, N, hydro_variant(0));
+        check_number_types(&seed, N, moray_hydrodynamics_consistent());
     }
     return tap_done();
 }

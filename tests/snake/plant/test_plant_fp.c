@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "moray/snake/plant.h"
+#include "random_robot.h"
 
 enum { MOST_INPUTS = 13 };
 
@@ -104,6 +105,17 @@ static void test_derivatives(const moray_plant_spec *spec, const moray_map *map,
     free(weight);
 }
 
+static void test_plant(moray_plant_spec *spec, int trials, unsigned long long *seed)
+{
+    moray_map map;
+    CHECK_OK(moray_fp_plant(&map, spec), "plant");
+    for (int trial = 0; trial < trials; trial++) {
+        test_against_swimmer(spec, &map, seed);
+        test_derivatives(spec, &map, seed);
+    }
+    moray_map_release(&map);
+}
+
 int main(void)
 {
     const int links[] = {2, 3, 5, 10, 17};
@@ -114,13 +126,15 @@ int main(void)
     for (unsigned k = 0; k < 2 * sizeof links / sizeof *links; k++) {
         spec.robot.links = links[k / 2];
         spec.joints = k % 2 ? MORAY_JOINTS_STEERED : MORAY_JOINTS_ON_GAIT;
-        CHECK_OK(moray_fp_plant(&map, &spec), "plant");
-        for (int trial = 0; trial < 3; trial++) {
-            test_against_swimmer(&spec, &map, &seed);
-            test_derivatives(&spec, &map, &seed);
-        }
-        moray_map_release(&map);
+        test_plant(&spec, 3, &seed);
     }
+    for (int variant = 1; variant < 2 * HYDRO_VARIANTS; variant++) {
+        spec.robot.links = 2 + variant % 9;
+        spec.robot.hydro = hydro_variant(variant % HYDRO_VARIANTS);
+        spec.joints = variant < HYDRO_VARIANTS ? MORAY_JOINTS_STEERED : MORAY_JOINTS_ON_GAIT;
+        test_plant(&spec, 1, &seed);
+    }
+    spec.robot = moray_robot_paper();
     spec.joints = MORAY_JOINTS_CLOSED_LOOP;
     CHECK(moray_fp_plant(&map, &spec).code == MORAY_INPUT, "joints in closed loop are refused");
     spec.joints = MORAY_JOINTS_ON_GAIT;

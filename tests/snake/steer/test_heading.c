@@ -95,7 +95,7 @@ static void test_refused(const char *folder)
         const char *text, *says;
     } files[] = {{"time,heading\n0,1\n", "t_s,heading_deg"}, {"t_s,heading_deg\n0,1\n1;2\n", ":3:"},
                  {"t_s,heading_deg\n2,1\n1,2\n", "ascend"},  {"t_s,heading_deg\n0,1,2\n", ":2:"},
-                 {"t_s,heading_deg\n\n", "no points"},       {"t_s,heading_deg\n0,nan\n", "finite"}};
+                 {"t_s,heading_deg\n\n", "a line of values"},       {"t_s,heading_deg\n0,nan\n", "finite"}};
     char name[200];
     refuse("steps:", MORAY_INPUT, "no points");
     refuse("steps:2", MORAY_INPUT, "'2'");

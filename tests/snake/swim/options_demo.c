@@ -6,9 +6,11 @@
 
 #include "degree.h"
 #include "moray/app/program.h"
+#include "moray/snake/options.h"
 
 typedef struct demo_settings {
     moray_common common;
+    moray_snake_options snake;
     double delta[2], power[2], start[2], theta_max;
     int starts, ending;
     bool warm;
@@ -73,23 +75,26 @@ static const moray_option options[] = {
      .choices = endings,
      .help = "how the run ends"},
 };
+static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(demo_settings, snake)}};
 static const moray_program program = {.name = "options_demo",
                                       .summary = "Shows what it was told.",
                                       .options = options,
-                                      .n_options = sizeof options / sizeof *options};
+                                      .n_options = sizeof options / sizeof *options,
+                                      .groups = groups,
+                                      .n_groups = 1};
 
 static moray_json *summary(const demo_settings *s)
 {
     moray_json *json = moray_json_new();
-    moray_json_number(json, "links", s->common.robot.links);
-    moray_json_number(json, "c_n", s->common.robot.c_n);
-    moray_json_number(json, "m", s->common.robot.m);
-    moray_json_numbers(json, "current", s->common.current, 2);
-    moray_json_number(json, "course_deg", s->common.course / DEG);
+    moray_json_number(json, "links", s->snake.robot.links);
+    moray_json_number(json, "c_n", s->snake.robot.c_n);
+    moray_json_number(json, "m", s->snake.robot.m);
+    moray_json_numbers(json, "current", s->snake.current, 2);
+    moray_json_number(json, "course_deg", s->snake.course / DEG);
     moray_json_text(json, "scheme", s->common.scheme);
     moray_json_number(json, "intervals", s->common.intervals);
     moray_json_number(json, "tol", s->common.tol);
-    moray_json_number(json, "model", s->common.model);
+    moray_json_number(json, "model", s->snake.model);
     moray_json_numbers(json, "power", s->power, 2);
     moray_json_bool(json, "warm", s->warm);
     moray_json_text(json, "label", s->label);
@@ -128,6 +133,7 @@ static moray_status write_files(const demo_settings *s, const moray_table *table
 int main(int argc, char **argv)
 {
     demo_settings s = {.common = moray_common_defaults(),
+                       .snake = moray_snake_options_default(),
                        .delta = {20 * DEG, 90 * DEG},
                        .power = {0, INFINITY},
                        .theta_max = 30 * DEG,
@@ -136,7 +142,7 @@ int main(int argc, char **argv)
     int exit_code;
     if (!moray_app_start(&program, argc, argv, &s, &exit_code))
         return exit_code;
-    const moray_table_row rows[] = {{"links", {s.common.robot.links}, NULL, NULL},
+    const moray_table_row rows[] = {{"links", {s.snake.robot.links}, NULL, NULL},
                                     {"delta from", {s.delta[0] / DEG}, "deg", NULL},
                                     {"delta to", {s.delta[1] / DEG}, "deg", NULL},
                                     {"scheme", {0}, NULL, s.common.scheme}};

@@ -50,8 +50,14 @@ run --help
 check "--help: exit 0, on standard output alone" eval '[ $code -eq 0 ] && [ ! -s err ] && grep -q -- "--links N" out'
 run --version
 check "--version: $(cat out)" eval '[ $code -eq 0 ] && grep -q "^options_demo (moray) [0-9.]*$" out'
-check "--help to a full disk fails" eval '! "$program" --help >/dev/full'
-check "--json to a full disk fails" eval '! "$program" --json >/dev/full'
+lost
+lost --json
+lost --help
+lost --version
+lost --out lost
+check "nothing printed, nothing lost" eval '"$program" --links 1 >&- 2>err; [ $? -eq 2 ] && grep -q "links = 1" err'
+"$program" --json --out streams >&- 2>&- <&-
+check "closed streams: exit $?, and no file takes what they lose" eval 'head -n 1 streams/trajectory.csv | grep -q "^t .s.,x .m.$"'
 
 run --json
 cp out by_default

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// The options of a program about snake robots: the robot, the model, the current and the course.
+#ifndef MORAY_SNAKE_OPTIONS_H
+#define MORAY_SNAKE_OPTIONS_H
+
+#include "moray/app/options.h"
+#include "moray/app/results.h"
+#include "moray/snake/model.h"
+
+enum { MORAY_PAPER, MORAY_CONSISTENT }; // the word of --hydrodynamics
+
+typedef struct moray_snake_options {
+    moray_robot robot; // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry,
+                       // the choices of its hydro -1: from hydrodynamics
+    int hydrodynamics;
+    moray_link_geometry geometry; // gives the coefficients of the robot that are not given directly
+    moray_model model;
+    double current[2]; // V_x, V_y [m/s]
+    double course;     // direction of travel over ground [rad]
+} moray_snake_options;
+
+// The paper's robot in still water, control-oriented model.
+moray_snake_options moray_snake_options_default(void);
+
+// --robot FILE, --links, --model, --current, --course and the keys of [robot]; in the end the robot is made and checked
+// (error: MORAY_INPUT). As a group of a program: {&moray_snake_option_table, offsetof(SETTINGS, FIELD)}.
+extern const moray_option_table moray_snake_option_table;
+
+// "model", "robot" and "current_m_s" of a summary.
+void moray_snake_to_json(moray_json *json, const moray_snake_options *options);
+
+#endif

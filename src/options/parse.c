@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "options/options.h"
+
+#include <stdlib.h>
+
+const char *moray_version(void)
+{
+    return MORAY_VERSION;
+}
+
+static moray_status assign(const moray_options *options, const moray_arguments *arguments, void *settings)
+{
+    for (int i = 0; i < arguments->n; i++) {
+        const moray_assignment *item = &arguments->item[i];
+        char name[64];
+        if (!item->row) {
+            moray_word_mark(options->words, item->value, settings);
+            continue;
+        }
+        snprintf(name, sizeof name, "%s%s", item->by_flag ? "--" : "",
+                 item->by_flag ? item->row->flag : item->row->key);
+        MORAY_TRY(moray_option_read(item->row, name, item->value, settings));
+    }
+    return moray_ok();
+}
+
+// The INI files, of each option for one the last that is given.
+static moray_status read_files(const moray_options *options, const moray_arguments *arguments, void *settings)
+{
+    for (int i = 0; i < arguments->n; i++) {
+        const moray_option *row = arguments->item[i].row;
+        bool last = row && row->type == MORAY_OPTION_INI;
+        for (int k = i + 1; k < arguments->n; k++)
+            last = last && arguments->item[k].row != row;
+        if (last)
+            MORAY_TRY(moray_ini_read(options, row->flag, arguments->item[i].value, settings));
+    }
+    return moray_ok();
+}
+
+static moray_status finish(const moray_program *program, void *settings)
+{
+    for (int i = 0; i < program->n_groups; i++)
+        if (program->groups[i].table->finish)
+            MORAY_TRY(program->groups[i].table->finish((char *)settings + program->groups[i].at));
+    return moray_ok();
+}
+
+// The command line is assigned before the files, so that its errors come first, and after them, to override them.
+static moray_status fill(const moray_program *program, const moray_options *options, const moray_arguments *arguments,
+                         void *settings)
+{
+    MORAY_TRY(assign(options, arguments, settings));
+    if (options->words)
+        MORAY_TRY(moray_words_check(options->words, settings));
+    MORAY_TRY(read_files(options, arguments, settings));
+    MORAY_TRY(assign(options, arguments, settings));
+    return finish(program, settings);
+}
+
+moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
+                             moray_request *request)
+{
+    moray_common *common = settings;
+    moray_options options;
+    moray_arguments arguments;
+    MORAY_TRY(moray_options_new(&options, program));
+    moray_status status = moray_arguments_read(&arguments, &options, argc, argv);
+    *request = arguments.request;
+    if (!moray_failed(status) && *request == MORAY_REQUEST_RUN) {
+        common->argc = argc;
+        common->argv = argv;
+        status = fill(program, &options, &arguments, settings);
+    }
+    free(arguments.item);
+    free(options.row);
+    return status;
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "moray/snake/options.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const models[] = {
+    [MORAY_CONTROL_ORIENTED] = "control", [MORAY_FIRST_PRINCIPLES] = "fp|complex", NULL};
+static const char *const hydrodynamics[] = {[MORAY_PAPER] = "paper", [MORAY_CONSISTENT] = "consistent", NULL};
+static const char *const rotations[] = {[MORAY_ROTATION_PAPER] = "paper", [MORAY_ROTATION_STRIP] = "strip", NULL};
+static const char *const drags[] = {
+    [MORAY_DRAG_LINEAR] = "linear", [MORAY_DRAG_QUADRATIC] = "quadratic", [MORAY_DRAG_BOTH] = "both", NULL};
+static const char *const added_masses[] = {
+    [MORAY_ADDED_MASS_PAPER] = "paper", [MORAY_ADDED_MASS_INVARIANT] = "invariant", NULL};
+static const char *const frames[] = {[MORAY_FRAME_PAPER] = "paper", [MORAY_FRAME_INVARIANT] = "invariant", NULL};
+_Static_assert(sizeof(moray_hydrodynamics) == 5 * sizeof(int), "choices are stored as int");
+_Static_assert(sizeof(moray_model) == sizeof(int), "choices are stored as int");
+
+#define SPAN(low, high) .min = (low), .max = (high)
+#define ABOVE(low) .min = (low), .max = INFINITY, .open = true
+#define AT_LEAST(low) .min = (low), .max = INFINITY
+#define REAL(where, name, field)                                                                                       \
+    .section = where, .key = name, .type = MORAY_OPTION_REAL, MORAY_AT(moray_snake_options, field)
+#define ROBOT(name, field) REAL("robot", name, robot.field)
+#define LINK(name, field) REAL("robot", name, geometry.field)
+#define HYDRO(name, list)                                                                                              \
+    .section = "robot", .key = #name, .type = MORAY_OPTION_CHOICE, MORAY_AT(moray_snake_options, robot.hydro.name),    \
+    .choices = list
+#define BY_WORD "; by --hydrodynamics unless given"
+#define FROM_GEOMETRY "; from the geometry unless given"
+
+static const moray_option robot_rows[] = {
+    {.flag = "robot",
+     .argument = "FILE",
+     .type = MORAY_OPTION_INI,
+     .help = "INI file with the robot and any other keys"},
+    {.section = "robot",
+     .key = "links",
+     .flag = "links",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(moray_snake_options, robot.links),
+     SPAN(2, 1000),
+     .help = "number of links N"},
+    {.section = "problem",
+     .key = "model",
+     .flag = "model",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(moray_snake_options, model),
+     .choices = models,
+     .help = "control-oriented or first-principles (fp, also called complex) model"},
+    {.section = "problem",
+     .key = "current",
+     .flag = "current",
+     .argument = "VX,VY",
+     .type = MORAY_OPTION_PAIR,
+     MORAY_AT(moray_snake_options, current),
+     .unit = "m/s",
+     .help = "current in the global frame"},
+    {REAL("problem", "course", course), .flag = "course", .argument = "DEG", SPAN(-360, 360), .unit = "deg",
+     .help = "direction of travel over ground"},
+    {LINK("length_m", length), ABOVE(0), .unit = "m", .help = "length of a link, 2l"},
+    {LINK("a_e_m", a_e), ABOVE(0), .unit = "m", .help = "semi-axis of a link in the plane of motion"},
+    {LINK("b_e_m", b_e), ABOVE(0), .unit = "m", .help = "vertical semi-axis of a link"},
+    {LINK("rho_kg_m3", rho), ABOVE(0), .unit = "kg/m^3", .help = "density of the fluid"},
+    {LINK("C_f", C_f), AT_LEAST(0), .help = "friction drag constant"},
+    {LINK("C_D", C_D), AT_LEAST(0), .help = "pressure drag constant"},
+    {LINK("C_A", C_A), AT_LEAST(0), .help = "added mass constant"},
+    {LINK("C_M", C_M), AT_LEAST(0), .help = "added inertia constant"},
+    {ROBOT("l_m", l), ABOVE(0), .unit = "m", .help = "half the length of a link" FROM_GEOMETRY},
+    {ROBOT("m_kg", m), ABOVE(0), .unit = "kg", .help = "mass of a link" FROM_GEOMETRY},
+    {ROBOT("J_kg_m2", J), ABOVE(0), .unit = "kg m^2", .help = "moment of inertia of a link" FROM_GEOMETRY},
+    {ROBOT("c_t", c_t), AT_LEAST(0), .unit = "kg/s", .help = "tangential drag of a link" FROM_GEOMETRY},
+    {ROBOT("c_n", c_n), AT_LEAST(0), .unit = "kg/s", .help = "normal drag of a link" FROM_GEOMETRY},
+    {ROBOT("mu_n", mu_n), AT_LEAST(0), .unit = "kg", .help = "normal added mass of a link" FROM_GEOMETRY},
+    {ROBOT("lambda_1", lambda_1), AT_LEAST(0), .unit = "kg m^2",
+     .help = "added inertia in the fluid torque (4)" FROM_GEOMETRY},
+    {ROBOT("lambda_2", lambda_2), AT_LEAST(0), .unit = "kg m^2/s",
+     .help = "linear drag in the fluid torque (4)" FROM_GEOMETRY},
+    {ROBOT("lambda_3", lambda_3), AT_LEAST(0), .unit = "kg m^2",
+     .help = "quadratic drag in the fluid torque (4)" FROM_GEOMETRY},
+    {ROBOT("rot_damping", rot_damping), AT_LEAST(0), .unit = "1/s",
+     .help = "rotational damping of the control-oriented model, first constant of (20)"},
+    {ROBOT("rot_gain", rot_gain), AT_LEAST(0), .unit = "1/(m^2 s)",
+     .help = "gain from joint offset to turning in the control-oriented model, second constant of (20)"},
+    {ROBOT("k_p", k_p), AT_LEAST(0), .unit = "1/s^2", .help = "proportional gain of the joint controller (34)"},
+    {ROBOT("k_d", k_d), AT_LEAST(0), .unit = "1/s", .help = "derivative gain of the joint controller (34)"},
+    {.section = "robot",
+     .key = "hydrodynamics",
+     .flag = "hydrodynamics",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(moray_snake_options, hydrodynamics),
+     .choices = hydrodynamics,
+     .help = "the paper's, or strips, both drags, invariant added mass and frame"},
+    {HYDRO(rotation, rotations), .help = "drag and added mass at a link's centre or along it, fp model" BY_WORD},
+    {HYDRO(drag, drags), .help = "growth of the drag with velocity, fp model" BY_WORD},
+    {HYDRO(added_mass, added_masses), .help = "form of the added mass in a current, fp model" BY_WORD},
+    {HYDRO(frame, frames), .help = "form of (15) where the robot turns, control-oriented model" BY_WORD},
+    {.section = "robot",
+     .key = "pieces",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(moray_snake_options, robot.hydro.pieces),
+     SPAN(1, 1000),
+     .help = "rigid pieces a link is cut into for drag and added mass, fp model without strips"},
+};
+
+moray_snake_options moray_snake_options_default(void)
+{
+    moray_snake_options options = {
+        .robot = moray_robot_paper(), .geometry = moray_link_geometry_paper(), .model = MORAY_CONTROL_ORIENTED};
+    moray_robot *r = &options.robot;
+    r->l = r->m = r->J = r->c_t = r->c_n = r->mu_n = r->lambda_1 = r->lambda_2 = r->lambda_3 = NAN;
+    memset(&r->hydro, -1, offsetof(moray_hydrodynamics, pieces)); // not given
+    return options;
+}
+
+// What was not given comes from the word.
+static void make_hydrodynamics(moray_hydrodynamics *hydro, int word)
+{
+    const moray_hydrodynamics from =
+        word == MORAY_CONSISTENT ? moray_hydrodynamics_consistent() : (moray_hydrodynamics){.pieces = 1};
+    hydro->rotation = (int)hydro->rotation < 0 ? from.rotation : hydro->rotation;
+    hydro->drag = (int)hydro->drag < 0 ? from.drag : hydro->drag;
+    hydro->added_mass = (int)hydro->added_mass < 0 ? from.added_mass : hydro->added_mass;
+    hydro->frame = (int)hydro->frame < 0 ? from.frame : hydro->frame;
+}
+
+// The robot of geometry and direct coefficients.
+static moray_status make_robot(void *settings)
+{
+    moray_snake_options *options = settings;
+    moray_robot *given = &options->robot, made = options->robot;
+    moray_robot_from_geometry(&made, &options->geometry);
+    double *const to[] = {&made.l,    &made.m,        &made.J,        &made.c_t,     &made.c_n,
+                          &made.mu_n, &made.lambda_1, &made.lambda_2, &made.lambda_3};
+    const double from[] = {given->l,    given->m,        given->J,        given->c_t,     given->c_n,
+                           given->mu_n, given->lambda_1, given->lambda_2, given->lambda_3};
+    for (unsigned i = 0; i < sizeof from / sizeof *from; i++)
+        if (!isnan(from[i]))
+            *to[i] = from[i];
+    make_hydrodynamics(&made.hydro, options->hydrodynamics);
+    *given = made;
+    return moray_robot_check(&made);
+}
+
+const moray_option_table moray_snake_option_table = {
+    .rows = robot_rows, .n = sizeof robot_rows / sizeof *robot_rows, .finish = make_robot};
+
+void moray_snake_to_json(moray_json *json, const moray_snake_options *options)
+{
+    moray_json_text(json, "model", moray_model_key(options->model));
+    moray_json_open(json, "robot");
+    moray_json_number(json, "links", options->robot.links);
+    moray_json_close(json);
+    moray_json_numbers(json, "current_m_s", options->current, 2);
+}

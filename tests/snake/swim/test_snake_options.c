@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "moray/snake/options.h"
+#include "sound_table.h"
+
+typedef struct settings {
+    moray_common common;
+    moray_snake_options snake;
+} settings;
+
+static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(settings, snake)}};
+static const moray_program program = {.name = "test", .summary = "s", .groups = groups, .n_groups = 1};
+static char path[] = "/tmp/moray-robot-XXXXXX";
+
+static moray_status parse(settings *s, const char *const arguments[8])
+{
+    char *argv[10] = {"test"};
+    int argc = 1;
+    for (int i = 0; i < 8 && arguments[i]; i++)
+        argv[argc++] = (char *)arguments[i];
+    moray_request request;
+    *s = (settings){.common = moray_common_defaults(), .snake = moray_snake_options_default()};
+    return moray_app_parse(&program, argc, argv, s, &request);
+}
+#define PARSE(s, ...) parse((s), (const char *const[8]){__VA_ARGS__})
+
+static void write_file(const char *text)
+{
+    FILE *file = fopen(path, "w");
+    fputs(text, file);
+    fclose(file);
+}
+
+static bool same_robot(const moray_robot *a, const moray_robot *b)
+{
+    return a->links == b->links &&
+           memcmp(&a->l, &b->l, offsetof(moray_robot, hydro) - offsetof(moray_robot, l)) == 0 && // doubles only
+           memcmp(&a->hydro, &b->hydro, sizeof a->hydro) == 0;                                   // int only
+}
+
+static void test_robot(void)
+{
+    settings s;
+    const moray_robot paper = moray_robot_paper();
+    CHECK_OK(PARSE(&s, NULL), "no arguments");
+    CHECK(same_robot(&s.snake.robot, &paper), "the default is the paper's robot");
+    CHECK_OK(PARSE(&s, "--set", "C_D=1", "--set", "length_m=0.2", "--set", "m_kg=3", "--set", "c_t=0"), "a mix");
+    CHECK_NEAR(s.snake.robot.c_n, 1000 * 1 * 2 * 0.03 * 0.1, 1e-12, "c_n = rho C_D 2 b_e l from the geometry");
+    CHECK(s.snake.robot.l == 0.1, "l is half of length_m: %g", s.snake.robot.l);
+    CHECK(s.snake.robot.m == 3 && s.snake.robot.c_t == 0, "direct keys override the geometry");
+    write_file("[robot]\nlinks=3\nl_m=0.1\nm_kg=1\nJ_kg_m2=2\nc_t=3\nc_n=4\nmu_n=5\nlambda_1=6\nlambda_2=7\n"
+               "lambda_3=8\nrot_damping=9\nrot_gain=10\nk_p=11\nk_d=12\n");
+    CHECK_OK(PARSE(&s, "--robot", path), "all direct keys");
+    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, {.pieces = 1}};
+    CHECK(same_robot(&s.snake.robot, &direct), "each direct key reaches its field");
+}
+
+static void test_hydrodynamics(void)
+{
+    settings s;
+    const moray_hydrodynamics paper = moray_robot_paper().hydro, consistent = moray_hydrodynamics_consistent();
+    moray_hydrodynamics mixed = consistent;
+    mixed.drag = MORAY_DRAG_LINEAR;
+    CHECK_OK(PARSE(&s, "--hydrodynamics", "paper"), "the paper's");
+    CHECK(memcmp(&s.snake.robot.hydro, &paper, sizeof paper) == 0, "is the default");
+    CHECK_OK(PARSE(&s, "--hydrodynamics", "consistent"), "one word");
+    CHECK(memcmp(&s.snake.robot.hydro, &consistent, sizeof consistent) == 0, "sets all");
+    CHECK_OK(PARSE(&s, "--set", "drag=linear", "--hydrodynamics", "consistent"), "a word and a key");
+    CHECK(memcmp(&s.snake.robot.hydro, &mixed, sizeof mixed) == 0, "the key goes before the word, in any order");
+    write_file("[robot]\nrotation=strip\ndrag=both\nadded_mass=invariant\nframe=invariant\n");
+    CHECK_OK(PARSE(&s, "--robot", path), "four keys");
+    CHECK(memcmp(&s.snake.robot.hydro, &consistent, sizeof consistent) == 0, "each key reaches its field");
+    CHECK_OK(PARSE(&s, "--set", "pieces=3"), "links in three pieces");
+    CHECK(s.snake.robot.hydro.pieces == 3, "pieces");
+    CHECK(PARSE(&s, "--set", "pieces=3", "--set", "rotation=strip").code == MORAY_INPUT, "a strip is not cut");
+}
+
+static void test_words(void)
+{
+    settings s;
+    CHECK_OK(PARSE(&s, "--model", "complex", "--current", "-0.1,0.2", "--course=45"), "model, current, course");
+    CHECK(s.snake.model == MORAY_FIRST_PRINCIPLES, "complex is another word for fp");
+    CHECK(s.snake.current[0] == -0.1 && s.snake.current[1] == 0.2, "current %g,%g", s.snake.current[0],
+          s.snake.current[1]);
+    CHECK_NEAR(s.snake.course, M_PI / 4, 1e-15, "course in degrees");
+    moray_status status = PARSE(&s, "--set", "rho_kg_m3=1e308");
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "m = inf: must be finite"), "the robot is checked: %s",
+          status.text);
+    write_file("[robot]\nlinks = 6\nm_kg = 2\n[problem]\nmodel = complex\n");
+    CHECK_OK(PARSE(&s, "--config", path), "--config reads any key");
+    CHECK(s.snake.robot.links == 6 && s.snake.robot.m == 2 && s.snake.model == MORAY_FIRST_PRINCIPLES, "they are set");
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    CHECK_OK(moray_app_help(&program, &s, file), "help");
+    fclose(file);
+    const char *told = strstr(text, "complex");
+    CHECK(told && !strstr(told + 1, "complex"), "--help tells the other word once");
+    free(text);
+}
+
+int main(void)
+{
+    settings s;
+    const int file = mkstemp(path);
+    if (file < 0)
+        return 1;
+    close(file);
+    test_robot();
+    test_hydrodynamics();
+    test_words();
+    CHECK_OK(PARSE(&s, NULL), "defaults");
+    check_sound_table(&program, &s, sizeof s);
+    unlink(path);
+    return tap_done();
+}
