@@ -40,7 +40,8 @@ MORAY_API void moray_map_release(moray_map *map);
 typedef void moray_complex_fn(void *self, const moray_num *in, moray_num *out);
 
 // Makes a map of a complex-valued function: exact Jacobians by complex step, Hessians by central differences of them,
-// patterns by NaN propagation at `probe`[n_in] and at random points near it, directions merged by column colouring.
+// both along groups of inputs that no output feels together. Patterns are what is felt, to the last bit, at `probe`[n_in]
+// and at points around it, up to half of 1 + |probe| away; no input is ever a NaN.
 // `release`, unless NULL, frees `self` with the map (or on error). Error: MORAY_MEMORY; MORAY_INPUT when the function
 // is not finite at the probe.
 MORAY_API moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function,
@@ -51,8 +52,7 @@ MORAY_API moray_status moray_map_from_complex(moray_map *map, int n_in, int n_ou
 // it succeeds or not. Error: MORAY_MEMORY.
 MORAY_API moray_status moray_map_join(moray_map *map, moray_map *base, const int *place, moray_map *extra, int at);
 // The same for a function that knows only real numbers (tables, other people's code): Jacobians by central differences
-// of fourth order (about 1e-10 where the function is smooth), Hessians by second differences (about 1e-7). A second
-// derivative that is zero at and around the probe is taken to be zero everywhere.
+// of fourth order (about 1e-10 where the function is smooth), Hessians by second differences (about 1e-7).
 typedef void moray_real_fn(void *self, const double *in, double *out);
 MORAY_API moray_status moray_map_from_real(moray_map *map, int n_in, int n_out, moray_real_fn *function, void *self,
                                            void (*release)(void *self), const double *probe);

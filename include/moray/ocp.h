@@ -158,7 +158,7 @@ MORAY_API moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec
 MORAY_API void moray_ocp_free(moray_ocp *ocp);
 
 // The worst disagreement, relative as in moray_derivative_report, between the derivatives in use and differences of the
-// functions at several points within the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
+// functions at points over the whole box of the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
 // is 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
 typedef struct moray_ocp_derivative_report {
     double jacobian_error, hessian_error;
@@ -305,6 +305,7 @@ typedef struct moray_mesh_record {
     double seconds;
     double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved
     double objective;
+    int dependences; // 0; of the functions on their inputs, found at this solution and new: solved again with them
 } moray_mesh_record;
 
 // The meshes that were tried, first to last; [*meshes], owned by the solution.
@@ -315,6 +316,8 @@ MORAY_API const moray_mesh_record *moray_solution_history(const moray_solution *
 MORAY_API const char *moray_solution_diagnosis(const moray_solution *solution);
 
 // ---- Certificate ---------------------------------------------------------------------------------------------------
+
+#define MORAY_WORST_DERIVATIVES 1e-4
 
 // Computed apart from the solver. Passes when every number is within its limit.
 typedef struct moray_certificate {
@@ -327,6 +330,10 @@ typedef struct moray_certificate {
     double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
                           // when each phase is integrated again from its start with the found controls; limit 100 x
                           // mesh_tolerance
+    double derivatives;   // largest disagreement between the derivatives in use at the solution, patterns included, and
+                          // differences of constraints, objective and gradient of the Lagrangian along dense
+                          // directions, as in moray_derivative_report with scaled rows; limit
+                          // MORAY_WORST_DERIVATIVES
     double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
                           // functions do not depend on time, where theory has it constant; NaN without such a phase
 } moray_certificate;

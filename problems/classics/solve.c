@@ -97,6 +97,8 @@ moray_settings classic_settings(const struct classic *classic)
 static void read_solution(const struct classic *classic, const moray_solution *solution, struct classic_result *result)
 {
     const moray_mesh_record *mesh = moray_solution_history(solution, &result->meshes);
+    if (result->meshes > CLASSIC_MOST_MESHES)
+        result->meshes = CLASSIC_MOST_MESHES;
     result->outcome = moray_solution_info(solution)->outcome;
     for (int k = 0; k < result->meshes; k++) {
         result->mesh[k] = mesh[k];

@@ -5,137 +5,87 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/colouring.h"
-
-// One step along every column of a group.
-static void set_direction(struct numeric_map *self, const double *in, const int *group, int which)
+void moray_set_direction(const struct numeric_map *self, const double *in, const struct numeric_groups *groups,
+                         int which, double *direction)
 {
     for (int j = 0; j < self->n_in; j++)
-        self->direction[j] = group[j] == which ? self->size[j] + fabs(in[j]) : 0;
+        direction[j] = groups->group[j] == which ? self->size[j] + fabs(in[j]) : 0;
 }
 
-static void jacobian(struct numeric_map *self, const double *in, bool rough, double *values)
+static void numeric_jacobian(void *opaque, const double *in, double *values)
 {
-    for (int group = 0, k = 0; group < self->jac_groups; group++) {
-        set_direction(self, in, self->jac_group, group);
-        self->kind->along(self, in, self->direction, rough, self->slope);
-        for (; k < self->jac.nnz && self->jac_group[self->jac.col[k]] == group; k++) // entries are sorted by group
+    struct numeric_map *self = opaque;
+    for (int group = 0, k = 0; group < self->linear.count; group++) {
+        moray_set_direction(self, in, &self->linear, group, self->direction);
+        self->kind->along(self, in, self->direction, self->slope);
+        for (; k < self->jac.nnz && self->linear.group[self->jac.col[k]] == group; k++)
             values[k] = self->slope[self->jac.row[k]] / self->direction[self->jac.col[k]];
     }
 }
 
-static void numeric_jacobian(void *self, const double *in, double *values)
+static void add_pair(struct numeric_map *self, const double *in, const double *weight, int g, int h, double *values)
 {
-    jacobian(self, in, false, values);
-}
-
-// gradient of sum weight[i] f_i at self->point
-static void weighted_gradient(struct numeric_map *self, const double *weight, double *gradient)
-{
-    jacobian(self, self->point, true, self->values);
-    memset(gradient, 0, (size_t)self->n_in * sizeof *gradient);
-    for (int k = 0; k < self->jac.nnz; k++)
-        if (weight[self->jac.row[k]] != 0)
-            gradient[self->jac.col[k]] += weight[self->jac.row[k]] * self->values[k];
+    for (int i = 0; i < self->n_out; i++) {
+        const int *member = self->nonlinear.member + i * self->nonlinear.count, r = member[g], c = member[h];
+        const int slot = weight[i] != 0 && r >= 0 && c >= 0 ? self->slot[r * self->n_in + c] : -1;
+        if (slot >= 0)
+            values[slot] +=
+                weight[i] * self->slope[i] / ((self->size[r] + fabs(in[r])) * (self->size[c] + fabs(in[c])));
+    }
 }
 
 static void numeric_hessian(void *opaque, const double *in, const double *weight, double *values)
 {
     struct numeric_map *self = opaque;
-    const double step = self->kind->hessian_step;
-    double *ahead = self->gradient, *behind = self->gradient + self->n_in;
-    for (int group = 0; group < self->hess_groups; group++) {
-        for (int side = -1; side <= 1; side += 2) {
-            for (int j = 0; j < self->n_in; j++) {
-                const double move = self->hess_group[j] == group ? step * (self->size[j] + fabs(in[j])) : 0;
-                self->point[j] = in[j] + side * move;
+    memset(values, 0, (size_t)self->hess.nnz * sizeof *values);
+    if (self->kind->around)
+        self->kind->around(self, in);
+    for (int g = 0; g < self->nonlinear.count; g++)
+        for (int h = 0; h <= g; h++)
+            if (self->meets[g * self->nonlinear.count + h]) {
+                self->kind->bend_pair(self, in, g, h, self->slope);
+                add_pair(self, in, weight, g, h, values);
             }
-            weighted_gradient(self, weight, side > 0 ? ahead : behind);
-        }
-        for (int k = 0; k < self->hess.nnz; k++) {
-            const int row = self->hess.row[k], col = self->hess.col[k];
-            if (self->hess_group[col] == group)
-                values[k] = (ahead[row] - behind[row]) / (2 * step * (self->size[col] + fabs(in[col])));
-        }
-    }
 }
 
 // ---- Construction ----
 
-static moray_status pattern_from_marks(const bool *depends, int rows, int cols, moray_pattern *pattern)
-{
-    int nnz = 0;
-    for (int k = 0; k < rows * cols; k++)
-        nnz += depends[k];
-    MORAY_TRY(moray_pattern_new(pattern, nnz));
-    for (int c = 0, k = 0; c < cols; c++)
-        for (int r = 0; r < rows; r++)
-            if (depends[r * cols + c]) {
-                pattern->row[k] = r;
-                pattern->col[k++] = c;
-            }
-    return moray_ok();
-}
-
-// Patterns at the probe and at two points near it (a branch may hide an entry at one of them).
-static moray_status find_patterns(struct numeric_map *self, const double *probe)
-{
-    const int n = self->n_in;
-    bool *jac = calloc((size_t)(self->n_out * n) + 1, sizeof *jac), *hess = calloc((size_t)(n * n) + 1, sizeof *hess);
-    moray_status status = jac && hess ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d inputs", n);
-    for (int trial = 0; trial < 3 && !moray_failed(status); trial++) {
-        for (int j = 0; j < n; j++) { // quasi-random relative shifts up to 1 %
-            const double shift = 0.01 * trial * (fmod(0.618 * (j + 1) * trial, 1) - 0.5);
-            self->point[j] = probe[j] + shift * (self->size[j] + fabs(probe[j]));
-        }
-        self->kind->mark(self, self->point, jac, hess);
-    }
-    if (!moray_failed(status))
-        status = pattern_from_marks(jac, self->n_out, n, &self->jac);
-    if (!moray_failed(status))
-        status = pattern_from_marks(hess, n, n, &self->hess);
-    free(jac);
-    free(hess);
-    return status;
-}
-
-static moray_status find_directions(struct numeric_map *self)
-{
-    MORAY_TRY(moray_colour_columns(&self->jac, self->n_out, self->n_in, self->jac_group, &self->jac_groups));
-    moray_sort_by_group(&self->jac, self->jac_group);
-    return moray_colour_symmetric(&self->hess, self->n_in, self->hess_group, &self->hess_groups);
-}
-
 static void numeric_release(moray_map *map)
 {
     struct numeric_map *self = map->self;
-    moray_pattern_free(&self->jac);
-    moray_pattern_free(&self->hess);
-    free(self->jac_group);
+    moray_numeric_release_arrangement(self);
+    free(self->feels);
     free(self->size);
-    free(self->values);
     self->kind->release(self);
     if (self->release_user)
         self->release_user(self->user);
     free(self);
 }
 
-static moray_status numeric_allocate(struct numeric_map *self, const double *size)
+bool moray_map_is_numeric(const moray_map *map)
 {
-    const size_t n = (size_t)self->n_in + 1, m = (size_t)self->n_out + 1;
-    self->jac_group = calloc(2 * n, sizeof(int));
-    self->size = calloc(5 * n + m, sizeof(double));
-    self->values = calloc(n * m, sizeof(double));
-    if (!self->jac_group || !self->size || !self->values)
+    return map->release == numeric_release;
+}
+
+static moray_status allocate(struct numeric_map *self, const double *size)
+{
+    const size_t n = (size_t)self->n_in, m = (size_t)self->n_out;
+    self->feels = calloc(2 * n * m + n * n + m + 1, sizeof *self->feels);
+    self->size = calloc(4 * n + 7 * m + 1, sizeof *self->size);
+    if (!self->feels || !self->size)
         return moray_error(MORAY_MEMORY, "no memory for a map of %d inputs and %d outputs", self->n_in, self->n_out);
-    self->hess_group = self->jac_group + n;
-    self->point = self->size + n;
-    self->direction = self->point + n;
-    self->gradient = self->direction + n;
-    self->slope = self->gradient + 2 * n;
+    self->bends = self->feels + n * m;
+    self->curved = self->bends + n * m;
+    self->bent = self->curved + n * n;
+    double **vectors[] = {&self->point, &self->direction, &self->other};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        *vectors[i] = self->size + (i + 1) * n;
+    double **outputs[] = {&self->slope, &self->out, &self->sum, &self->behind, &self->dense}; // dense: three of them
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
+        *outputs[i] = self->size + 4 * n + i * m;
     for (int j = 0; j < self->n_in; j++)
         self->size[j] = size ? size[j] : 1;
-    return moray_ok();
+    return moray_numeric_arrange(self);
 }
 
 static moray_status check_finite(struct numeric_map *self, const double *probe)
@@ -149,17 +99,99 @@ static moray_status check_finite(struct numeric_map *self, const double *probe)
     return moray_ok();
 }
 
-moray_status moray_numeric_map_new(moray_map *map, struct numeric_map *self, const double *probe, const double *size)
+static void describe(moray_map *map, struct numeric_map *self)
 {
-    *map = (moray_map){.n_in = self->n_in, .n_out = self->n_out, .self = self, .release = numeric_release};
-    MORAY_TRY(numeric_allocate(self, size));
-    MORAY_TRY(check_finite(self, probe));
-    MORAY_TRY(find_patterns(self, probe));
-    MORAY_TRY(find_directions(self));
-    map->jac = self->jac;
-    map->hess = self->hess;
-    map->value = self->kind->value;
-    map->jacobian = numeric_jacobian;
-    map->hessian = numeric_hessian;
-    return moray_ok();
+    *map = (moray_map){.n_in = self->n_in,
+                       .n_out = self->n_out,
+                       .jac = self->jac,
+                       .hess = self->hess,
+                       .self = self,
+                       .value = self->kind->value,
+                       .jacobian = numeric_jacobian,
+                       .hessian = numeric_hessian,
+                       .release = numeric_release};
+}
+
+// The first points by every direction, the others where one dense direction shows that something is missing.
+static moray_status look(moray_map *map, const double *points, int n, int thorough)
+{
+    struct numeric_map *self = map->self;
+    moray_status status = moray_ok();
+    for (int k = 0; k < n && !moray_failed(status); k++) {
+        const double *at = points + k * self->n_in;
+        if (k < thorough || !moray_map_pattern_holds(map, at))
+            status = moray_numeric_mark(self, at);
+        describe(map, self);
+    }
+    return status;
+}
+
+enum { thorough_points = 5 };
+
+moray_status moray_numeric_map_new(moray_map *map, struct numeric_map *self, int n_in, void *user,
+                                   void (*release_user)(void *user), const struct numeric_probe *probe)
+{
+    *map = (moray_map){0};
+    if (!self) {
+        if (release_user)
+            release_user(user);
+        return moray_error(MORAY_MEMORY, "no memory for a map of %d inputs", n_in);
+    }
+    self->release_user = release_user;
+    describe(map, self);
+    moray_status status = allocate(self, probe->size);
+    if (!moray_failed(status))
+        status = check_finite(self, probe->points);
+    if (!moray_failed(status))
+        status = look(map, probe->points, probe->n, thorough_points);
+    if (moray_failed(status))
+        moray_map_release(map);
+    return status;
+}
+
+// At the probe and shifted by a hundredth, a tenth and a half of size + |probe|, quasi-random.
+moray_status moray_numeric_map_around(moray_map *map, struct numeric_map *self, int n_in, void *user,
+                                      void (*release_user)(void *user), const double *at)
+{
+    enum { points = 13 };
+    static const double spread[] = {0.01, 0.1, 0.5};
+    double *point = calloc((size_t)(points * n_in) + 1, sizeof *point);
+    for (int k = 0; point && k < points; k++)
+        for (int j = 0; j < n_in; j++) {
+            const double shift = (2 * fmod(0.618033988749895 * (j + 1) * k, 1) - 1) * spread[k % 3];
+            point[k * n_in + j] = k ? at[j] + shift * (1 + fabs(at[j])) : at[j]; // which may be infinite
+        }
+    if (!point && self) {
+        self->kind->release(self);
+        free(self);
+        self = NULL;
+    }
+    moray_status status = moray_numeric_map_new(map, self, n_in, user, release_user,
+                                                &(struct numeric_probe){.points = point, .n = points});
+    free(point);
+    return status;
+}
+
+moray_status moray_map_widened(moray_map *wider, const moray_map *map, const double *points, int n, int *found)
+{
+    const struct numeric_map *from = map->self;
+    struct numeric_map *self = from->kind->twin(from);
+    *wider = (moray_map){0};
+    *found = 0;
+    if (!self)
+        return moray_error(MORAY_MEMORY, "no memory for a map of %d inputs", map->n_in);
+    describe(wider, self);
+    moray_status status = allocate(self, from->size);
+    if (!moray_failed(status)) {
+        memcpy(self->feels, from->feels, (size_t)((char *)from->bent - (char *)from->feels));
+        self->marks = from->marks;
+        status = moray_numeric_arrange(self);
+    }
+    describe(wider, self);
+    if (!moray_failed(status))
+        status = look(wider, points, n, n);
+    *found = self->marks - from->marks;
+    if (moray_failed(status))
+        moray_map_release(wider);
+    return status;
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <suitesparse/klu.h>
 
+static const double PIVOT = 0.1; // of its column's largest; KLU's own 0.001 costs orbits six digits
 static const double WORN = 1e-6; // reciprocal growth of pivots taken over that asks for new ones
 
 struct sparse_lu {
@@ -54,6 +55,7 @@ static moray_status status_of(const sparse_lu *lu)
 static moray_status analyse(sparse_lu *lu)
 {
     klu_defaults(&lu->common);
+    lu->common.tol = PIVOT;
     lu->symbolic = klu_analyze(lu->n, lu->start, lu->row, &lu->common);
     if (!lu->symbolic)
         return status_of(lu);

@@ -19,7 +19,7 @@ static double duration(const struct transcription *t, int p)
 // that one loop serves Lobatto, Radau and Gauss; entries that are zero for a scheme cost nothing.
 static void interval_defects(const struct transcription *t, int p, const struct interval *interval, double *g)
 {
-    const int nx = t->ocp->phase[p].nx, n_out = t->ocp->phase[p].map->n_out, points = interval->scheme->points;
+    const int nx = t->ocp->phase[p].nx, n_out = t->phase[p].map->n_out, points = interval->scheme->points;
     const struct node *node = t->layout.phase[p].node + interval->first;
     const double *out = t->phase[p].out + interval->first * n_out, h = duration(t, p) * interval->width;
     for (int i = 0; i < points - 1; i++) {
@@ -41,7 +41,7 @@ static void path_and_integrals(const struct transcription *t, int p, double *g)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
-    const int nx = phase->nx, nc = phase->nc, nq = phase->nq, n_out = phase->map->n_out;
+    const int nx = phase->nx, nc = phase->nc, nq = phase->nq, n_out = t->phase[p].map->n_out;
     memcpy(g + layout->integral_row, t->x + layout->q, (size_t)nq * sizeof *g);
     for (int n = 0; n < layout->nodes; n++) {
         const double *out = t->phase[p].out + n * n_out;
@@ -70,7 +70,7 @@ static void put_input(const struct transcription *t, int p, const struct node *n
                       double value, triplets *out)
 {
     const struct phase_layout *layout = &t->layout.phase[p];
-    if (in < t->ocp->phase[p].map->n_in - 1) {
+    if (in < t->phase[p].map->n_in - 1) {
         triplets_put(out, row, column[in], value);
         return;
     }
@@ -93,7 +93,7 @@ static void put_duration(const struct transcription *t, int p, int row, double f
 // Row block i of the defects, as far as it depends on f at node n: - T wQ f
 static void put_dynamics(const struct transcription *t, int p, int n, int first_row, double wQ, triplets *out)
 {
-    const moray_map *map = t->ocp->phase[p].map;
+    const moray_map *map = t->phase[p].map;
     const struct node *node = &t->layout.phase[p].node[n];
     const double *jac = t->phase[p].jac + n * map->jac.nnz, *value = t->phase[p].out + n * map->n_out;
     const int nx = t->ocp->phase[p].nx, *column = moray_node_columns(t, p, node);
@@ -127,7 +127,7 @@ static void put_path_and_integrals(const struct transcription *t, int p, int n, 
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     const struct node *node = &layout->node[n];
-    const moray_map *map = phase->map;
+    const moray_map *map = t->phase[p].map;
     const double *jac = t->phase[p].jac + n * map->jac.nnz, *value = t->phase[p].out + n * map->n_out;
     const int *column = moray_node_columns(t, p, node), before_g = phase->nx + phase->nc;
     for (int k = 0; k < map->jac.nnz; k++) {
@@ -155,7 +155,7 @@ void moray_walk_jacobian(const struct transcription *t, triplets *out)
         for (int m = 0; m < t->ocp->phase[p].nq; m++)
             triplets_put(out, layout->integral_row + m, layout->q + m, 1);
     }
-    const moray_pattern *jac = &t->ocp->endpoint->jac;
+    const moray_pattern *jac = &t->endpoint->jac;
     for (int k = 0; k < jac->nnz; k++)
         if (jac->row[k] > 0 && t->end_column[jac->col[k]] >= 0)
             triplets_put(out, t->layout.events + jac->row[k] - 1, t->end_column[jac->col[k]], t->end_jac[k]);
@@ -187,8 +187,8 @@ static void put_curvature(const struct transcription *t, int p, const struct nod
                           triplets *out)
 {
     const struct phase_layout *layout = &t->layout.phase[p];
-    const moray_pattern *hess = &t->ocp->phase[p].map->hess;
-    const int time = t->ocp->phase[p].map->n_in - 1, t0 = layout->t0, tf = layout->tf;
+    const moray_pattern *hess = &t->phase[p].map->hess;
+    const int time = t->phase[p].map->n_in - 1, t0 = layout->t0, tf = layout->tf;
     const double before = 1 - node->tau, after = node->tau;
     for (int k = 0; k < hess->nnz; k++) {
         const int row = hess->row[k], col = hess->col[k];
@@ -211,9 +211,9 @@ static void put_duration_products(const struct transcription *t, int p, int n, c
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
-    const moray_pattern *jac = &phase->map->jac;
+    const moray_pattern *jac = &t->phase[p].map->jac;
     const double *values = t->phase[p].jac + n * jac->nnz, tau = layout->node[n].tau, T = duration(t, p);
-    const int time = phase->map->n_in - 1, t0 = layout->t0, tf = layout->tf;
+    const int time = t->phase[p].map->n_in - 1, t0 = layout->t0, tf = layout->tf;
     for (int k = 0; k < jac->nnz; k++) {
         if (jac->row[k] >= phase->nx && jac->row[k] < phase->nx + phase->nc)
             continue;
@@ -236,7 +236,7 @@ static void put_node_hessian(const struct transcription *t, int p, int n, const 
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     const struct node *node = &layout->node[n];
-    const moray_map *map = phase->map;
+    const moray_map *map = t->phase[p].map;
     const int nx = phase->nx, nc = phase->nc, *column = moray_node_columns(t, p, node);
     memcpy(t->weight, t->phase[p].lambda + n * nx, (size_t)nx * sizeof *t->weight);
     memcpy(t->weight + nx, lambda + node->path, (size_t)nc * sizeof *t->weight);
@@ -251,7 +251,7 @@ static void put_node_hessian(const struct transcription *t, int p, int n, const 
 
 static void put_endpoint_hessian(const struct transcription *t, double sigma, const double *lambda, triplets *out)
 {
-    const moray_map *map = t->ocp->endpoint;
+    const moray_map *map = t->endpoint;
     t->weight[0] = sigma;
     memcpy(t->weight + 1, lambda + t->layout.events, (size_t)t->ocp->ne * sizeof *t->weight);
     if (!out->recording)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ocp/differences.h"
 #include "ocp/examine.h"
 
 // ---- Re-simulation ----
@@ -99,7 +100,7 @@ static moray_status examine_phase(const moray_solution *solution, int p, const m
                                        moray_examiner_interval(&e, &layout->interval[k], &certificate->between_nodes));
     moray_status status = resimulate(&e, integrator, certificate);
     moray_examiner_free(&e);
-    if (!moray_failed(status) && is_autonomous(solution->transcription->ocp->phase[p].map))
+    if (!moray_failed(status) && is_autonomous(solution->transcription->phase[p].map))
         status = spread_of_hamiltonian(solution, p, &certificate->hamiltonian);
     return status;
 }
@@ -111,10 +112,12 @@ moray_status moray_certify(const moray_solution *solution, const moray_integrato
     moray_kkt kkt;
     MORAY_TRY(moray_kkt_error(&solution->transcription->nlp, &solution->iterate, &kkt));
     certificate->kkt = kkt.error;
+    MORAY_TRY(moray_difference_solution(solution, &certificate->derivatives));
     for (int p = 0; p < solution->transcription->ocp->phases; p++)
         MORAY_TRY(examine_phase(solution, p, integrator, certificate));
     const moray_settings *settings = &solution->settings;
     certificate->pass = certificate->kkt <= 100 * settings->tolerance &&
+                        certificate->derivatives <= MORAY_WORST_DERIVATIVES &&
                         certificate->mesh_error <= settings->mesh_tolerance &&
                         certificate->between_nodes <= violation_slack * settings->mesh_tolerance &&
                         certificate->resimulation <= 100 * settings->mesh_tolerance;

@@ -8,14 +8,14 @@
 #include "ocp/names.h"
 #include "ocp/probe.h"
 
-enum { points = 3, name_size = 60 };
+enum { name_size = 60 };
 
 // A function of the problem: phase p, or the endpoint where p < 0.
 struct subject {
     const moray_ocp *ocp;
     int p;
     const moray_map *map;
-    double *in, *out, *weight;
+    double *points, *in, *out, *weight; // points over the whole box, and the one at hand
 };
 
 static void input_name(const struct subject *s, int i, char *text)
@@ -105,10 +105,7 @@ static bool is_finite(const struct subject *s)
 static moray_status check_at(struct subject *s, int point, int *checked, moray_ocp_derivative_report *report)
 {
     moray_derivative_report found;
-    if (s->p < 0)
-        moray_endpoint_probe(s->ocp, point, s->in);
-    else
-        moray_phase_probe(s->ocp, &s->ocp->phase[s->p], point, s->in);
+    s->in = s->points + point * s->map->n_in;
     for (int i = 0; i < s->map->n_out; i++)
         s->weight[i] = 1 + 0.3 * cos(2.0 * i + point);
     if (!is_finite(s))
@@ -123,18 +120,22 @@ static moray_status check_at(struct subject *s, int point, int *checked, moray_o
 static moray_status check_subject(struct subject s, moray_ocp_derivative_report *report)
 {
     int checked = 0;
-    s.in = calloc((size_t)(s.map->n_in + 2 * s.map->n_out), sizeof *s.in);
-    if (!s.in)
+    s.points = calloc((size_t)(moray_probe_points * s.map->n_in + 2 * s.map->n_out) + 1, sizeof *s.points);
+    if (!s.points)
         return moray_error(MORAY_MEMORY, "no memory to check the derivatives of %s", subject_name(&s));
-    s.out = s.in + s.map->n_in;
+    s.out = s.points + moray_probe_points * s.map->n_in;
     s.weight = s.out + s.map->n_out;
+    if (s.p < 0)
+        moray_endpoint_points(s.ocp, 0, s.points);
+    else
+        moray_phase_points(s.ocp, &s.ocp->phase[s.p], 0, s.points);
     moray_status status = moray_ok();
-    for (int point = 0; point < points && !moray_failed(status); point++)
+    for (int point = 0; point < moray_probe_points && !moray_failed(status); point++)
         status = check_at(&s, point, &checked, report);
     if (!moray_failed(status) && checked == 0)
         status = moray_error(MORAY_NUMERIC, "%s: its functions are not finite at any of %d points within the bounds",
-                             subject_name(&s), points);
-    free(s.in);
+                             subject_name(&s), moray_probe_points);
+    free(s.points);
     return status;
 }
 

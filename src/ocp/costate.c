@@ -57,7 +57,7 @@ int moray_solution_hamiltonian(const moray_solution *solution, int p, double *ha
     const double T = t->phase[p].tf - t->phase[p].t0, *lambda_f = t->phase[p].lambda;
     moray_dynamics_multipliers(t, p, solution->iterate.lambda, t->phase[p].lambda);
     for (int n = 0; n < layout->nodes; n++) {
-        const double *out = t->phase[p].out + n * phase->map->n_out;
+        const double *out = t->phase[p].out + n * t->phase[p].map->n_out;
         hamiltonian[n] = layout->node[n].collocated ? 0 : NAN;
         for (int r = 0; r < phase->nx; r++)
             hamiltonian[n] += lambda_f[n * phase->nx + r] / (T * layout->node[n].weight) * out[r];

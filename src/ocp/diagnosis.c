@@ -147,6 +147,13 @@ void moray_diagnose(moray_solution *solution)
     if (tried->variables != solution->transcription->layout.columns)
         moray_diagnosis_say(solution, "A finer mesh of %d intervals was not solved (%s); this is the last that was.\n",
                             tried->intervals, moray_nlp_outcome_text(tried->outcome));
+    for (int k = 0; k < solution->meshes; k++)
+        if (solution->history[k].dependences > 0)
+            moray_diagnosis_say(
+                solution,
+                "At the solution of %d intervals the functions depend on %d more inputs or pairs of them "
+                "than elsewhere; solved again with these.\n",
+                solution->history[k].intervals, solution->history[k].dependences);
     moray_assemble_constraints(solution->transcription, solution->iterate.g);
     say_worst_violation(solution);
     say_active(solution);

@@ -64,40 +64,73 @@ static void call_endpoint_real(void *self, const double *in, double *out)
 
 enum { trials = 8 }; // probe points tried before a function is said not to be finite anywhere
 
-static moray_status phase_map(const moray_ocp *ocp, struct phase *p, int trial, double *probe, double *size)
+// Sizes and points of one function, in one block.
+struct looking {
+    double *size, *points;
+    struct numeric_probe probe;
+};
+
+static moray_status looking_new(struct looking *l, int n_in)
 {
-    const int n_in = moray_phase_inputs(p), n_out = p->nx + p->nc + p->nq;
-    moray_phase_probe(ocp, p, trial, probe);
-    moray_phase_sizes(ocp, p, size);
-    if (p->wrapped->real)
-        return moray_real_map_new(&p->own_map, n_in, n_out, call_continuous_real, p->wrapped, NULL, probe, size);
-    return moray_complex_map_new(&p->own_map, n_in, n_out, call_continuous, p->wrapped, NULL, probe, size);
+    double *block = calloc((size_t)(1 + moray_probe_points) * n_in + 1, sizeof *block);
+    *l = (struct looking){block, block + n_in, {block + n_in, block, moray_probe_points}};
+    return block ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for its functions");
 }
 
-static moray_status endpoint_map(moray_ocp *ocp, int trial, double *probe, double *size)
+// Room for one more map. Error: MORAY_MEMORY.
+static moray_status own_map_new(struct own_map **own)
+{
+    *own = calloc(1, sizeof **own);
+    return *own ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for its functions");
+}
+
+static void own_maps_free(struct own_map *own)
+{
+    while (own) {
+        struct own_map *older = own->older;
+        moray_map_release(&own->map);
+        free(own);
+        own = older;
+    }
+}
+
+static moray_status phase_map(const moray_ocp *ocp, struct phase *p, int trial, const struct looking *l)
+{
+    const int n_in = moray_phase_inputs(p), n_out = p->nx + p->nc + p->nq;
+    moray_phase_points(ocp, p, trial, l->points);
+    moray_phase_sizes(ocp, p, l->size);
+    if (p->wrapped->real)
+        return moray_real_map_new(&p->own->map, n_in, n_out, call_continuous_real, p->wrapped, NULL, &l->probe);
+    return moray_complex_map_new(&p->own->map, n_in, n_out, call_continuous, p->wrapped, NULL, &l->probe);
+}
+
+static moray_status endpoint_map(moray_ocp *ocp, int trial, const struct looking *l)
 {
     const int n_in = moray_endpoint_inputs(ocp), n_out = 1 + ocp->ne;
-    moray_endpoint_probe(ocp, trial, probe);
-    moray_endpoint_sizes(ocp, size);
+    moray_endpoint_points(ocp, trial, l->points);
+    moray_endpoint_sizes(ocp, l->size);
     if (ocp->endpoint_real_fn)
-        return moray_real_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint_real, ocp, NULL, probe, size);
-    return moray_complex_map_new(&ocp->own_endpoint, n_in, n_out, call_endpoint, ocp, NULL, probe, size);
+        return moray_real_map_new(&ocp->own_endpoint->map, n_in, n_out, call_endpoint_real, ocp, NULL, &l->probe);
+    return moray_complex_map_new(&ocp->own_endpoint->map, n_in, n_out, call_endpoint, ocp, NULL, &l->probe);
 }
 
 static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phase_spec *spec)
 {
-    const size_t n = (size_t)moray_phase_inputs(p);
-    double *work = calloc(2 * n, sizeof *work);
+    struct looking l;
+    moray_status status = looking_new(&l, moray_phase_inputs(p));
     p->wrapped = calloc(1, sizeof *p->wrapped);
-    moray_status status = moray_error(MORAY_MEMORY, "no memory for its functions");
-    if (p->wrapped && work) {
+    if (!p->wrapped)
+        status = moray_error(MORAY_MEMORY, "no memory for its functions");
+    if (!moray_failed(status))
+        status = own_map_new(&p->own);
+    if (!moray_failed(status)) {
         *p->wrapped = (struct wrapped_phase){p, spec->continuous, spec->continuous_real, ocp->data};
-        status = phase_map(ocp, p, 0, work, work + n);
+        status = phase_map(ocp, p, 0, &l);
     }
     for (int trial = 1; trial < trials && status.code == MORAY_INPUT; trial++)
-        status = phase_map(ocp, p, trial, work, work + n);
-    p->map = &p->own_map;
-    free(work);
+        status = phase_map(ocp, p, trial, &l);
+    p->map = p->own ? &p->own->map : NULL;
+    free(l.size);
     if (moray_failed(status))
         return moray_error(status.code, "phase %s: %s", p->name, status.text);
     return status;
@@ -105,14 +138,16 @@ static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phas
 
 static moray_status wrap_endpoint(moray_ocp *ocp)
 {
-    const size_t n = (size_t)moray_endpoint_inputs(ocp) + 1;
-    double *work = calloc(2 * n, sizeof *work);
-    moray_status status =
-        work ? endpoint_map(ocp, 0, work, work + n) : moray_error(MORAY_MEMORY, "no memory for its function");
+    struct looking l;
+    moray_status status = looking_new(&l, moray_endpoint_inputs(ocp));
+    if (!moray_failed(status))
+        status = own_map_new(&ocp->own_endpoint);
+    if (!moray_failed(status))
+        status = endpoint_map(ocp, 0, &l);
     for (int trial = 1; trial < trials && status.code == MORAY_INPUT; trial++)
-        status = endpoint_map(ocp, trial, work, work + n);
-    ocp->endpoint = &ocp->own_endpoint;
-    free(work);
+        status = endpoint_map(ocp, trial, &l);
+    ocp->endpoint = ocp->own_endpoint ? &ocp->own_endpoint->map : NULL;
+    free(l.size);
     if (moray_failed(status))
         return moray_error(status.code, "endpoint of %s: %s", ocp->name, status.text);
     return status;
@@ -134,8 +169,8 @@ bool moray_phase_is_differenced(const struct phase *p)
 void moray_unwrap_functions(moray_ocp *ocp)
 {
     for (int i = 0; ocp->phase && i < ocp->phases; i++) {
-        moray_map_release(&ocp->phase[i].own_map);
+        own_maps_free(ocp->phase[i].own);
         free(ocp->phase[i].wrapped);
     }
-    moray_map_release(&ocp->own_endpoint);
+    own_maps_free(ocp->own_endpoint);
 }

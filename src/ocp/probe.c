@@ -107,3 +107,92 @@ void moray_endpoint_probe(const moray_ocp *ocp, int trial, double *in)
     }
     probe_list(ocp->s, ocp->ns, trial, &in);
 }
+
+// ---- Points over the whole box ----
+
+static const double wide = 1e3, endless = 1e9; // beside a size of 1
+
+// The i-th input of the k-th point: 0..1, each part of 1/(n - 1) once as k goes on.
+static double part_of_box(int i, int k)
+{
+    const int parts = moray_probe_points - 1, stride = 1 + 7 * i % (parts - 1);
+    return ((k * stride + 11 * i) % parts + 0.1 + 0.8 * fmod(0.618033988749895 * (i + k), 1)) / parts;
+}
+
+// Bounds of astronomical size are none.
+static moray_bounds trimmed(moray_bounds b, double size)
+{
+    return (moray_bounds){b.lower < -endless * size ? -MORAY_INFINITY : b.lower,
+                          b.upper > endless * size ? MORAY_INFINITY : b.upper};
+}
+
+static double mirrored(double value, moray_bounds b)
+{
+    if (value < b.lower)
+        value = 2 * b.lower - value;
+    if (value > b.upper)
+        value = 2 * b.upper - value;
+    return fmin(fmax(value, b.lower), b.upper);
+}
+
+// Wide bounds are looked at as they are at every other point.
+static double box_value(moray_bounds bounds, double size, double centre, double reach, int i, int k)
+{
+    const double part = part_of_box(i, k), side = 2 * part - 1;
+    const moray_bounds b = trimmed(bounds, size);
+    const double width = b.upper - b.lower;
+    if (width <= wide * size || (k % 2 && width < 2 * endless * size))
+        return b.lower + part * width;
+    const double distance = (reach + size + fabs(centre)) * pow(10, 3 * fabs(side) - 2);
+    return mirrored(centre + copysign(distance, side), b);
+}
+
+static void box_list(const moray_bounds *bounds, int n, int first, int k, double **in)
+{
+    for (int i = 0; i < n; i++) {
+        const double size = size_of(bounds[i]);
+        *(*in)++ = box_value(bounds[i], size, moray_bounds_middle(trimmed(bounds[i], size)), 0, first + i, k);
+    }
+}
+
+static void box_states(const struct phase *p, int k, double **in)
+{
+    for (int i = 0; i < p->nx; i++) {
+        const double size = state_size(p, i);
+        const double x0 = moray_bounds_middle(trimmed(p->x0[i], size));
+        const double xf = moray_bounds_middle(trimmed(p->xf[i], size));
+        *(*in)++ = box_value(p->x[i], size, (x0 + xf) / 2, fabs(xf - x0), i, k);
+    }
+}
+
+void moray_phase_points(const moray_ocp *ocp, const struct phase *p, int trial, double *points)
+{
+    const int n_in = moray_phase_inputs(p);
+    const moray_bounds time = {p->t0.lower, p->tf.upper};
+    moray_phase_probe(ocp, p, trial, points);
+    for (int k = 1; k < moray_probe_points; k++) {
+        double *in = points + k * n_in;
+        box_states(p, k, &in);
+        box_list(p->u, p->nu, p->nx, k, &in);
+        box_list(ocp->s, ocp->ns, p->nx + p->nu, k, &in);
+        box_list(&time, 1, n_in - 1, k, &in);
+    }
+}
+
+void moray_endpoint_points(const moray_ocp *ocp, int trial, double *points)
+{
+    const int n_in = moray_endpoint_inputs(ocp);
+    moray_endpoint_probe(ocp, trial, points);
+    for (int k = 1; k < moray_probe_points; k++) {
+        double *point = points + k * n_in, *in = point;
+        for (int i = 0; i < ocp->phases; i++) {
+            const struct phase *p = &ocp->phase[i];
+            box_list(p->x0, p->nx, (int)(in - point), k, &in);
+            box_list(&p->t0, 1, (int)(in - point), k, &in);
+            box_list(p->xf, p->nx, (int)(in - point), k, &in);
+            box_list(&p->tf, 1, (int)(in - point), k, &in);
+            box_list(p->q, p->nq, (int)(in - point), k, &in);
+        }
+        box_list(ocp->s, ocp->ns, (int)(in - point), k, &in);
+    }
+}

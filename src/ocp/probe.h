@@ -14,6 +14,13 @@ int moray_endpoint_inputs(const moray_ocp *ocp);
 void moray_phase_probe(const moray_ocp *ocp, const struct phase *p, int trial, double *in);
 void moray_endpoint_probe(const moray_ocp *ocp, int trial, double *in);
 
+// points[n][inputs] over the whole box of the bounds, the first of them the probe of a trial. Along every input one
+// point falls into each of the other n - 1 equal parts (n - 1 prime), of the box where it has both bounds; where it has
+// not, or where they are wide, points lie at distances of several magnitudes around where the ends of the phase are.
+enum { moray_probe_points = 32 };
+void moray_phase_points(const moray_ocp *ocp, const struct phase *p, int trial, double *points);
+void moray_endpoint_points(const moray_ocp *ocp, int trial, double *points);
+
 // Magnitudes for difference steps: 1, or what the bounds say where that is less (wide bounds say nothing).
 void moray_phase_sizes(const moray_ocp *ocp, const struct phase *p, double *size);
 void moray_endpoint_sizes(const moray_ocp *ocp, double *size);

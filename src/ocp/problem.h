@@ -6,13 +6,19 @@
 
 #include "moray/ocp.h"
 
+// A map of a user function. Transcriptions of before its patterns were widened go on using the older one.
+struct own_map {
+    moray_map map;
+    struct own_map *older;
+};
+
 struct wrapped_phase; // calls a user's continuous function as a map does
 
 struct phase {
     const char *name;
     int nx, nu, nc, nq, ns;
     const moray_map *map; // in = [x, u, s, t], out = [f, c, g]
-    moray_map own_map;    // where it comes from a user function
+    struct own_map *own;  // where it comes from a user function; the widest first
     struct wrapped_phase *wrapped;
     moray_bounds t0, tf;
     moray_bounds *x, *x0, *xf, *u, *c, *q;
@@ -24,7 +30,7 @@ struct moray_ocp {
     int phases, ns, ne;
     struct phase *phase;
     const moray_map *endpoint; // in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
-    moray_map own_endpoint;
+    struct own_map *own_endpoint;
     moray_endpoint_fn *endpoint_fn;
     moray_endpoint_real_fn *endpoint_real_fn;
     moray_phase_ends *ends; // scratch for endpoint_fn

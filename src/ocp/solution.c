@@ -76,7 +76,7 @@ void moray_solution_at_tau(const moray_solution *solution, int p, const struct i
     const struct transcription *t = solution->transcription;
     const struct phase_layout *layout = &t->layout.phase[p];
     const struct phase_cache *cache = &t->phase[p];
-    const int nx = t->ocp->phase[p].nx, nu = t->ocp->phase[p].nu, n_out = t->ocp->phase[p].map->n_out;
+    const int nx = t->ocp->phase[p].nx, nu = t->ocp->phase[p].nu, n_out = t->phase[p].map->n_out;
     if (!interval)
         interval = interval_at(layout, tau);
     const struct node *node = layout->node + interval->first;

@@ -12,7 +12,7 @@ struct moray_solution {
     moray_nlp_info info;
     moray_iterate iterate;      // all in one block, owned, with
     double *guess;              // [columns] where the solver started
-    moray_mesh_record *history; // [settings.max_refinements + 1], owned
+    moray_mesh_record *history; // [meshes], owned
     int meshes;
     char diagnosis[diagnosis_size];
 };

@@ -4,8 +4,10 @@
 #include <string.h>
 
 #include "ocp/refine.h"
+#include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-3;
+enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
 
 moray_settings moray_settings_default(void)
 {
@@ -41,6 +43,8 @@ struct campaign {
     moray_family family;
     int stages; // of new intervals
     struct mesh *meshes;
+    moray_mesh_record *history; // becomes the solution's
+    int tried, widenings;
 };
 
 static void free_meshes(struct campaign *c)
@@ -135,18 +139,40 @@ static moray_status run(moray_solution *solution, const moray_guess *guess)
     return moray_ok();
 }
 
+static moray_status transcribe(const struct campaign *c, moray_solution *solution)
+{
+    MORAY_TRY(moray_transcription_new(&solution->transcription, c->ocp, c->family, c->meshes));
+    return moray_allocate_iterate(solution);
+}
+
+// Transcribed with patterns that hold at the guess.
+static moray_status transcribe_at_guess(const struct campaign *c, const moray_guess *guess, moray_solution *solution)
+{
+    int found = 1;
+    MORAY_TRY(transcribe(c, solution));
+    for (int k = 0; k < most_widenings && found > 0; k++) {
+        MORAY_TRY(moray_fill_guess(solution->transcription, guess, solution->iterate.x));
+        MORAY_TRY(moray_widen_patterns(solution->transcription, &found));
+        if (found == 0)
+            break;
+        moray_transcription_free(solution->transcription);
+        free(solution->iterate.x);
+        solution->transcription = NULL, solution->iterate.x = NULL;
+        MORAY_TRY(transcribe(c, solution));
+    }
+    return moray_ok();
+}
+
 // A warm start lowers the barrier only where the interpolated point is nearly right: elsewhere it would start in a
 // corner.
-static moray_status solve_mesh(const struct campaign *c, const moray_guess *guess, moray_solution **result)
+static moray_status solve_once(const struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     *result = NULL;
     moray_solution *solution = calloc(1, sizeof *solution);
     if (!solution)
         return moray_error(MORAY_MEMORY, "no memory for a solution");
     solution->settings = *c->settings;
-    moray_status status = moray_transcription_new(&solution->transcription, c->ocp, c->family, c->meshes);
-    if (!moray_failed(status))
-        status = moray_allocate_iterate(solution);
+    moray_status status = transcribe_at_guess(c, guess, solution);
     if (!moray_failed(status))
         status = run(solution, guess);
     if (moray_failed(status))
@@ -172,15 +198,52 @@ moray_mesh_record moray_record_of(const moray_solution *solution, double error)
     return record;
 }
 
+static void record(struct campaign *c, moray_solution *solution, double error, int dependences)
+{
+    c->history[c->tried] = moray_record_of(solution, error);
+    c->history[c->tried++].dependences = dependences;
+    solution->history = c->history;
+    solution->meshes = c->tried;
+}
+
+static void drop(moray_solution *solution)
+{
+    solution->history = NULL;
+    moray_solution_free(solution);
+}
+
+// Solves on the meshes in c, and again from there where a function turns out to depend on more than its patterns know.
+static moray_status solve_mesh(struct campaign *c, const moray_guess *guess, moray_solution **result)
+{
+    MORAY_TRY(solve_once(c, guess, result));
+    while (c->widenings < most_widenings && (*result)->info.outcome != MORAY_NLP_INTERRUPTED) {
+        int found = 0;
+        moray_solution *old = *result;
+        moray_status status = moray_widen_patterns(old->transcription, &found);
+        if (!moray_failed(status) && found == 0)
+            return status;
+        *result = NULL;
+        if (!moray_failed(status)) {
+            const moray_guess here = moray_guess_from_solution(old);
+            c->widenings++;
+            record(c, old, NAN, found);
+            status = solve_once(c, &here, result);
+        }
+        drop(old);
+        MORAY_TRY(status);
+    }
+    return moray_ok();
+}
+
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
 static moray_status record_and_refine(struct campaign *c, moray_solution *solution, bool *again)
 {
     double error = NAN;
-    const bool more = solution->meshes < c->settings->max_refinements;
+    const bool more = c->tried - c->widenings < c->settings->max_refinements;
     free_meshes(c);
     if (moray_is_solved(solution))
         MORAY_TRY(moray_refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
-    solution->history[solution->meshes++] = moray_record_of(solution, error);
+    record(c, solution, error, 0);
     *again = more && error > c->settings->mesh_tolerance;
     return moray_ok();
 }
@@ -191,14 +254,12 @@ static moray_status solve_finer(struct campaign *c, moray_solution **solution, b
     moray_solution *old = *solution, *finer;
     const moray_guess guess = moray_guess_from_solution(old);
     MORAY_TRY(solve_mesh(c, &guess, &finer));
-    finer->history = old->history, finer->meshes = old->meshes;
     moray_status status = record_and_refine(c, finer, again);
     moray_solution *kept = moray_is_solved(finer) ? finer : old, *dropped = moray_is_solved(finer) ? old : finer;
     if (finer->info.outcome == MORAY_NLP_INTERRUPTED)
         old->info.outcome = MORAY_NLP_INTERRUPTED;
-    kept->meshes = finer->meshes;
-    dropped->history = NULL;
-    moray_solution_free(dropped);
+    kept->history = c->history, kept->meshes = c->tried;
+    drop(dropped);
     *solution = kept;
     return status;
 }
@@ -206,10 +267,11 @@ static moray_status solve_finer(struct campaign *c, moray_solution **solution, b
 static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
 {
     bool again;
+    const int room = c->settings->max_refinements + 1 + most_widenings;
+    c->history = calloc((size_t)room, sizeof *c->history);
+    if (!c->history)
+        return moray_error(MORAY_MEMORY, "no memory for a history of %d meshes", room);
     MORAY_TRY(solve_mesh(c, guess, solution));
-    (*solution)->history = calloc((size_t)c->settings->max_refinements + 1, sizeof *(*solution)->history);
-    if (!(*solution)->history)
-        return moray_error(MORAY_MEMORY, "no memory for a history of %d meshes", c->settings->max_refinements + 1);
     MORAY_TRY(record_and_refine(c, *solution, &again));
     while (again)
         MORAY_TRY(solve_finer(c, solution, &again));
@@ -230,7 +292,9 @@ moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, c
     free_meshes(&c);
     free(c.meshes);
     if (moray_failed(status)) {
-        moray_solution_free(*solution);
+        if (*solution)
+            drop(*solution);
+        free(c.history);
         *solution = NULL;
     }
     return status;

@@ -54,7 +54,7 @@ static bool phase_values(struct transcription *t, int p)
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     struct phase_cache *cache = &t->phase[p];
-    const moray_map *map = phase->map;
+    const moray_map *map = t->phase[p].map;
     moray_layout_span(&t->layout, t->ocp, t->x, p, &cache->t0, &cache->tf);
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
@@ -75,7 +75,7 @@ static bool phase_values(struct transcription *t, int p)
 // Inputs of the endpoint map that are variables come through end_column; fixed times stay from the phases.
 static bool end_values(struct transcription *t)
 {
-    const moray_map *map = t->ocp->endpoint;
+    const moray_map *map = t->endpoint;
     int bad, k = 0;
     for (int p = 0; p < t->ocp->phases; p++) {
         const int nx = t->ocp->phase[p].nx;
@@ -117,7 +117,7 @@ bool moray_transcription_jacobians(struct transcription *t, const double *x)
     if (t->have_jacobians)
         return true;
     for (int p = 0; p < t->ocp->phases; p++) {
-        const moray_map *map = t->ocp->phase[p].map;
+        const moray_map *map = t->phase[p].map;
         for (int n = 0; n < t->layout.phase[p].nodes; n++) {
             double *jac = t->phase[p].jac + n * map->jac.nnz;
             int bad;
@@ -128,7 +128,7 @@ bool moray_transcription_jacobians(struct transcription *t, const double *x)
                 return fail_at_node(t, p, n, map->jac.row[bad]);
         }
     }
-    t->ocp->endpoint->jacobian(t->ocp->endpoint->self, t->end_in, t->end_jac);
+    t->endpoint->jacobian(t->endpoint->self, t->end_in, t->end_jac);
     t->have_jacobians = true;
     return true;
 }
@@ -152,7 +152,7 @@ static bool nlp_gradient(void *self, const double *x, bool fresh, double *gradie
     if (!moray_transcription_jacobians(t, x))
         return false;
     memset(gradient, 0, (size_t)t->layout.columns * sizeof *gradient);
-    const moray_pattern *jac = &t->ocp->endpoint->jac;
+    const moray_pattern *jac = &t->endpoint->jac;
     for (int k = 0; k < jac->nnz; k++)
         if (jac->row[k] == 0 && t->end_column[jac->col[k]] >= 0)
             gradient[t->end_column[jac->col[k]]] += t->end_jac[k];

@@ -11,6 +11,7 @@
 
 // What the functions of a phase gave at every node of the current point.
 struct phase_cache {
+    const moray_map *map; // with the patterns that the problem had when it was transcribed
     double t0, tf;
     double *in, *out; // [nodes][n_in], [nodes][n_out] of the phase's map
     double *jac;      // [nodes][nnz] of the map's Jacobian
@@ -28,6 +29,7 @@ struct transcription {
     double *x;      // the point that the caches belong to
     bool have_values, have_jacobians;
     struct phase_cache *phase;
+    const moray_map *endpoint;
     double *end_in, *end_out, *end_jac;
     int *end_column;           // column of each endpoint input, -1 for fixed times
     double *weight, *map_hess; // scratch for one call of a map's Hessian

@@ -72,6 +72,7 @@ static moray_status allocate_phase_cache(struct transcription *t, int p)
 {
     const moray_map *map = t->ocp->phase[p].map;
     struct phase_cache *cache = &t->phase[p];
+    cache->map = map;
     const size_t nodes = (size_t)t->layout.phase[p].nodes;
     cache->in = calloc(nodes * map->n_in, sizeof(double));
     cache->out = calloc(nodes * map->n_out, sizeof(double));
@@ -87,7 +88,7 @@ static moray_status allocate_phase_cache(struct transcription *t, int p)
 // Everything that solving touches is allocated here, once: no callback allocates.
 static moray_status allocate(struct transcription *t)
 {
-    const moray_map *end = t->ocp->endpoint;
+    const moray_map *end = t->endpoint;
     const size_t columns = (size_t)t->layout.columns, rows = (size_t)t->layout.rows;
     int outs = end->n_out, nnz = end->hess.nnz;
     t->phase = calloc((size_t)t->ocp->phases, sizeof *t->phase);
@@ -143,6 +144,7 @@ moray_status moray_transcription_new(struct transcription **result, const moray_
     if (!t)
         return moray_error(MORAY_MEMORY, "no memory for the transcription");
     t->ocp = ocp;
+    t->endpoint = ocp->endpoint;
     moray_status status = moray_layout_new(&t->layout, ocp, family, meshes);
     if (!moray_failed(status))
         status = allocate(t);

@@ -177,12 +177,14 @@ static void say_failure(const app_run *run)
 {
     const moray_certificate *c = &run->certificate;
     const double loose = 100 * run->mesh_tol, tight = 100 * run->common.tol;
-    const char *text = c->kkt > tight ? "the solver stopped short of an optimum: try a smaller tol"
-                       : c->mesh_error > run->mesh_tol
-                           ? "the mesh is too coarse: try more refinements, intervals or stages"
-                       : c->between_nodes > loose ? "limits are passed between the nodes: try more intervals"
-                                                  : "the simulation departs from the solution: try more intervals "
-                                                    "or, where the equations are unstable, distrust it";
+    const char *text =
+        c->derivatives > MORAY_WORST_DERIVATIVES
+            ? "the derivatives are wrong at the solution, or it lies on a kink of a function: see --check"
+        : c->kkt > tight                ? "the solver stopped short of an optimum: try a smaller tol"
+        : c->mesh_error > run->mesh_tol ? "the mesh is too coarse: try more refinements, intervals or stages"
+        : c->between_nodes > loose      ? "limits are passed between the nodes: try more intervals"
+                                        : "the simulation departs from the solution: try more intervals "
+                                          "or, where the equations are unstable, distrust it";
     fprintf(stderr, "%s: certificate failed: %s\n", run->name, text);
 }
 

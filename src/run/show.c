@@ -114,6 +114,7 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
         {.label = "error of the dynamics between nodes", .value = {c->mesh_error, run->mesh_tol}},
         {.label = "violation of limits between nodes", .value = {c->between_nodes, loose}},
         {.label = "difference to a re-simulation", .value = {c->resimulation, loose}},
+        {.label = "derivatives against differences", .value = {c->derivatives, MORAY_WORST_DERIVATIVES}},
         {.label = "spread of the Hamiltonian", .value = {c->hamiltonian, NAN}}};
     memcpy(rows, filled, sizeof filled);
     return sizeof filled / sizeof *filled;
@@ -121,7 +122,7 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
 
 moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
-    enum { solver_room = 10, certificate_room = 5 };
+    enum { solver_room = 10, certificate_room = 6 };
     const int solution_room = count_rows(run->app->spec);
     int meshes;
     moray_solution_history(run->solution, &meshes);

@@ -22,7 +22,7 @@ void moray_solver_to_json(moray_json *json, const moray_solution *solution)
 
 void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate)
 {
-    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN};
+    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN, NAN};
     const moray_certificate *c = certificate ? certificate : &none;
     moray_json_open(json, "certificate");
     moray_json_bool(json, "pass", c->pass);
@@ -30,6 +30,7 @@ void moray_certificate_to_json(moray_json *json, const moray_certificate *certif
     moray_json_number(json, "mesh_error", c->mesh_error);
     moray_json_number(json, "between_nodes", c->between_nodes);
     moray_json_number(json, "resimulation", c->resimulation);
+    moray_json_number(json, "derivatives", c->derivatives);
     moray_json_number(json, "hamiltonian", c->hamiltonian);
     moray_json_close(json);
 }
@@ -45,6 +46,7 @@ void moray_solver_line(const moray_solution *solution, const char *scheme, int i
 
 void moray_certificate_line(const moray_certificate *c, char *text, size_t size)
 {
-    snprintf(text, size, "Certificate: %s (KKT %.1e, mesh error %.1e, between nodes %.1e, re-simulation %.1e)",
-             c->pass ? "pass" : "FAIL", c->kkt, c->mesh_error, c->between_nodes, c->resimulation);
+    snprintf(text, size,
+             "Certificate: %s (KKT %.1e, mesh error %.1e, between nodes %.1e, re-simulation %.1e, derivatives %.1e)",
+             c->pass ? "pass" : "FAIL", c->kkt, c->mesh_error, c->between_nodes, c->resimulation, c->derivatives);
 }

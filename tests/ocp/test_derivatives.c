@@ -153,16 +153,20 @@ static void test_check_names(void)
 }
 
 // A user's mistake: fabs of <tgmath.h> is the modulus, which has no complex derivative.
+struct mistakes {
+    bool in_phase, in_endpoint;
+};
 static void kinked(const moray_node *at, moray_rates *out, const void *data)
 {
     for (int i = 0; i < 3; i++)
         out->f[i] = at->x[(i + 1) % 3];
-    out->f[2] += *(const bool *)data ? fabs(at->x[1] - 20) * at->u[0] : moray_abs(at->x[1] - 20) * at->u[0];
+    out->f[2] += ((const struct mistakes *)data)->in_phase ? fabs(at->x[1] - 20) * at->u[0]
+                                                           : moray_abs(at->x[1] - 20) * at->u[0];
 }
 static void tied(const moray_ends *at, moray_end_values *out, const void *data)
 {
     out->objective = at->phase[0].xf[0];
-    out->e[0] = (*(const bool *)data ? creal(at->phase[0].tf) : at->phase[0].tf) * at->s[0];
+    out->e[0] = (((const struct mistakes *)data)->in_endpoint ? creal(at->phase[0].tf) : at->phase[0].tf) * at->s[0];
 }
 
 static void test_check_finds_kinks(void)
@@ -177,12 +181,16 @@ static void test_check_finds_kinks(void)
                            .ne = 1,
                            .e = MORAY_BOUNDS(moray_free()),
                            .endpoint = tied};
-    bool wrong = true;
+    struct mistakes wrong = {.in_phase = true};
     spec.data = &wrong;
     CHECK_OK(moray_ocp_new(&ocp, &spec), "with fabs");
     check_says(ocp, false, "d (dynamics of state v) / d (state y) is 0, by differences");
     moray_ocp_free(ocp);
-    wrong = false;
+    wrong = (struct mistakes){.in_endpoint = true};
+    CHECK_OK(moray_ocp_new(&ocp, &spec), "with creal");
+    check_says(ocp, false, "endpoint: d (event e[0]) / d (final time of phase wire) is 0, by differences");
+    moray_ocp_free(ocp);
+    wrong = (struct mistakes){0};
     CHECK_OK(moray_ocp_new(&ocp, &spec), "with moray_abs");
     moray_ocp_derivative_report report;
     CHECK_OK(moray_ocp_check_derivatives(ocp, &report), "checks");

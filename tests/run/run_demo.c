@@ -16,7 +16,7 @@ struct world {
 static void move(const moray_node *at, moray_rates *out, const void *data)
 {
     struct world *world = (struct world *)data;
-    if (world->raise > 0 && ++world->calls > 4000) { // in the solver
+    if (world->raise > 0 && ++world->calls > 2500) { // in the solver
         world->raise--;
         raise(SIGINT);
     }

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "base/numeric_map.h"
 #include "snake/swim/limits.h"
 
 enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2 };
@@ -98,30 +99,69 @@ static void ends(const moray_ends *at, moray_end_values *out, const void *data)
 
 // ---- Building ------------------------------------------------------------------------------------------------------
 
-// The task's functions on the inputs of the phase, joined to the plant's.
+enum { look_points = 64, most_inputs = states + MORAY_STEERING_CONTROLS + parameters + 1 };
+
+// Where the task's functions are looked at: the first point typical, the others around it, and all over what its own
+// controls and the time may be, because a reference or a path changes along these.
+static void fill_points(const moray_steering_spec *spec, int n_in, double *points)
+{
+    const moray_steering_task *task = &spec->task;
+    const double typical[states + 1] = {0.1, 0.2, 0.3, 0.1, 0.2, 0.02, 0.01, 0.002, 0.001};
+    const double stroke[parameters] = {0.05, 2, 0.7};
+    moray_bounds box[most_inputs] = {{0}};
+    double first[most_inputs] = {0};
+    memcpy(first, typical, sizeof typical);
+    memcpy(first + n_in - 1 - parameters, stroke, sizeof stroke);
+    first[n_in - 1] = 0.6 * spec->t0.lower + 0.4 * spec->tf.lower;
+    for (int j = 0; j < n_in; j++)
+        box[j] = moray_between(first[j] - 0.5 * (1 + fabs(first[j])), first[j] + 0.5 * (1 + fabs(first[j])));
+    for (int k = 0; k < task->nu; k++) {
+        first[states + 1 + k] = 0.45 * task->u[k].lower + 0.55 * task->u[k].upper;
+        box[states + 1 + k] = task->u[k];
+    }
+    if (spec->tf.upper < MORAY_INFINITY)
+        box[n_in - 1] = moray_between(spec->t0.lower, spec->tf.upper);
+    for (int k = 0; k < look_points; k++)
+        for (int j = 0; j < n_in; j++) {
+            const double part = (k + fmod(0.618033988749895 * (j + 1) * k, 1)) / look_points;
+            const double anywhere = fmod(part + 0.381966011250105 * j, 1);
+            points[k * n_in + j] = k ? box[j].lower + anywhere * (box[j].upper - box[j].lower) : first[j];
+        }
+}
+
+// The task's functions on the inputs of the phase.
+static moray_status make_added(const moray_steering_spec *spec, int n_in, moray_map *added)
+{
+    const moray_steering_task *task = &spec->task;
+    double *points = calloc((size_t)(look_points * n_in), sizeof *points);
+    *added = (moray_map){0};
+    if (!points)
+        return moray_error(MORAY_MEMORY, "no memory for the steering problem");
+    fill_points(spec, n_in, points);
+    const struct numeric_probe probe = {.points = points, .n = look_points};
+    const moray_status status =
+        moray_complex_map_new(added, n_in, task->nc + task->nq, task->extra, task->self, NULL, &probe);
+    free(points);
+    return status;
+}
+
+// The task's functions joined to the plant's.
 static moray_status make_plant(moray_steering *problem)
 {
     const moray_steering_spec *spec = &problem->spec;
     const moray_steering_task *task = &spec->task;
     const moray_plant_spec plant_spec = {
         .robot = spec->robot, .joints = MORAY_JOINTS_STEERED, .current = {spec->current[0], spec->current[1]}};
-    const int n_in = states + 1 + task->nu + parameters + 1, extra = task->nc + task->nq;
-    const double typical[states + 1] = {0.1, 0.2, 0.3, 0.1, 0.2, 0.02, 0.01, 0.002, 0.001};
     int place[states + 1 + parameters + 1];
     moray_map plant, added;
     MORAY_TRY(spec->averaged                          ? moray_average_plant(&plant, &plant_spec)
               : spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&plant, &plant_spec)
                                                       : moray_fp_plant(&plant, &plant_spec));
-    if (extra == 0) {
+    if (task->nc + task->nq == 0) {
         problem->plant = plant;
         return moray_ok();
     }
-    double probe[states + MORAY_STEERING_CONTROLS + parameters + 1] = {0};
-    memcpy(probe, typical, sizeof typical);
-    for (int k = 0; k < task->nu; k++)
-        probe[states + 1 + k] = 0.45 * task->u[k].lower + 0.55 * task->u[k].upper;
-    memcpy(probe + n_in - 4, (double[]){0.05, 2, 0.7, 0.6 * spec->t0.lower + 0.4 * spec->tf.lower}, 4 * sizeof *probe);
-    const moray_status status = moray_map_from_complex(&added, n_in, extra, task->extra, task->self, NULL, probe);
+    const moray_status status = make_added(spec, states + 1 + task->nu + parameters + 1, &added);
     if (moray_failed(status)) {
         moray_map_release(&plant);
         return status;

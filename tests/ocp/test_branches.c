@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+//
+// Dependences that hide behind a branch: whatever decides the branch, the optimum is that of the same problem whose
+// functions show every dependence everywhere.
+#include "tap.h"
+
+#include <stdlib.h>
+
+#include "moray/num.h"
+#include "moray/ocp.h"
+#include "moray/sim.h"
+
+enum { by_time, by_state, by_control, by_parameter, by_time_curved, by_place, by_place_curved, kinds };
+static const char *const kind_names[kinds] = {"time",
+                                              "a state",
+                                              "a control",
+                                              "a parameter",
+                                              "time, in the Hessian alone",
+                                              "a place that no point of the box "
+                                              "is near to",
+                                              "such a place, in the Hessian alone"};
+
+struct branch {
+    int kind;
+    bool shown; // everywhere, too weakly to matter
+};
+
+// x' = u + help by the cheap control w, beside clocks that the place is told by.
+static moray_num help(const moray_node *at, const struct branch *branch)
+{
+    const moray_num x = at->x[0], u = at->u[0], w = at->u[1];
+    const double time = creal(at->t), early = creal(at->x[1]), late = creal(at->x[2]);
+    const bool near = fabs(early - 3) < 0.12 && fabs(late - 3) < 0.12;
+    const moray_num weak = 1e-13 * (branch->shown ? w * w + w + u * w : 0);
+    switch (branch->kind) {
+    case by_time:
+        return weak + (time > 4 ? 3 * w : 0);
+    case by_state:
+        return weak + (creal(x) > 3 ? 3 * w * (x - 3) * (x - 3) : 0);
+    case by_control:
+        return weak + (creal(u) > 0.25 ? 4 * w * (u - 0.25) * (u - 0.25) : 0);
+    case by_parameter:
+        return weak + (creal(at->s[0]) > 0.7 ? 2 * w * (at->s[0] - 0.7) : 0);
+    case by_time_curved:
+        return weak + (time > 4 ? 2 * w - 0.3 * w * w : 0.1 * w);
+    case by_place:
+        return weak + (near ? 30 * w : 0);
+    default:
+        return weak + (near ? 20 * w - 2 * w * w : 0.1 * w);
+    }
+}
+
+static void swim(const moray_node *at, moray_rates *out, const void *data)
+{
+    out->f[0] = at->u[0] + help(at, data);
+    out->f[1] = 1;
+    out->f[2] = 1;
+    out->g[0] = at->u[0] * at->u[0] + 0.05 * at->u[1] * at->u[1];
+}
+
+static void effort(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static moray_ocp *problem(const struct branch *branch)
+{
+    moray_ocp *ocp = NULL;
+    const moray_phase_spec phase = {
+        .name = "swim",
+        .nx = 3,
+        .nu = 2,
+        .nq = 1,
+        .continuous = swim,
+        .t0 = moray_fixed(0),
+        .tf = moray_fixed(5),
+        .x = MORAY_BOUNDS(moray_between(-10, 10), moray_between(-20, 20), moray_between(-20, 20)),
+        .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0)),
+        .xf = MORAY_BOUNDS(moray_fixed(5), moray_free(), moray_free()),
+        .u = MORAY_BOUNDS(moray_between(-5, 5), moray_between(-5, 5))};
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "branch",
+                                                   .phases = 1,
+                                                   .phase = &phase,
+                                                   .endpoint = effort,
+                                                   .ns = 1,
+                                                   .s = MORAY_BOUNDS(moray_between(0.6, 1)),
+                                                   .data = branch}),
+             kind_names[branch->kind]);
+    return ocp;
+}
+
+static moray_solution *solve(const moray_ocp *ocp)
+{
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution = NULL;
+    settings.intervals = 50;
+    settings.tolerance = 1e-10;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    CHECK(moray_solution_info(solution)->outcome == MORAY_NLP_SOLVED, "%s",
+          moray_nlp_outcome_text(moray_solution_info(solution)->outcome));
+    return solution;
+}
+
+static void check_kind(int kind)
+{
+    const struct branch hidden = {kind, false}, shown = {kind, true};
+    moray_ocp *one = problem(&hidden), *other = problem(&shown);
+    moray_solution *found = solve(one), *reference = solve(other);
+    int meshes, fresh = 0;
+    const moray_mesh_record *mesh = moray_solution_history(found, &meshes);
+    for (int k = 0; k < meshes; k++)
+        fresh += mesh[k].dependences;
+    CHECK_RELATIVE(moray_solution_objective(found), moray_solution_objective(reference), 1e-6, kind_names[kind]);
+    CHECK(moray_solution_objective(found) < 4.9, "%s: the branch is used: %.6g for 5", kind_names[kind],
+          moray_solution_objective(found));
+    const moray_nlp_size size = moray_solution_size(found);
+    const moray_nlp_size whole = moray_solution_size(reference);
+    CHECK(size.nnz_jac <= whole.nnz_jac && size.nnz_hess <= whole.nnz_hess, "%s: and no entry is made up: %d, %d",
+          kind_names[kind], size.nnz_jac, size.nnz_hess);
+    printf("# %s: %.8g, %d meshes, %d dependences found at solutions\n", kind_names[kind],
+           moray_solution_objective(found), meshes, fresh);
+    moray_solution_free(found);
+    moray_solution_free(reference);
+    moray_ocp_free(one);
+    moray_ocp_free(other);
+}
+
+int main(void)
+{
+    for (int kind = 0; kind < kinds; kind++)
+        check_kind(kind);
+    return tap_done();
+}
