@@ -242,7 +242,7 @@ int main(int argc, char **argv)
 {
     static benchmark run;
     int exit_code;
-    run = (benchmark){.common = moray_common_defaults(),
+    run = (benchmark){.common = moray_common_default(),
                       .repeats = 5,
                       .most_intervals = 1000,
                       .most_links = 100,

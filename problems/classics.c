@@ -34,7 +34,7 @@ static const moray_option options[] = {
 
 static classics_run defaults(void)
 {
-    classics_run run = {.common = moray_common_defaults(), .refinements = -1};
+    classics_run run = {.common = moray_common_default(), .refinements = -1};
     strcpy(run.common.scheme, own_scheme);
     run.common.intervals = 0;
     run.common.tol = NAN;

@@ -54,7 +54,7 @@ static const moray_option options[] = {
 
 static paper_settings defaults(void)
 {
-    paper_settings settings = {.common = moray_common_defaults(),
+    paper_settings settings = {.common = moray_common_default(),
                                .snake = moray_snake_options_default(),
                                .theta_max = 20 * DEG,
                                .omega = 120 * DEG,

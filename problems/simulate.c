@@ -97,7 +97,7 @@ static const moray_program program = {
 
 int main(int argc, char **argv)
 {
-    simulate run = {.common = moray_common_defaults(),
+    simulate run = {.common = moray_common_default(),
                     .snake = moray_snake_options_default(),
                     .gait = moray_gait_input_default(),
                     .duration = NAN,

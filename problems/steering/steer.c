@@ -5,7 +5,7 @@
 
 steer_job steer_defaults(void)
 {
-    steer_job job = {.common = moray_common_defaults(),
+    steer_job job = {.common = moray_common_default(),
                      .snake = moray_snake_options_default(),
                      .input = {.theta_max = {1 * DEG, 20 * DEG},
                                .omega = {30 * DEG, 360 * DEG},

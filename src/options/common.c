@@ -56,7 +56,7 @@ static const moray_option shell_rows[] = {
 
 const moray_option_table moray_common_table = {.rows = shell_rows, .n = sizeof shell_rows / sizeof *shell_rows};
 
-moray_common moray_common_defaults(void)
+moray_common moray_common_default(void)
 {
     return (moray_common){.scheme = "hermite-simpson", .intervals = 40, .tol = 1e-8};
 }

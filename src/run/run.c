@@ -63,7 +63,7 @@ static void start_from_defaults(app_run *run)
 {
     const moray_app *app = run->app;
     const moray_settings settings = app->settings ? *app->settings : moray_settings_default();
-    run->common = moray_common_defaults();
+    run->common = moray_common_default();
     snprintf(run->common.scheme, sizeof run->common.scheme, "%s", settings.scheme);
     run->common.intervals = settings.intervals;
     run->common.tol = settings.tolerance;

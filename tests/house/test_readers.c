@@ -73,7 +73,7 @@ static moray_status read_ini(double *sum)
         {.section = "test", .key = "aa", .type = MORAY_OPTION_REAL, MORAY_AT(settings, a)},
         {.section = "test", .key = "bb", .type = MORAY_OPTION_REAL, MORAY_AT(settings, b)}};
     const moray_program program = {.name = "readers", .summary = "", .options = rows, .n_options = 2};
-    settings s = {.common = moray_common_defaults()};
+    settings s = {.common = moray_common_default()};
     moray_request request;
     moray_status status =
         moray_app_parse(&program, 3, (char *[]){"readers", "--config", (char *)file_name, NULL}, &s, &request);

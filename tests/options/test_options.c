@@ -119,7 +119,7 @@ static moray_status parse(settings *s, const char *const arguments[8])
     for (int i = 0; i < 8 && arguments[i]; i++)
         argv[argc++] = (char *)arguments[i];
     moray_request request;
-    *s = (settings){.common = moray_common_defaults(),
+    *s = (settings){.common = moray_common_default(),
                     .body = {.links = 10, .m_kg = 1},
                     .limit = INFINITY,
                     .range = {0, INFINITY},
@@ -382,7 +382,7 @@ static void test_help(void)
 
 static void test_plain(void)
 {
-    moray_common s = moray_common_defaults();
+    moray_common s = moray_common_default();
     moray_request request;
     const moray_program plain = {.name = "plain", .summary = "s"};
     char *good[] = {"plain", "--scheme", "radau3", "--intervals", "7"}, *bad[] = {"plain", "--links", "5"};
@@ -412,7 +412,7 @@ static moray_status parse_words(wordy *s, const char *const arguments[4])
     moray_request request;
     for (int i = 0; i < 4 && arguments[i]; i++)
         argv[argc++] = (char *)arguments[i];
-    *s = (wordy){.common = moray_common_defaults()};
+    *s = (wordy){.common = moray_common_default()};
     const moray_status status = moray_app_parse(&wordy_program, argc, argv, s, &request);
     if (request == MORAY_REQUEST_HELP) {
         char text[8192] = "";

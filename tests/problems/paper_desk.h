@@ -16,7 +16,7 @@ typedef struct paper_desk {
 // theta_max in degrees; delta is 2 pi/(N-1).
 static inline void paper_desk_open(paper_desk *desk, const moray_robot *robot, double V_x, double V_y, double theta_max)
 {
-    *desk = (paper_desk){.settings = {.common = moray_common_defaults(),
+    *desk = (paper_desk){.settings = {.common = moray_common_default(),
                                       .snake = moray_snake_options_default(),
                                       .theta_max = theta_max * DEG,
                                       .omega = 120 * DEG,

@@ -70,7 +70,7 @@ typedef struct moray_common {
 } moray_common;
 
 // Hermite-Simpson on 40 intervals to 1e-8.
-MORAY_API moray_common moray_common_defaults(void);
+MORAY_API moray_common moray_common_default(void);
 
 // A group of rows that several programs share, its offsets from the start of settings of its own, and what is done with
 // those when all is read (or NULL); an error of finish is the program's.

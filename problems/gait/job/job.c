@@ -42,7 +42,7 @@ enum { usual_intervals = 12, effort_intervals = 60 };
 
 gait_job gait_job_defaults(const gait_program *program)
 {
-    gait_job job = {.common = moray_common_defaults(),
+    gait_job job = {.common = moray_common_default(),
                     .snake = moray_snake_options_default(),
                     .name = program->name,
                     .goal = program->goal,

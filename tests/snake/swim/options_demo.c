@@ -132,7 +132,7 @@ static moray_status write_files(const demo_settings *s, const moray_table *table
 
 int main(int argc, char **argv)
 {
-    demo_settings s = {.common = moray_common_defaults(),
+    demo_settings s = {.common = moray_common_default(),
                        .snake = moray_snake_options_default(),
                        .delta = {20 * DEG, 90 * DEG},
                        .power = {0, INFINITY},

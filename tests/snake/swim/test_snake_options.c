@@ -24,7 +24,7 @@ static moray_status parse(settings *s, const char *const arguments[8])
     for (int i = 0; i < 8 && arguments[i]; i++)
         argv[argc++] = (char *)arguments[i];
     moray_request request;
-    *s = (settings){.common = moray_common_defaults(), .snake = moray_snake_options_default()};
+    *s = (settings){.common = moray_common_default(), .snake = moray_snake_options_default()};
     return moray_app_parse(&program, argc, argv, s, &request);
 }
 #define PARSE(s, ...) parse((s), (const char *const[8]){__VA_ARGS__})
