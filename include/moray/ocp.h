@@ -234,7 +234,7 @@ typedef struct moray_settings {
     int print_level;       // 0: Ipopt's log on standard error
     moray_linear_solver linear_solver; // MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
-    const moray_ipopt_option *ipopt;   // [n_ipopt] further options of Ipopt, which must outlive the solution
+    const moray_key_value *ipopt;   // [n_ipopt] further options of Ipopt, which must outlive the solution
     int n_ipopt;                       // 0
     moray_progress_fn *progress;
     void *observer;

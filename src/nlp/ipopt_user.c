@@ -67,7 +67,7 @@ static bool read_integer(const char *value, int *whole)
     return end != value && *end == 0 && !errno && read >= INT_MIN && read <= INT_MAX;
 }
 
-static bool set(IpoptProblem problem, const moray_ipopt_option *option, enum kind kind)
+static bool set(IpoptProblem problem, const moray_key_value *option, enum kind kind)
 {
     char *key = (char *)option->key; // 3.11 declares its option texts as char * but only reads them
     int whole;
@@ -79,7 +79,7 @@ static bool set(IpoptProblem problem, const moray_ipopt_option *option, enum kin
     return AddIpoptStrOption(problem, key, (char *)option->value);
 }
 
-static enum kind kind_of(IpoptProblem silent, const moray_ipopt_option *option)
+static enum kind kind_of(IpoptProblem silent, const moray_key_value *option)
 {
     for (enum kind kind = integer; kind <= text; kind++)
         if (set(silent, option, kind))
@@ -87,7 +87,7 @@ static enum kind kind_of(IpoptProblem silent, const moray_ipopt_option *option)
     return refused;
 }
 
-static moray_status refusal(const moray_ipopt_option *option, const struct ipopt_log *log)
+static moray_status refusal(const moray_key_value *option, const struct ipopt_log *log)
 {
     char line[200];
     if (moray_ipopt_log_find(log, "not a valid option", line, sizeof line))
@@ -97,7 +97,7 @@ static moray_status refusal(const moray_ipopt_option *option, const struct ipopt
 }
 
 // Options that would let files decide or break the output of the program.
-static moray_status check_key(const moray_ipopt_option *option)
+static moray_status check_key(const moray_key_value *option)
 {
     static const char *const kept[][2] = {{"option_file_name", "no option file is read"},
                                           {"sb", "the banner is never printed"},
@@ -109,7 +109,7 @@ static moray_status check_key(const moray_ipopt_option *option)
     return moray_ok();
 }
 
-static moray_status set_alone(IpoptProblem problem, const moray_ipopt_option *option)
+static moray_status set_alone(IpoptProblem problem, const moray_key_value *option)
 {
     struct ipopt_log log;
     IpoptProblem silent = new_silent();
@@ -127,7 +127,7 @@ static moray_status set_alone(IpoptProblem problem, const moray_ipopt_option *op
 }
 
 // Solving the small problem makes an instance of MUMPS.
-static moray_status set_on(IpoptProblem problem, const moray_ipopt_option *option)
+static moray_status set_on(IpoptProblem problem, const moray_key_value *option)
 {
     moray_mumps_lock();
     const moray_status status = set_alone(problem, option);

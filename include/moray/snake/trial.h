@@ -5,7 +5,7 @@
 #define MORAY_SNAKE_TRIAL_H
 
 #include "moray/export.h"
-#include "moray/snake/gait_problem.h"
+#include "moray/snake/model.h"
 #include "moray/app/results.h"
 #include "moray/snake/swim.h"
 
