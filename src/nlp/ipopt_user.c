@@ -12,6 +12,7 @@
 
 #include "base/number.h"
 #include "nlp/ipopt_log.h"
+#include "nlp/ipopt_options.h"
 #include "nlp/mumps_lock.h"
 
 enum kind { refused, integer, number, text };
@@ -69,14 +70,14 @@ static bool read_integer(const char *value, int *whole)
 
 static bool set(IpoptProblem problem, const moray_key_value *option, enum kind kind)
 {
-    char *key = (char *)option->key; // 3.11 declares its option texts as char * but only reads them
+    char *key = moray_for_ipopt(option->key);
     int whole;
     double real;
     if (kind == integer)
         return read_integer(option->value, &whole) && AddIpoptIntOption(problem, key, whole);
     if (kind == number)
         return moray_number_read(option->value, &real) && AddIpoptNumOption(problem, key, real);
-    return AddIpoptStrOption(problem, key, (char *)option->value);
+    return AddIpoptStrOption(problem, key, moray_for_ipopt(option->value));
 }
 
 static enum kind kind_of(IpoptProblem silent, const moray_key_value *option)

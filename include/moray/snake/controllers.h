@@ -49,7 +49,7 @@ typedef struct moray_plan {
 MORAY_API moray_offset moray_plan_offset(const moray_plan *plan, double t);
 
 // Blindly. The plan must outlive the controller.
-MORAY_API moray_swim_controller moray_plan_controller(const moray_plan *plan);
+MORAY_API moray_swim_controller moray_plan_controller(moray_plan *plan);
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------
 
