@@ -57,10 +57,10 @@ typedef struct moray_nlp_settings {
     int print_level;    // 0: Ipopt's own log on standard error, 0..12
     moray_linear_solver linear_solver; // MUMPS; our own falls back on it
     bool timing;                       // false: true has MUMPS or MA57 timed
-    // Options of Ipopt by their names, {"mu_strategy", "adaptive"}, after all that moray sets; not option_file_name, output_file, sb
-    // and linear_solver: no option file is ever read, and Ipopt never writes on standard output.
-    const moray_key_value *ipopt;   // [n_ipopt], borrowed
-    int n_ipopt;                       // 0
+    // Options of Ipopt by their names, {"mu_strategy", "adaptive"}, after all that moray sets; not option_file_name,
+    // output_file, sb and linear_solver: no option file is ever read, and Ipopt never writes on standard output.
+    const moray_key_value *ipopt; // [n_ipopt], borrowed
+    int n_ipopt;                  // 0
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;

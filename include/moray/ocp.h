@@ -158,8 +158,9 @@ MORAY_API moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec
 MORAY_API void moray_ocp_free(moray_ocp *ocp);
 
 // The worst disagreement, relative as in moray_derivative_report, between the derivatives in use and differences of the
-// functions at points over the whole box of the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
-// is 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
+// functions at points over the whole box of the bounds, with the names: "phase wire: d (dynamics of state v) / d
+// (control u) is 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9,
+// differences to 1e-6.
 typedef struct moray_ocp_derivative_report {
     double jacobian_error, hessian_error;
     char jacobian[300], hessian[300];
@@ -234,7 +235,7 @@ typedef struct moray_settings {
     int print_level;       // 0: Ipopt's log on standard error
     moray_linear_solver linear_solver; // MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
-    const moray_key_value *ipopt;   // [n_ipopt] further options of Ipopt, which must outlive the solution
+    const moray_key_value *ipopt;      // [n_ipopt] further options of Ipopt, which must outlive the solution
     int n_ipopt;                       // 0
     moray_progress_fn *progress;
     void *observer;

@@ -80,11 +80,15 @@ enum { MORAY_SERIES_HARMONICS = 12 }; // at most
 // for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Where the offset moves,
 // offset_rate and offset_acceleration are phi_0' and phi_0'' at t, fed forward. Eel-like motion, beyond the paper, with
 // a negative taper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail,
-// to 1 at the last (0 where N = 2). And beyond that, what swims heeds a series to be added, plants and orbits do not.
+// to 1 at the last (0 where N = 2). And beyond that, what swims heeds a
+// series to be added; what needs a gait (25) alone (orbits, searches, plans, comparisons on both models) refuses one.
 typedef struct moray_gait {
     double amplitude, omega, delta, offset, taper, offset_rate, offset_acceleration;
     const moray_series *series; // of the gait's omega, for N-1 joints; NULL: none
 } moray_gait;
+
+// Error: MORAY_INPUT where the gait has a series, which `what` ("an orbit") does not know.
+MORAY_API moray_status moray_gait_without_series(const moray_gait *gait, const char *what);
 
 // phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
 MORAY_API void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi,

@@ -62,6 +62,10 @@ moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const m
                                       const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution)
 {
     const int nx = problem->size.nx;
+    MORAY_TRY(moray_gait_without_series(gait, "the start of an optimisation"));
+    if (problem->size.ns != MORAY_GAIT_PARAMETERS)
+        return moray_error(MORAY_INPUT, "a problem of %d parameters does not start from a gait, which has %d",
+                           problem->size.ns, MORAY_GAIT_PARAMETERS);
     double s[MORAY_GAIT_PARAMETERS], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
     if (!x)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", orbit->n);

@@ -50,6 +50,15 @@ double moray_theta_max_of_link(const moray_robot *robot, moray_model model, cons
     return model == MORAY_FIRST_PRINCIPLES ? middle * factor : asin(sin(middle) * factor);
 }
 
+moray_status moray_gait_without_series(const moray_gait *gait, const char *what)
+{
+    if (!gait->series)
+        return moray_ok();
+    return moray_error(MORAY_INPUT,
+                       "gait with a series of %d harmonics in %d joints: %s takes a gait (25) without a series",
+                       gait->series->harmonics, gait->series->joints, what);
+}
+
 moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to)
 {
     if (from == to)

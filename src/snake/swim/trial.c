@@ -57,6 +57,7 @@ moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_model model,
 moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *gait, moray_model from,
                                   moray_gait_trial *trial)
 {
+    MORAY_TRY(moray_gait_without_series(gait, "a trial on both models"));
     for (int model = 0; model < 2; model++) {
         const moray_robot *robot = moray_swimmer_robot(rig->swimmer[model]);
         trial->gait[model] = moray_gait_map(robot, gait, from, (moray_model)model);
