@@ -153,7 +153,7 @@ static void test_neighbours(const moray_gait_problem_spec *spec, const moray_tes
 }
 
 // What knows only the gait (25) says so.
-static void test_refusals(const struct optimum *gait, const struct optimum *series, const moray_test_rig *rig)
+static void test_series_refused(const struct optimum *gait, const struct optimum *series, const moray_test_rig *rig)
 {
     const moray_settings settings = moray_settings_default();
     moray_gait more = gait->prediction.gait;
@@ -184,7 +184,7 @@ static void test_optima(moray_model model)
           series.prediction.speed, gait.prediction.speed);
     CHECK_NEAR(series.prediction.power, spec.limits.power, 1e-7, "at the same power");
     test_derivatives(series.problem);
-    test_refusals(&gait, &series, &rig);
+    test_series_refused(&gait, &series, &rig);
     spec.limits.theta_max.upper = 80 * DEG;
     solve_series(&spec, &rig, &gait, &wide);
     CHECK(wide.prediction.speed > series.prediction.speed && wide.swum.peak_link_angle < 79 * DEG,
