@@ -31,9 +31,11 @@ typedef struct moray_hydrodynamics {
 // Strip, both drags, invariant added mass and frame.
 MORAY_API moray_hydrodynamics moray_hydrodynamics_consistent(void);
 
+enum { MORAY_MOST_LINKS = 1000 };
+
 // The robot. Every field is set; moray_robot_check says whether they make sense.
 typedef struct moray_robot {
-    int links;                           // N >= 2
+    int links;                           // N = 2..MORAY_MOST_LINKS
     double l;                            // half a link [m]; L = 2l (erratum E2)
     double m, J;                         // mass [kg] and moment of inertia [kg m^2] of a link
     double c_t, c_n;                     // tangential and normal drag per link [kg/s]
@@ -86,9 +88,6 @@ typedef struct moray_gait {
     double amplitude, omega, delta, offset, taper, offset_rate, offset_acceleration;
     const moray_series *series; // of the gait's omega, for N-1 joints; NULL: none
 } moray_gait;
-
-// Error: MORAY_INPUT where the gait has a series, which `what` ("an orbit") does not know.
-MORAY_API moray_status moray_gait_without_series(const moray_gait *gait, const char *what);
 
 // phi_ref, its first and second time derivative at t, each of n_joints = N-1 entries.
 MORAY_API void moray_gait_reference(const moray_gait *gait, int n_joints, double t, double *phi, double *dphi,

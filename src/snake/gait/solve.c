@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "snake/gait/problem.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { most_states = MORAY_BODY_STATES + 2 * 512 };
+enum { most_states = MORAY_BODY_STATES + 2 * (MORAY_MOST_LINKS - 1) };
 
 static moray_gait gait_of(const moray_gait_problem *problem, const double *s)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/model.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stddef.h>

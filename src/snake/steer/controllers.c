@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "moray/snake/orbit.h"
+#include "snake/steer/problems.h"
 
 // ---- Straight swimming ---------------------------------------------------------------------------------------------
 

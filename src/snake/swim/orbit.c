@@ -2,6 +2,7 @@
 //
 // The discrete orbit is to the last digit the one of the optimal-gait problem on the same mesh.
 #include "snake/swim/orbit.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/trial.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -12,6 +12,7 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/closed_loop.h"
+#include "snake/steer/problems.h"
 
 // ---- References ----------------------------------------------------------------------------------------------------
 
