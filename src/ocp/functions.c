@@ -73,8 +73,10 @@ struct looking {
 static moray_status looking_new(struct looking *l, int n_in)
 {
     double *block = calloc((size_t)(1 + moray_probe_points) * n_in + 1, sizeof *block);
+    if (!block)
+        return moray_error(MORAY_MEMORY, "no memory for its functions");
     *l = (struct looking){block, block + n_in, {block + n_in, block, moray_probe_points}};
-    return block ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for its functions");
+    return moray_ok();
 }
 
 // Room for one more map. Error: MORAY_MEMORY.
@@ -116,7 +118,7 @@ static moray_status endpoint_map(moray_ocp *ocp, int trial, const struct looking
 
 static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phase_spec *spec)
 {
-    struct looking l;
+    struct looking l = {0};
     moray_status status = looking_new(&l, moray_phase_inputs(p));
     p->wrapped = calloc(1, sizeof *p->wrapped);
     if (!p->wrapped)
@@ -138,7 +140,7 @@ static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phas
 
 static moray_status wrap_endpoint(moray_ocp *ocp)
 {
-    struct looking l;
+    struct looking l = {0};
     moray_status status = looking_new(&l, moray_endpoint_inputs(ocp));
     if (!moray_failed(status))
         status = own_map_new(&ocp->endpoint->own);

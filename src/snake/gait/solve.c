@@ -84,9 +84,10 @@ moray_status moray_gait_problem_continue(const moray_gait_problem *problem, cons
                                          const moray_solution *from, const double *s, moray_solution **solution)
 {
     const int nx = problem->size.nx, n = 4 * settings->intervals + 1;
-    double *time = calloc((size_t)(n * (1 + nx)), sizeof *time), *x = time + n, t0, tf;
+    double *time = calloc((size_t)(n * (1 + nx)), sizeof *time), t0, tf;
     if (!time)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", n);
+    double *x = time + n;
     moray_solution_times(from, 0, &t0, &tf);
     for (int k = 0; k < n; k++) {
         time[k] = t0 + (tf - t0) * k / (n - 1);

@@ -119,9 +119,10 @@ moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const moray_gait
     const moray_gait_change change = {0, trial->gait[model]};
     const double period = 2 * M_PI / change.gait.omega;
     const int states = moray_swimmer_states(rig->swimmer[model]);
-    double *times = calloc((size_t)(4 * n + states), sizeof *times), *along = times + 2 * n, *x = along + 2 * n;
+    double *times = calloc((size_t)(4 * n + states), sizeof *times);
     if (!times)
         return moray_error(MORAY_MEMORY, "no memory for %d samples", n);
+    double *along = times + 2 * n, *x = along + 2 * n;
     for (int k = 0; k < n; k++) {
         time[k] = times[2 * k] = horizon * k / (n - 1);
         times[2 * k + 1] = fmax(time[k] - period, 0);
