@@ -233,7 +233,7 @@ typedef struct moray_settings {
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log on standard error
-    moray_linear_solver linear_solver; // MUMPS
+    moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
     const moray_key_value *ipopt;      // [n_ipopt] further options of Ipopt, which must outlive the solution
     int n_ipopt;                       // 0
@@ -302,6 +302,7 @@ MORAY_API moray_nlp_size moray_solution_size(const moray_solution *solution);
 typedef struct moray_mesh_record {
     int intervals, nodes, variables; // of all phases
     moray_nlp_outcome outcome;
+    moray_linear_solver linear_solver; // that it was solved with
     int iterations;
     double seconds;
     double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved
