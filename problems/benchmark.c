@@ -122,7 +122,7 @@ static moray_status measure_classics(benchmark *run)
     for (int k = 0; classics[k] && !moray_failed(status); k++) {
         classic_case one = {.classic = classics[k]};
         const subject it = classic_subject(&one);
-        if (one.classic->intervals <= run->most_intervals)
+        if (classic_settings(one.classic).intervals <= run->most_intervals)
             status = add_case(run, one.classic->name, &it);
     }
     return status;
