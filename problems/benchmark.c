@@ -11,44 +11,19 @@ static const char *const parts[] = {"all",   "s1",      "problems",   "classics"
 static const char *const unused[] = {"scheme", "intervals", "tol", NULL};
 
 static const moray_option options[] = {
-    {.section = "benchmark",
-     .key = "part",
-     .flag = "part",
-     .argument = "NAME",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(benchmark, part),
-     .choices = parts,
-     .help =
-         "what to measure: a programme that other tools can be given, optimal gaits, textbook problems, growth over "
-         "intervals, over links and over the horizon of heading tracking, simulation"},
-    {.section = "benchmark",
-     .key = "repeats",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, repeats),
-     .min = 1,
-     .max = 1000,
-     .help = "measurements of each, of which the median counts"},
-    {.section = "benchmark",
-     .key = "most_intervals",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, most_intervals),
-     .min = 10,
-     .max = 2000,
-     .help = "where growth over intervals ends; textbook problems that begin with more are left out"},
-    {.section = "benchmark",
-     .key = "most_links",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, most_links),
-     .min = 5,
-     .max = 100,
-     .help = "where growth over links ends"},
-    {.section = "benchmark",
-     .key = "most_seconds",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, most_seconds),
-     .min = 60,
-     .max = 800,
-     .help = "where growth over the horizon ends"},
+    MORAY_ROW(
+        CHOICE, benchmark, part, "benchmark", "part", .flag = "part", .argument = "NAME", .choices = parts,
+        .help =
+            "what to measure: a programme that other tools can be given, optimal gaits, textbook problems, growth over "
+            "intervals, over links and over the horizon of heading tracking, simulation"),
+    MORAY_ROW(INT, benchmark, repeats, "benchmark", "repeats", .min = 1, .max = 1000,
+              .help = "measurements of each, of which the median counts"),
+    MORAY_ROW(INT, benchmark, most_intervals, "benchmark", "most_intervals", .min = 10, .max = 2000,
+              .help = "where growth over intervals ends; textbook problems that begin with more are left out"),
+    MORAY_ROW(INT, benchmark, most_links, "benchmark", "most_links", .min = 5, .max = 100,
+              .help = "where growth over links ends"),
+    MORAY_ROW(INT, benchmark, most_seconds, "benchmark", "most_seconds", .min = 60, .max = 800,
+              .help = "where growth over the horizon ends"),
 };
 
 static const moray_program program = {
@@ -242,11 +217,8 @@ int main(int argc, char **argv)
 {
     static benchmark run;
     int exit_code;
-    run = (benchmark){.common = moray_common_default(),
-                      .repeats = 5,
-                      .most_intervals = 1000,
-                      .most_links = 100,
-                      .most_seconds = 600};
+    run = (benchmark){
+        .common = moray_common_default(), .repeats = 5, .most_intervals = 1000, .most_links = 100, .most_seconds = 600};
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;
     return moray_app_end(&program, &run, work(&run));

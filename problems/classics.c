@@ -22,14 +22,10 @@ typedef struct classics_run {
 static const char own_scheme[] = "recommended";
 
 static const moray_option options[] = {
-    {.section = "solver",
-     .key = "refinements",
-     .flag = "refinements",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(classics_run, refinements),
-     .min = -1,
-     .max = CLASSIC_MOST_MESHES - 1,
-     .help = "finer meshes tried until the certificate passes; -1: 20, but none where a value belongs to its mesh"},
+    MORAY_ROW(
+        INT, classics_run, refinements, "solver", "refinements", .flag = "refinements", .min = -1,
+        .max = CLASSIC_MOST_MESHES - 1,
+        .help = "finer meshes tried until the certificate passes; -1: 20, but none where a value belongs to its mesh"),
 };
 
 static classics_run defaults(void)

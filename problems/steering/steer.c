@@ -39,13 +39,17 @@ static bool certified(const steer_job *job)
     return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->snake.model].pass;
 }
 
-int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job)
+int steer_main(const moray_program *own, const steer_program *program, int argc, char **argv, steer_job *job)
 {
+    const moray_option_group snake = {&moray_snake_option_table, offsetof(steer_job, snake)};
+    moray_program app = *own;
     int exit_code;
-    job->name = app->name;
+    app.groups = &snake;
+    app.n_groups = 1;
+    job->name = app.name;
     job->program = program;
     memcpy(job->number, program->numbers, (size_t)program->n_numbers * sizeof *job->number);
-    if (!moray_app_start(app, argc, argv, job, &exit_code))
+    if (!moray_app_start(&app, argc, argv, job, &exit_code))
         return exit_code;
     job->ticker = moray_ticker_start(stderr, job->common.quiet);
     moray_interrupt_begin();
@@ -54,7 +58,7 @@ int steer_main(const moray_program *app, const steer_program *program, int argc,
     moray_ticker_end(&job->ticker);
     if (!moray_failed(status))
         status = steer_report(job);
-    exit_code = moray_app_end(app, job, status);
+    exit_code = moray_app_end(&app, job, status);
     if (exit_code == MORAY_EXIT_SOLVED && !certified(job))
         exit_code = MORAY_EXIT_CERTIFICATE;
     program->release(job);

@@ -172,8 +172,9 @@ struct steer_job {
 // First-principles model, radau5, mesh by the period.
 steer_job steer_defaults(void);
 
-// Runs a program; the job is what it begins with. Returns the exit code.
-int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job);
+// Runs a program, whose options are its own and those of the snake; the job is what it begins with. Returns the exit
+// code.
+int steer_main(const moray_program *own, const steer_program *program, int argc, char **argv, steer_job *job);
 
 static inline const steer_plan *steer_last_plan(const steer_job *job)
 {
