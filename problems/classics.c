@@ -126,10 +126,9 @@ static void meshes_to_json(moray_json *json, const struct classic_result *r)
     for (int k = 0; k < r->meshes; k++) {
         moray_json_open(json, NULL);
         moray_json_text(json, "status", moray_nlp_outcome_text(r->mesh[k].outcome));
-        moray_json_number(json, "intervals", r->mesh[k].intervals);
-        moray_json_number(json, "nodes", r->mesh[k].nodes);
-        moray_json_number(json, "iterations", r->mesh[k].iterations);
-        moray_json_number(json, "mesh_error", r->mesh[k].error);
+        moray_json_members(json,
+                           MORAY_MEMBERS({"intervals", r->mesh[k].intervals}, {"nodes", r->mesh[k].nodes},
+                                         {"iterations", r->mesh[k].iterations}, {"mesh_error", r->mesh[k].error}));
         moray_json_close(json);
     }
     moray_json_close(json);
@@ -143,10 +142,9 @@ static void line_to_json(moray_json *json, const struct line *line)
     moray_json_text(json, "title", line->classic->title);
     moray_json_text(json, "source", line->classic->source);
     moray_json_text(json, "scheme", line->settings.scheme);
-    moray_json_number(json, "intervals", line->settings.intervals);
-    moray_json_number(json, "optimum", r->value);
-    moray_json_number(json, "published", printed ? strtod(printed, NULL) : NAN);
-    moray_json_number(json, "difference", r->difference);
+    moray_json_members(json, MORAY_MEMBERS({"intervals", line->settings.intervals}, {"optimum", r->value},
+                                           {"published", printed ? strtod(printed, NULL) : NAN},
+                                           {"difference", r->difference}));
     moray_json_text(json, "verdict", classic_agreement(line->classic, r));
     moray_json_open(json, "solver");
     moray_json_text(json, "status", moray_nlp_outcome_text(r->outcome));

@@ -95,11 +95,9 @@ static moray_status draw_23h(paper *p, const sway *printed, const sway *correcte
 
 static void json_23h(moray_json *json, const char *key, const sway *s)
 {
-    moray_json_open(json, key);
-    moray_json_number(json, "dv_n_rms_m_s2", s->dv_n_rms);
-    moray_json_number(json, "v_n_m_s", s->v_n[SAMPLES - 1]);
-    moray_json_number(json, "v_x_m_s", s->v_x);
-    moray_json_close(json);
+    moray_json_object(
+        json, key,
+        MORAY_MEMBERS({"dv_n_rms_m_s2", s->dv_n_rms}, {"v_n_m_s", s->v_n[SAMPLES - 1]}, {"v_x_m_s", s->v_x}));
 }
 
 moray_status erratum_23h(paper *p)

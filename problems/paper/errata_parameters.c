@@ -51,11 +51,9 @@ moray_status erratum_offset_sign(paper *p)
     }
     const moray_table_row rows[] = {
         {.label = paper_label(p, "mean heading at %g s", DURATION), .value = {end[0], end[2], end[1]}, .unit = "deg"}};
-    moray_json_open(p->json, "e3");
-    moray_json_number(p->json, "heading_fp_as_printed_deg", end[0]);
-    moray_json_number(p->json, "heading_fp_corrected_deg", end[2]);
-    moray_json_number(p->json, "heading_control_deg", end[1]);
-    moray_json_close(p->json);
+    moray_json_object(p->json, "e3",
+                      MORAY_MEMBERS({"heading_fp_as_printed_deg", end[0]}, {"heading_fp_corrected_deg", end[2]},
+                                    {"heading_control_deg", end[1]}));
     MORAY_TRY(paper_table(p, &(moray_table){.title = "E3: Sec. V-C gives both models the same offset, a sixth of the "
                                                      "amplitude",
                                             .columns = {"as printed, alpha/6", "corrected, -alpha/6", "control, a/6"},
@@ -79,11 +77,8 @@ static moray_steady swim_at(paper *p, double omega, moray_status *status)
 
 static void json_frequency(moray_json *json, const char *key, double omega, const moray_steady *steady)
 {
-    moray_json_open(json, key);
-    moray_json_number(json, "omega_rad_s", omega);
-    moray_json_number(json, "v_x_m_s", steady->v_x);
-    moray_json_number(json, "power_W", steady->power);
-    moray_json_close(json);
+    moray_json_object(json, key,
+                      MORAY_MEMBERS({"omega_rad_s", omega}, {"v_x_m_s", steady->v_x}, {"power_W", steady->power}));
 }
 
 // That nothing steady comes of the number as printed is a finding, too.

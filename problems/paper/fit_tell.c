@@ -44,12 +44,9 @@ moray_status paper_fit_write(const paper *p, const paper_constants *c)
 
 static void json_constants(moray_json *json, const char *key, const paper_constants *c)
 {
-    moray_json_open(json, key);
-    moray_json_number(json, "rot_damping", c->damping);
-    moray_json_number(json, "rot_gain", c->gain);
-    moray_json_number(json, "rms_deg", c->rms);
-    moray_json_number(json, "largest_deg", c->largest);
-    moray_json_close(json);
+    moray_json_object(json, key,
+                      MORAY_MEMBERS({"rot_damping", c->damping}, {"rot_gain", c->gain}, {"rms_deg", c->rms},
+                                    {"largest_deg", c->largest}));
 }
 
 // The ratio of the constants sets how fast the robot turns; the damping only how soon it does.

@@ -27,12 +27,10 @@ static void json_terms(moray_json *json, const char *key, const force_terms *f)
 {
     moray_json_open(json, key);
     for (int j = 0; j < TERMS; j++) {
-        moray_json_open(json, term_names[j]);
-        moray_json_number(json, "mean_N", f->mean[j]);
-        moray_json_number(json, "peak_N", f->peak[j]);
-        moray_json_number(json, "share_percent", 100 * f->share[j]);
-        moray_json_number(json, "cancelled_percent", 100 * f->cancelled[j]);
-        moray_json_close(json);
+        moray_json_object(json, term_names[j],
+                          MORAY_MEMBERS({"mean_N", f->mean[j]}, {"peak_N", f->peak[j]},
+                                        {"share_percent", 100 * f->share[j]},
+                                        {"cancelled_percent", 100 * f->cancelled[j]}));
     }
     moray_json_number(json, "residual_N", f->residual);
     moray_json_close(json);

@@ -147,15 +147,11 @@ static moray_status draw_paths(paper *p, const link_paths paths[2])
 
 static void json_work(moray_json *json, const link_work *w)
 {
-    moray_json_open(json, "work");
-    moray_json_number(json, "normal_J", w->work[NORMAL]);
-    moray_json_number(json, "tangential_J", w->work[TANGENTIAL]);
-    moray_json_number(json, "torque_J", w->torque_work);
-    moray_json_number(json, "joints_J", w->joint_work);
-    moray_json_number(json, "residual_J", w->residual);
-    moray_json_number(json, "normal_forward_force_N", w->force[NORMAL]);
-    moray_json_number(json, "tangential_forward_force_N", w->force[TANGENTIAL]);
-    moray_json_close(json);
+    moray_json_object(json, "work",
+                      MORAY_MEMBERS({"normal_J", w->work[NORMAL]}, {"tangential_J", w->work[TANGENTIAL]},
+                                    {"torque_J", w->torque_work}, {"joints_J", w->joint_work},
+                                    {"residual_J", w->residual}, {"normal_forward_force_N", w->force[NORMAL]},
+                                    {"tangential_forward_force_N", w->force[TANGENTIAL]}));
 }
 
 static moray_status show_work(paper *p, const link_work *w)

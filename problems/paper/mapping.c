@@ -112,14 +112,12 @@ static moray_status show_errors(paper *p)
                                     .value = {1000 * amplitude, 1000 * e.curve[DISTANCE_30],
                                               1000 * e.curve[DISTANCE_31], 100 * e.amplitude[DISTANCE_30] / amplitude,
                                               100 * e.amplitude[DISTANCE_31] / amplitude}};
-        moray_json_open(p->json, NULL);
-        moray_json_number(p->json, "theta_max_deg", angles[k]);
-        moray_json_number(p->json, "amplitude_29_m", amplitude);
-        moray_json_number(p->json, "largest_error_30_m", e.curve[DISTANCE_30]);
-        moray_json_number(p->json, "largest_error_31_m", e.curve[DISTANCE_31]);
-        moray_json_number(p->json, "amplitude_error_30_m", e.amplitude[DISTANCE_30]);
-        moray_json_number(p->json, "amplitude_error_31_m", e.amplitude[DISTANCE_31]);
-        moray_json_close(p->json);
+        moray_json_object(p->json, NULL,
+                          MORAY_MEMBERS({"theta_max_deg", angles[k]}, {"amplitude_29_m", amplitude},
+                                        {"largest_error_30_m", e.curve[DISTANCE_30]},
+                                        {"largest_error_31_m", e.curve[DISTANCE_31]},
+                                        {"amplitude_error_30_m", e.amplitude[DISTANCE_30]},
+                                        {"amplitude_error_31_m", e.amplitude[DISTANCE_31]}));
     }
     moray_json_close(p->json);
     return paper_table(

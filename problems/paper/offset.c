@@ -39,13 +39,11 @@ static void json_swim(moray_json *json, const char *key, double value, const mor
 {
     const double rates[2] = {steady[0].heading_drift / DEG, steady[1].heading_drift / DEG};
     const double speeds[2] = {steady[0].speed, steady[1].speed};
-    moray_json_open(json, NULL);
-    moray_json_number(json, key, value);
-    moray_json_number(json, "control_turning_deg_s", rates[MORAY_CONTROL_ORIENTED]);
-    moray_json_number(json, "fp_turning_deg_s", rates[MORAY_FIRST_PRINCIPLES]);
-    moray_json_number(json, "control_speed_m_s", speeds[MORAY_CONTROL_ORIENTED]);
-    moray_json_number(json, "fp_speed_m_s", speeds[MORAY_FIRST_PRINCIPLES]);
-    moray_json_close(json);
+    moray_json_object(json, NULL,
+                      MORAY_MEMBERS({key, value}, {"control_turning_deg_s", rates[MORAY_CONTROL_ORIENTED]},
+                                    {"fp_turning_deg_s", rates[MORAY_FIRST_PRINCIPLES]},
+                                    {"control_speed_m_s", speeds[MORAY_CONTROL_ORIENTED]},
+                                    {"fp_speed_m_s", speeds[MORAY_FIRST_PRINCIPLES]}));
 }
 
 static moray_status draw_offsets(paper *p, const double *ratio, const double *turning, int n)

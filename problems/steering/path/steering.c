@@ -184,12 +184,9 @@ static void json_head(const steer_job *steer, moray_json *json)
         if (leg->curvature != 0)
             continue;
         path_crab(job, leg, &asked, &planned);
-        moray_json_open(json, NULL);
-        moray_json_number(json, "leg", leg->leg);
-        moray_json_number(json, "course_deg", leg->course / DEG);
-        moray_json_number(json, "crab_by_triangle_deg", asked / DEG);
-        moray_json_number(json, "crab_planned_deg", planned / DEG);
-        moray_json_close(json);
+        moray_json_object(json, NULL,
+                          MORAY_MEMBERS({"leg", leg->leg}, {"course_deg", leg->course / DEG},
+                                        {"crab_by_triangle_deg", asked / DEG}, {"crab_planned_deg", planned / DEG}));
     }
     moray_json_close(json);
 }

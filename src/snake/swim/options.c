@@ -129,8 +129,6 @@ const moray_option_table moray_snake_option_table = {
 void moray_snake_to_json(moray_json *json, const moray_snake_options *options)
 {
     moray_json_text(json, "model", moray_model_key(options->model));
-    moray_json_open(json, "robot");
-    moray_json_number(json, "links", options->robot.links);
-    moray_json_close(json);
+    moray_json_object(json, "robot", MORAY_MEMBERS({"links", options->robot.links}));
     moray_json_numbers(json, "current_m_s", options->current, 2);
 }
