@@ -80,11 +80,8 @@ moray_status erratum_force_sign(paper *p)
     moray_json_object(p->json, "equation_13",
                       MORAY_MEMBERS({"c_p_term_corrected_N", f.c_p}, {"sum_printed_N", printed},
                                     {"sum_corrected_N", sum}, {"residual_corrected_N", sum - needed}));
-    return paper_table(
-        p, &(moray_table){.title = "(13) has -c_p off the diagonal where (11) and (14) have +c_p: mean tangential "
-                                   "force in steady swimming",
-                          .columns = {"(13) as printed", "(14a)"},
-                          .n_columns = 2,
-                          .rows = rows,
-                          .n_rows = 5});
+    return paper_rows(p,
+                      "(13) has -c_p off the diagonal where (11) and (14) have +c_p: mean tangential "
+                      "force in steady swimming",
+                      PAPER_HEADS("(13) as printed", "(14a)"), rows, 5);
 }

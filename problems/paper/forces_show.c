@@ -16,11 +16,7 @@ static moray_status show_terms(paper *p, const char *title, const force_terms *f
         rows[j] = (moray_table_row){.label = meanings[j],
                                     .value = {f->mean[j], f->peak[j], 100 * f->share[j], 100 * f->cancelled[j]}};
     rows[TERMS] = (moray_table_row){.label = "sum of all less N m p_x''", .value = {NAN, f->residual, NAN, NAN}};
-    return paper_table(p, &(moray_table){.title = title,
-                                         .columns = {"mean [N]", "peak [N]", "share [%]", "cancelled [%]"},
-                                         .n_columns = 4,
-                                         .rows = rows,
-                                         .n_rows = TERMS + 1});
+    return paper_rows(p, title, PAPER_HEADS("mean [N]", "peak [N]", "share [%]", "cancelled [%]"), rows, TERMS + 1);
 }
 
 static void json_terms(moray_json *json, const char *key, const force_terms *f)

@@ -100,14 +100,10 @@ static moray_status compare_sizes(paper *p)
     }
     moray_json_members(p->json,
                        MORAY_MEMBERS({"states", all.states}, {"joint_error", all.joints}, {"body_error", all.body}));
-    return paper_table(
-        p,
-        &(moray_table){.title = "What (14) and (15) make of the forces (22): largest error in random states, over the "
-                                "largest acceleration of the state",
-                       .columns = {"phi'' - ubar", "v_t', v_n' - (16)", "states"},
-                       .n_columns = 3,
-                       .rows = rows,
-                       .n_rows = SIZES});
+    return paper_rows(p,
+                      "What (14) and (15) make of the forces (22): largest error in random states, over the "
+                      "largest acceleration of the state",
+                      PAPER_HEADS("phi'' - ubar", "v_t', v_n' - (16)", "states"), rows, SIZES);
 }
 
 // ---- Closed loop ---------------------------------------------------------------------------------------------------

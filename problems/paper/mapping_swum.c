@@ -181,18 +181,13 @@ moray_status show_swum_amplitudes(paper *p)
                                       .value = {100 * s[k].a, 100 * s[k].joint_coordinate, 100 * s[k].joint_distance,
                                                 s[k].inner_angle / DEG, s[k].end_angle / DEG}};
     }
-    MORAY_TRY(paper_table(p, &(moray_table){.title = "Proposition 1: amplitudes swum by the first-principles model",
-                                            .columns = {"(27)", "joints", "least link", "mean link", "largest link"},
-                                            .n_columns = 5,
-                                            .rows = first,
-                                            .n_rows = n}));
-    MORAY_TRY(paper_table(
-        p, &(moray_table){.title = "Proposition 2: amplitudes swum by the control-oriented model, with the joint "
-                                   "distance (28) of the first-principles model's links beside them",
-                          .columns = {"(33) [cm]", "joints [cm]", "(28) [cm]", "(12) inner [deg]", "(12) ends [deg]"},
-                          .n_columns = 5,
-                          .rows = second,
-                          .n_rows = n}));
+    MORAY_TRY(paper_rows(p, "Proposition 1: amplitudes swum by the first-principles model",
+                         PAPER_HEADS("(27)", "joints", "least link", "mean link", "largest link"), first, n));
+    MORAY_TRY(paper_rows(p,
+                         "Proposition 2: amplitudes swum by the control-oriented model, with the joint "
+                         "distance (28) of the first-principles model's links beside them",
+                         PAPER_HEADS("(33) [cm]", "joints [cm]", "(28) [cm]", "(12) inner [deg]", "(12) ends [deg]"),
+                         second, n));
     json_swum(p->json, s, n);
     return conclude(p, s, n);
 }

@@ -48,23 +48,12 @@ static void json_swim(moray_json *json, const char *key, double value, const mor
 
 static moray_status draw_offsets(paper *p, const double *ratio, const double *turning, int n)
 {
-    moray_curve curves[2];
-    moray_column columns[3] = {{.name = "phi_0 / amplitude", .values = ratio}};
-    for (int model = 0; model < 2; model++) {
-        columns[1 + model] =
-            (moray_column){.name = moray_model_name(model), .unit = "deg/s", .values = turning + model * n};
-        curves[model] = (moray_curve){.label = moray_model_name(model),
-                                      .x = ratio,
-                                      .y = turning + model * n,
-                                      .n = n,
-                                      .style = MORAY_CURVE_MARKED};
-    }
-    MORAY_TRY(paper_csv(p, NULL, columns, 3, n));
-    return paper_figure(p, &(moray_figure){.title = "Property 3: turning by the joint offset, in still water",
-                                           .x_label = "phi_0 / joint amplitude",
-                                           .y_label = "turning rate, counter-clockwise [deg/s]",
-                                           .curves = curves,
-                                           .n_curves = 2});
+    const moray_column columns[] = {{"phi_0 / amplitude", NULL, ratio, 1},
+                                    {moray_model_name(0), "deg/s", turning, 1},
+                                    {moray_model_name(1), "deg/s", turning + n, 1}};
+    return paper_draw(p, &(paper_graph){NULL, "Property 3: turning by the joint offset, in still water",
+                                        "phi_0 / joint amplitude", "turning rate, counter-clockwise [deg/s]", columns,
+                                        3, n, .style = MORAY_CURVE_MARKED});
 }
 
 // turning[n] at ascending offsets, of which the one in the middle is zero.
@@ -100,14 +89,12 @@ static moray_status vary_offset(paper *p, claims *found)
     moray_json_close(p->json);
     for (int model = 0; model < 2; model++)
         judge_offsets(turning + model * N, N, model, found);
-    MORAY_TRY(paper_table(
-        p, &(moray_table){
-               .title = "Property 3: turning rate (counter-clockwise) by the joint offset, in still water; "
-                        "control-oriented model left, first-principles model right",
-               .columns = {"phi_0 [cm]", "rate [deg/s]", "speed [m/s]", "phi_0 [deg]", "rate [deg/s]", "speed [m/s]"},
-               .n_columns = 6,
-               .rows = rows,
-               .n_rows = N}));
+    MORAY_TRY(paper_rows(
+        p,
+        "Property 3: turning rate (counter-clockwise) by the joint offset, in still water; "
+        "control-oriented model left, first-principles model right",
+        PAPER_HEADS("phi_0 [cm]", "rate [deg/s]", "speed [m/s]", "phi_0 [deg]", "rate [deg/s]", "speed [m/s]"), rows,
+        N));
     return draw_offsets(p, ratio, turning, N);
 }
 
@@ -165,14 +152,12 @@ static moray_status vary_speed(paper *p, claims *found)
         json_swim(p->json, "omega_deg_s", omega / DEG, steady);
     }
     moray_json_close(p->json);
-    MORAY_TRY(paper_table(
-        p, &(moray_table){
-               .title = "Property 3: turning rate by speed, phi_0 a sixth of the amplitude, in still water; "
-                        "control-oriented model left, first-principles model right",
-               .columns = {"speed [m/s]", "rate [deg/s]", "curv. [1/m]", "speed [m/s]", "rate [deg/s]", "curv. [1/m]"},
-               .n_columns = 6,
-               .rows = rows,
-               .n_rows = SPEEDS}));
+    MORAY_TRY(paper_rows(
+        p,
+        "Property 3: turning rate by speed, phi_0 a sixth of the amplitude, in still water; "
+        "control-oriented model left, first-principles model right",
+        PAPER_HEADS("speed [m/s]", "rate [deg/s]", "curv. [1/m]", "speed [m/s]", "rate [deg/s]", "curv. [1/m]"), rows,
+        SPEEDS));
     return draw_speeds(p, speed, turning);
 }
 
@@ -234,11 +219,8 @@ static moray_status turn_in_current(paper *p)
                                                   100 * (rate[model] / steady[model].heading_drift - 1)}};
     }
     moray_json_numbers(p->json, "mean_turning_in_current_rad_s", rate, 2);
-    return paper_table(p, &(moray_table){.title = "Turning rate over a whole turn, phi_0 a sixth of the amplitude",
-                                         .columns = {"still water [deg/s]", "current [deg/s]", "change [%]"},
-                                         .n_columns = 3,
-                                         .rows = rows,
-                                         .n_rows = 2});
+    return paper_rows(p, "Turning rate over a whole turn, phi_0 a sixth of the amplitude",
+                      PAPER_HEADS("still water [deg/s]", "current [deg/s]", "change [%]"), rows, 2);
 }
 
 static const char *yes(bool claim)

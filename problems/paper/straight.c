@@ -111,12 +111,9 @@ static moray_status tell(paper *p, double speed[2][AMPLITUDES])
     moray_json_numbers(p->json, "v_x_fp_m_s", speed[MORAY_FIRST_PRINCIPLES], AMPLITUDES);
     moray_json_numbers(p->json, "v_x_control_m_s", speed[MORAY_CONTROL_ORIENTED], AMPLITUDES);
     moray_json_numbers(p->json, "excess_percent", excess, AMPLITUDES);
-    return paper_table(
-        p, &(moray_table){.title = "Mean v_x in m/s over the last five periods of 45 s, each amplitude from rest",
-                          .columns = {"alpha [deg]", "a [cm]", "first-principles", "control-oriented", "excess [%]"},
-                          .n_columns = 5,
-                          .rows = rows,
-                          .n_rows = AMPLITUDES});
+    return paper_rows(p, "Mean v_x in m/s over the last five periods of 45 s, each amplitude from rest",
+                      PAPER_HEADS("alpha [deg]", "a [cm]", "first-principles", "control-oriented", "excess [%]"), rows,
+                      AMPLITUDES);
 }
 
 moray_status paper_straight(paper *p)

@@ -91,12 +91,9 @@ static moray_status tell(paper *p, moray_swim_track *track[2])
     moray_json_number(p->json, "heading_control_deg", heading[MORAY_CONTROL_ORIENTED]);
     moray_json_numbers(p->json, "end_fp_m", end[MORAY_FIRST_PRINCIPLES], 2);
     moray_json_numbers(p->json, "end_control_m", end[MORAY_CONTROL_ORIENTED], 2);
-    return paper_table(p, &(moray_table){.title = "Manoeuvre of Sec. V-C, theta_max 10 deg",
-                                         .columns = {moray_model_name(MORAY_FIRST_PRINCIPLES),
-                                                     moray_model_name(MORAY_CONTROL_ORIENTED)},
-                                         .n_columns = 2,
-                                         .rows = rows,
-                                         .n_rows = 3});
+    return paper_rows(p, "Manoeuvre of Sec. V-C, theta_max 10 deg",
+                      PAPER_HEADS(moray_model_name(MORAY_FIRST_PRINCIPLES), moray_model_name(MORAY_CONTROL_ORIENTED)),
+                      rows, 3);
 }
 
 moray_status paper_turning(paper *p)
