@@ -7,8 +7,9 @@ static const double step = 30 * DEG, between = 40; // the reference goes there a
 static const double unit = 10 * DEG;               // of the heading error
 static const int per_period = 5;                   // intervals
 
-moray_status horizon_begin(horizon_case *c)
+static moray_status begin(void *self)
 {
+    horizon_case *c = self;
     c->robot = moray_robot_paper();
     const moray_gait paper = moray_gait_paper(&c->robot);
     c->gait = moray_gait_map(&c->robot, &paper, MORAY_CONTROL_ORIENTED, c->model);
@@ -61,5 +62,5 @@ static void forget(void *self)
 
 subject horizon_subject(horizon_case *c)
 {
-    return (subject){solve, forget, c};
+    return (subject){begin, solve, forget, NULL, c};
 }
