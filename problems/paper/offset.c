@@ -2,7 +2,7 @@
 //
 // Property 3: turning by the joint offset phi_0, which is given in parts of the joint amplitude so that both models
 // share it.
-#include "paper.h"
+#include "swim.h"
 
 static const double still[2] = {0, 0};
 
@@ -184,24 +184,9 @@ static moray_status turn_once(paper *p, int model, double still_rate, double *ra
     const double period = 2 * M_PI / gait.omega, needed = START + 2 * (2 * M_PI / fabs(still_rate)) / period;
     const int n = needed < MOST ? (int)needed : MOST;
     const moray_gait_change change = {.t = 0, .gait = gait};
-    moray_swimmer *swimmer = p->rig.swimmer[model];
+    const paper_swim_plan plan = {.model = (moray_model)model, .schedule = &change, .n_changes = 1};
     moray_swim_track *track;
-    double *times, *x;
-    MORAY_TRY(paper_track(p, swimmer, n, &track));
-    MORAY_TRY(paper_numbers(p, (size_t)n, &times));
-    MORAY_TRY(paper_numbers(p, (size_t)moray_swimmer_states(swimmer), &x));
-    for (int k = 0; k < n; k++)
-        times[k] = k * period;
-    moray_swimmer_set_current(swimmer, p->rig.current[0], p->rig.current[1]);
-    MORAY_TRY(moray_swim_run(swimmer, &p->rig.settings.sim,
-                             &(moray_swim_plan){.t1 = times[n - 1],
-                                                .schedule = &change,
-                                                .n_changes = 1,
-                                                .times = times,
-                                                .n_times = n,
-                                                .observe = moray_swim_track_add,
-                                                .observer = track},
-                             x, NULL));
+    MORAY_TRY(paper_swim(p, &plan, (n - 1) * period, period, &track));
     *rate = copysign(2 * M_PI / turn_time(track, START), track->pose[n - 1].heading - track->pose[START].heading);
     return moray_ok();
 }
