@@ -34,7 +34,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nx = 3,
                                     .nu = 1,
                                     .continuous = slide,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_between(0, 10),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0)),
                                     .xf = MORAY_BOUNDS(moray_fixed(wire->x), moray_fixed(wire->y), moray_free()),

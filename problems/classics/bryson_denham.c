@@ -32,7 +32,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nu = 1,
                                     .nq = 1,
                                     .continuous = push,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x = MORAY_BOUNDS(moray_at_most(wall->l), moray_free()),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(1)),

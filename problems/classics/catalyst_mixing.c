@@ -28,7 +28,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nx = 2,
                                     .nu = 1,
                                     .continuous = react,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0)),
                                     .u = MORAY_BOUNDS(moray_between(0, 1))};

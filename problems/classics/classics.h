@@ -25,7 +25,7 @@ struct classic {
     double tolerance, mesh_tolerance; // 0: 1e-10 and 1e-6
 };
 
-// For `build` of a problem with one phase and no events.
+// For `build` of a problem with no events and one phase, which begins at time 0 where it does not say otherwise.
 moray_status classic_new(moray_ocp **ocp, const char *name, const moray_phase_spec *phase, moray_endpoint_fn *endpoint,
                          const void *data);
 

@@ -99,7 +99,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 4,
         .nu = 1,
         .continuous = fly,
-        .t0 = moray_fixed(0),
         .tf = moray_between(200, 500),
         .x = MORAY_BOUNDS(moray_between(0, 69000), moray_between(1, 2000), moray_between(-89 * DEG, 89 * DEG),
                           moray_between(10000, 45000)),

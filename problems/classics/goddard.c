@@ -33,7 +33,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 3,
         .nu = 1,
         .continuous = climb,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_at_least(1), moray_between(0, *v_max), moray_between(0.6, 1)),
         .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0), moray_fixed(1)),

@@ -35,7 +35,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 4,
         .nu = 1,
         .continuous = glide,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_at_least(0), moray_free(), moray_at_least(0), moray_free()),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(1000), moray_fixed(13.23), moray_fixed(-1.288)),

@@ -27,7 +27,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nu = 1,
                                     .nq = 2,
                                     .continuous = hang,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1)),
                                     .xf = MORAY_BOUNDS(moray_fixed(3)),

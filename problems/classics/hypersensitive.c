@@ -24,7 +24,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nu = 1,
                                     .nq = 1,
                                     .continuous = drift,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(50),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1.5)),
                                     .xf = MORAY_BOUNDS(moray_fixed(1))};

@@ -63,7 +63,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nu = 3,
         .nq = 1,
         .continuous = move,
-        .t0 = moray_fixed(0),
         .tf = moray_fixed(0.53),
         .x = MORAY_BOUNDS(moray_between(-2.97, 2.97), moray_between(-2.01, 2.01), moray_between(-2.86, 2.86),
                           moray_between(-3, 3), moray_between(-1.5, 1.5), moray_between(-5.2, 5.2)),

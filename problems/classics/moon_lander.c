@@ -28,7 +28,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nu = 1,
         .nq = 1,
         .continuous = descend,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_between(-20, 20), moray_between(-20, 20), moray_between(0.01, 1)),
         .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(-0.783), moray_fixed(1)),

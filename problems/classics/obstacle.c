@@ -38,7 +38,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nc = 2,
                                     .nq = 1,
                                     .continuous = sail,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x = MORAY_BOUNDS(moray_between(0, 2), moray_between(0, 2)),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),

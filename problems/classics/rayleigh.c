@@ -29,7 +29,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nc = 1,
                                     .nq = 1,
                                     .continuous = circuit,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(4.5),
                                     .x0 = MORAY_BOUNDS(moray_fixed(-5), moray_fixed(-5)),
                                     .c = MORAY_BOUNDS(moray_at_most(0))};

@@ -43,7 +43,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 6,
         .nu = 3,
         .continuous = turn,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_between(0, L), moray_between(-M_PI, M_PI), moray_between(0, M_PI), moray_free(),
                           moray_free(), moray_free()),

@@ -49,7 +49,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 6,
         .nu = 2,
         .continuous = reenter,
-        .t0 = moray_fixed(0),
         .tf = moray_between(100, 4000),
         .x = MORAY_BOUNDS(moray_between(0, 300000), moray_free(), upright, moray_between(1, 40000), upright,
                           moray_between(-M_PI, M_PI)),

@@ -75,7 +75,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 5,
         .nu = 2,
         .continuous = swim,
-        .t0 = moray_fixed(0),
         .tf = moray_fixed(25),
         .x = MORAY_BOUNDS(any, any, turn, bend, bend),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_at_most(0), moray_at_least(0), any),

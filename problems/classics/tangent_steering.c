@@ -29,7 +29,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nx = 4,
                                     .nu = 1,
                                     .continuous = steer,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_at_least(0),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0), moray_fixed(0)),
                                     .xf = MORAY_BOUNDS(moray_free(), moray_fixed(45), moray_fixed(5), moray_fixed(0)),

@@ -33,7 +33,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 4,
         .nu = 2,
         .continuous = swing,
-        .t0 = moray_fixed(0),
         .tf = moray_between(1, 10),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0.5), moray_fixed(0)),
         .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0.5), moray_fixed(0.522)),

@@ -26,7 +26,6 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nu = 1,
                                     .nq = 1,
                                     .continuous = oscillate,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(2),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0))};
     return classic_new(ocp, "van der pol", &phase, classic_first_integral, data);

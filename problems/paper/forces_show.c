@@ -151,24 +151,17 @@ static moray_status draw_shifts(paper *p)
             values[j][n] = 100 * s.f.share[j];
         n++;
     }
-    moray_curve curves[4];
-    const int shown[4] = {3, 2, 6, 1};
+    enum { SHOWN = 4 };
+    static const int shown[SHOWN] = {4, 3, 7, 2};
+    const char *labels[SHOWN];
     moray_column columns[ROWS] = {{.name = "delta", .unit = "deg", .values = values[TERMS]}};
     for (int j = 0; j < TERMS; j++)
         columns[1 + j] = (moray_column){.name = term_names[j], .unit = "%", .values = values[j]};
-    for (int c = 0; c < 4; c++)
-        curves[c] = (moray_curve){.label = meanings[shown[c]],
-                                  .x = values[TERMS],
-                                  .y = values[shown[c]],
-                                  .n = n,
-                                  .style = MORAY_CURVE_MARKED};
-    MORAY_TRY(paper_csv(p, "shares", columns, ROWS, n));
-    return paper_figure(p, &(moray_figure){.name = "shares",
-                                           .title = "Remark 3: share of the terms of (6) in the mean thrust",
-                                           .x_label = "phase shift delta [deg]",
-                                           .y_label = "share [%]",
-                                           .curves = curves,
-                                           .n_curves = 4});
+    for (int c = 0; c < SHOWN; c++)
+        labels[c] = meanings[shown[c] - 1];
+    return paper_draw(p, &(paper_graph){"shares", "Remark 3: share of the terms of (6) in the mean thrust",
+                                        "phase shift delta [deg]", "share [%]", columns, ROWS, n, MORAY_CURVE_MARKED,
+                                        labels, shown, SHOWN});
 }
 
 static moray_status leave_full_wave(paper *p)

@@ -93,9 +93,10 @@ static moray_status draw(paper *p, double ratio, const findings *f)
         {"speed control-oriented", "m/s", f->speed[MORAY_CONTROL_ORIENTED], 1},
         {"speed control-oriented with Assumption 4", "m/s", f->simpler, 1},
     };
-    return paper_draw(p, &(paper_graph){paper_label(p, "%g", ratio),
-                                        paper_label(p, "Ground robot, c_n/c_t = %g", ratio), "theta_max [deg]",
-                                        "speed [m/s]", columns, 4, AMPLITUDES, MORAY_CURVE_MARKED, labels});
+    return paper_draw(p,
+                      &(paper_graph){paper_label(p, "%g", ratio), paper_label(p, "Ground robot, c_n/c_t = %g", ratio),
+                                     "theta_max [deg]", "speed [m/s]", columns, 4, AMPLITUDES,
+                                     .style = MORAY_CURVE_MARKED, .labels = labels});
 }
 
 // The last amplitude up to which all errors stay within the bound; 0 where none does.

@@ -67,7 +67,6 @@ static moray_status draw_errors(paper *p)
     static const char *const labels[ROWS] = {"theta_max", "(30), largest error", "(31), largest error",
                                              "(30), amplitude", "(31), amplitude"};
     double values[ROWS][ANGLES];
-    moray_curve curves[SHOWN];
     moray_column columns[ROWS];
     for (int k = 0; k < ANGLES; k++) {
         const distance_errors e = distance_errors_of(p->robot->l, (k + 1) * DEG, p->settings->delta);
@@ -79,15 +78,9 @@ static moray_status draw_errors(paper *p)
     }
     for (int j = 0; j < ROWS; j++)
         columns[j] = (moray_column){.name = labels[j], .unit = j ? "%" : "deg", .values = values[j]};
-    for (int c = 0; c < SHOWN; c++)
-        curves[c] = (moray_curve){.label = labels[shown[c]], .x = values[0], .y = values[shown[c]], .n = ANGLES};
-    MORAY_TRY(paper_csv(p, "errors", columns, ROWS, ANGLES));
-    return paper_figure(p, &(moray_figure){.name = "errors",
-                                           .title = "Errors of (30) and (31) against (29)",
-                                           .x_label = "theta_max [deg]",
-                                           .y_label = "error [% of the amplitude]",
-                                           .curves = curves,
-                                           .n_curves = SHOWN});
+    return paper_draw(p, &(paper_graph){"errors", "Errors of (30) and (31) against (29)", "theta_max [deg]",
+                                        "error [% of the amplitude]", columns, ROWS, ANGLES, .shown = shown,
+                                        .n_shown = SHOWN});
 }
 
 static moray_status show_errors(paper *p)

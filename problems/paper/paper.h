@@ -104,13 +104,15 @@ moray_status paper_say(paper *p, const char *format, ...) __attribute__((format(
 moray_status paper_csv(paper *p, const char *name, const moray_column *columns, int n_columns, int n_rows);
 moray_status paper_figure(paper *p, const moray_figure *figure);
 
-// Columns of n rows, as both: the figure has those from the second on over the first.
+// Columns of n rows, as both: the figure has those from the second on, or of them the ones shown, over the first.
 typedef struct paper_graph {
     const char *name, *title, *x_label, *y_label; // of the figure
     const moray_column *columns;
     int n_columns, n;
     moray_curve_style style;
     const char *const *labels; // of the curves; NULL: the names of the columns
+    const int *shown;          // [n_shown] columns; NULL: all
+    int n_shown;
 } paper_graph;
 moray_status paper_draw(paper *p, const paper_graph *graph);
 

@@ -258,15 +258,17 @@ moray_status paper_draw(paper *p, const paper_graph *graph)
 {
     enum { MOST = 16 };
     moray_curve curves[MOST];
-    const int n_curves = graph->n_columns - 1;
+    const int n_curves = graph->shown ? graph->n_shown : graph->n_columns - 1;
     if (n_curves > MOST)
         return moray_error(MORAY_INPUT, "%s: %d curves; a figure may have %d", p->study, n_curves, MOST);
-    for (int c = 0; c < n_curves; c++)
-        curves[c] = (moray_curve){.label = graph->labels ? graph->labels[c] : graph->columns[1 + c].name,
-                                  .x = graph->columns[0].values,
-                                  .y = graph->columns[1 + c].values,
+    for (int c = 0; c < n_curves; c++) {
+        const moray_column *column = &graph->columns[graph->shown ? graph->shown[c] : 1 + c];
+        curves[c] = (moray_curve){.label = graph->labels ? graph->labels[c] : column->name,
+                                  .x = graph->columns->values,
+                                  .y = column->values,
                                   .n = graph->n,
                                   .style = graph->style};
+    }
     MORAY_TRY(paper_csv(p, graph->name, graph->columns, graph->n_columns, graph->n));
     return paper_figure(p, &(moray_figure){.name = graph->name,
                                            .title = graph->title,
