@@ -91,7 +91,7 @@ typedef struct horizon_case {
     moray_gait gait;
     double time[HORIZON_POINTS], heading[HORIZON_POINTS];
     moray_reference reference; // points into these
-    moray_heading_plan plan;
+    moray_steering_plan plan;
 } horizon_case;
 subject horizon_subject(horizon_case *c); // the case must stay where it is. Error: MORAY_INPUT when it is too long
 

@@ -57,7 +57,7 @@ static moray_status solve(void *self, moray_solution **solution)
 static void forget(void *self)
 {
     horizon_case *c = self;
-    moray_heading_plan_free(&c->plan);
+    moray_steering_plan_free(&c->plan);
 }
 
 subject horizon_subject(horizon_case *c)

@@ -61,7 +61,10 @@ int steer_main(const moray_program *own, const steer_program *program, int argc,
     exit_code = moray_app_end(&app, job, status);
     if (exit_code == MORAY_EXIT_SOLVED && !certified(job))
         exit_code = MORAY_EXIT_CERTIFICATE;
-    program->release(job);
+    for (int k = 0; k < 3; k++)
+        moray_steering_plan_free(&job->plan[k]);
+    if (program->release)
+        program->release(job);
     return exit_code;
 }
 
@@ -92,13 +95,13 @@ moray_settings steer_settings(steer_job *job, bool averaged, int intervals, doub
     return settings;
 }
 
-moray_status steer_take_plan(steer_job *job, int number, const moray_solution *solution,
-                             const moray_straight_motion *straight)
+moray_status steer_take_plan(steer_job *job, int number)
 {
     const moray_sim_settings sim = moray_sim_settings_default();
     const moray_integrator integrator = moray_sim_integrator(&sim);
-    job->plan[number] = (steer_plan){solution, *straight};
-    return number == STEER_AVERAGED ? moray_ok() : moray_certify(solution, &integrator, &job->certificate[number]);
+    if (number == STEER_AVERAGED)
+        return moray_ok();
+    return moray_certify(job->plan[number].solution, &integrator, &job->certificate[number]);
 }
 
 moray_status steer_not_solved(const moray_solution *solution)

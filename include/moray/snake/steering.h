@@ -61,7 +61,15 @@ typedef struct moray_steering moray_steering;
 MORAY_API moray_status moray_steering_new(moray_steering **problem, const moray_steering_spec *spec);
 MORAY_API void moray_steering_free(moray_steering *problem);
 MORAY_API const moray_ocp *moray_steering_ocp(const moray_steering *problem);
+
 MORAY_API const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem);
+
+// With the task it owns, as moray_heading_new, moray_path_problem_new and moray_turn_new make it.
+typedef struct moray_steering_problem {
+    moray_steering *steering;
+    void *task;
+} moray_steering_problem;
+MORAY_API void moray_steering_problem_free(moray_steering_problem *problem); // safe on a zeroed problem, and twice
 
 // The gait of a solution's or guess's parameters, offset 0, and back.
 MORAY_API moray_gait moray_steering_gait(const double s[MORAY_STEERING_PARAMETERS]);

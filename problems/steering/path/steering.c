@@ -23,7 +23,7 @@ static moray_status set_guidance(steer_steersman *h)
     const bool planned = h->trial->law->kind == STEER_PLANNED;
     const double *number = h->trial->number;
     h->own.guidance = (moray_guidance){.path = &job->path,
-                                       .plan = planned ? &job->plan[h->trial->plan] : NULL,
+                                       .plan = planned ? &job->steer.plan[h->trial->plan] : NULL,
                                        .plan_scale = h->plan.scale,
                                        .lookahead = number[LOOKAHEAD],
                                        .ahead = planned ? 0 : number[AHEAD],
@@ -244,11 +244,7 @@ static moray_status work(steer_job *steer)
 
 static void release(steer_job *steer)
 {
-    path_job *job = (path_job *)steer;
-    moray_path_plan_free(&job->averaged);
-    for (int model = 0; model < 2; model++)
-        moray_path_plan_free(&job->plan[model]);
-    moray_path_free(&job->path);
+    moray_path_free(&((path_job *)steer)->path);
 }
 
 const steer_program path_steering = {
