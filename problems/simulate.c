@@ -66,7 +66,7 @@ int main(int argc, char **argv)
         return exit_code;
     moray_status status = simulate_run(&run, &results);
     if (!moray_failed(status))
-        status = simulate_report(&run, &results);
+        status = simulate_report(&results);
     simulate_release(&results);
     return moray_app_end(&program, &run, status);
 }

@@ -165,35 +165,17 @@ static void json_run(moray_json *json, const simulate *run, const simulate_resul
 
 // ---- All of it -----------------------------------------------------------------------------------------------------
 
-struct found {
-    const simulate *run;
-    const simulate_results *results;
-};
-
 static void summarise(const void *found, moray_json *json)
 {
-    const struct found *f = found;
-    json_head(json, f->run, f->results);
-    json_mean(json, f->run, f->results);
-    json_run(json, f->run, f->results);
+    const simulate_results *results = found;
+    json_head(json, results->run, results);
+    json_mean(json, results->run, results);
+    json_run(json, results->run, results);
 }
 
-static moray_status write(const void *found, moray_output *output)
+moray_status simulate_report(const simulate_results *results)
 {
-    (void)output;
-    const struct found *f = found;
-    return simulate_trajectory(f->run, f->results);
-}
-
-static moray_status draw(const void *found, moray_output *output)
-{
-    (void)output;
-    const struct found *f = found;
-    return simulate_figures(f->run, f->results);
-}
-
-moray_status simulate_report(const simulate *run, const simulate_results *results)
-{
+    const simulate *run = results->run;
     struct tables t;
     char text[500];
     fill_means(run, results, &t);
@@ -201,10 +183,10 @@ moray_status simulate_report(const simulate *run, const simulate_results *result
     describe(run, results, text, sizeof text);
     const moray_report report = {.title = "simulate", .text = text, .tables = t.table, .n_tables = 2};
     return moray_app_show(&run->common, &(moray_results){.name = "simulate",
-                                                         .found = &(struct found){run, results},
+                                                         .found = results,
                                                          .summary = summarise,
                                                          .print = print,
-                                                         .write = write,
-                                                         .draw = draw,
+                                                         .write = simulate_trajectory,
+                                                         .draw = simulate_figures,
                                                          .report = &report});
 }
