@@ -31,16 +31,21 @@ static moray_status draw_path(const simulate_results *results, moray_output *out
 
 // ---- Over time -----------------------------------------------------------------------------------------------------
 
+static moray_status draw_over_time(moray_output *output, const char *name, const char *title, const char *y_label,
+                                   const moray_curve *curves, int n)
+{
+    return moray_output_figure(
+        output,
+        &(moray_figure){
+            .name = name, .title = title, .x_label = "time [s]", .y_label = y_label, .curves = curves, .n_curves = n});
+}
+
 static moray_status draw_velocity(moray_output *output, const double *t, const double *v_x, const double *v_y, int n)
 {
     const moray_curve curves[] = {{.label = "v_x", .x = t, .y = v_x, .n = n},
                                   {.label = "v_y", .x = t, .y = v_y, .n = n}};
-    return moray_output_figure(output, &(moray_figure){.name = "velocity",
-                                                       .title = "Velocity over ground of the centre of mass",
-                                                       .x_label = "time [s]",
-                                                       .y_label = "velocity [m/s]",
-                                                       .curves = curves,
-                                                       .n_curves = 2});
+    return draw_over_time(output, "velocity", "Velocity over ground of the centre of mass", "velocity [m/s]", curves,
+                          2);
 }
 
 static moray_status draw_heading(const simulate_results *results, moray_output *output, const double *t,
@@ -48,12 +53,7 @@ static moray_status draw_heading(const simulate_results *results, moray_output *
 {
     const bool control = results->run->snake.model == MORAY_CONTROL_ORIENTED;
     const moray_curve curve = {.label = control ? "theta" : "mean link angle", .x = t, .y = heading, .n = n};
-    return moray_output_figure(output, &(moray_figure){.name = "heading",
-                                                       .title = "Heading",
-                                                       .x_label = "time [s]",
-                                                       .y_label = "heading [deg]",
-                                                       .curves = &curve,
-                                                       .n_curves = 1});
+    return draw_over_time(output, "heading", "Heading", "heading [deg]", &curve, 1);
 }
 
 // Of the joints at the tail, in the middle and at the head: more curves than that nobody reads.
@@ -76,12 +76,7 @@ static moray_status draw_efforts(const simulate_results *results, moray_output *
     }
     snprintf(title, sizeof title, "Joint %s, %.4g s to %.4g s", control ? "forces" : "torques", results->window.from,
              results->window.to);
-    return moray_output_figure(output, &(moray_figure){.name = "effort",
-                                                       .title = title,
-                                                       .x_label = "time [s]",
-                                                       .y_label = control ? "joint force [N]" : "joint torque [N m]",
-                                                       .curves = curves,
-                                                       .n_curves = shown});
+    return draw_over_time(output, "effort", title, control ? "joint force [N]" : "joint torque [N m]", curves, shown);
 }
 
 moray_status simulate_figures(const void *found, moray_output *output)
