@@ -319,6 +319,8 @@ MORAY_API const char *moray_solution_diagnosis(const moray_solution *solution);
 
 // Of the numbers that no setting bounds; none of them has a unit.
 #define MORAY_LIMIT_KKT 1e-5
+#define MORAY_LIMIT_GAP 1e-4
+#define MORAY_LIMIT_CURVATURE 1e-4
 #define MORAY_LIMIT_DERIVATIVES 1e-5
 #define MORAY_LIMIT_DIRECTIONS 1e-4
 #define MORAY_LIMIT_HAMILTONIAN 1e-2
@@ -346,6 +348,10 @@ typedef struct moray_certificate {
     double hamiltonian;   // largest departure of the Hamiltonian from H' = dH/dt over the nodes of a phase, relative to
                           // the sum of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN with radau,
                           // gauss, and lobatto of 4 stages and more; none where costates are of low order
+    double gap;           // what the slacks of active bounds and rows, times their multipliers, hold the objective from
+                          // its optimum, relative as kkt. Limit MORAY_LIMIT_GAP
+    double curvature;     // how far the Lagrangian bends down along what the active constraints leave free: relative,
+                          // per square of sizes; 0 at a minimum, strict or not. Limit MORAY_LIMIT_CURVATURE
     double composed;      // as resimulation, each phase in one go from its start: for information, as unstable
                           // equations make it as large as they like
     char why[400];        // one sentence on the first number that fails, with its limit and where; empty if none does

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "ocp/certify.h"
+#include "ocp/curvature.h"
 #include "ocp/differences.h"
 #include "ocp/names.h"
 #include "ocp/optimality.h"
@@ -52,6 +53,7 @@ static moray_status question_witness(struct verdict *v, const struct witness *w)
 {
     MORAY_TRY(moray_compare_columns(w, &v->c->derivatives, v->derivative, where_size));
     MORAY_TRY(moray_measure_optimality(w, &v->optimality));
+    MORAY_TRY(moray_measure_curvature(w, &v->c->curvature, NULL));
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
         MORAY_TRY(moray_hamiltonian_drift(w, p, &v->drift));
     return moray_ok();
@@ -68,6 +70,7 @@ static moray_status gather(struct verdict *v, const moray_integrator *integrator
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
         MORAY_TRY(examine_phase(v, p, integrator));
     v->c->kkt = fmax(v->optimality.improvement, v->optimality.feasibility);
+    v->c->gap = v->optimality.gap;
     v->c->mesh_error = v->mesh.value;
     v->c->between_nodes = v->between.value;
     v->c->resimulation = v->shooting.value;
@@ -114,6 +117,10 @@ static void judge_optimality(struct verdict *v)
         snprintf(where, sizeof where, "most by %s", name);
     }
     judge(v, "the objective could still improve, relative to its size", o->improvement, MORAY_LIMIT_KKT, where);
+    judge(v, "multipliers times slacks, relative to the objective's size", o->gap, MORAY_LIMIT_GAP,
+          "the solver stopped inside the constraints");
+    judge(v, "the Lagrangian bends down along the active constraints", v->c->curvature, MORAY_LIMIT_CURVATURE,
+          "a saddle or a maximum");
 }
 
 // Whether costates at the nodes are of an order that makes the Hamiltonian a judge.
@@ -170,6 +177,7 @@ moray_status moray_certify(const moray_solution *solution, const moray_integrato
         certificate->pass = false;
         certificate->kkt = certificate->mesh_error = certificate->between_nodes = certificate->resimulation = NAN;
         certificate->derivatives = certificate->directions = certificate->hamiltonian = certificate->composed = NAN;
+        certificate->gap = certificate->curvature = NAN;
         return moray_ok();
     }
     MORAY_TRY(gather(&v, integrator));

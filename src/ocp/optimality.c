@@ -109,32 +109,38 @@ static void fill_gradient(struct measure *m)
     add_endpoint(m);
 }
 
-// What a multiplier of one side costs that should be 0 or hold its bound: of a side without bound or with the wrong
-// sign a move by the whole size.
-static double slackness(double multiplier, double slack, bool bounded, double size)
+// What a multiplier of one side makes of a slack goes to the gap; of a side without bound, or with the wrong sign, what
+// it makes of a move by the whole size is returned.
+static double slackness(double multiplier, double slack, bool bounded, double size, struct optimality *o)
 {
-    return fabs(multiplier) * (bounded && multiplier >= 0 ? fmax(slack, 0) : size);
+    if (!bounded || multiplier < 0)
+        return fabs(multiplier) * size;
+    o->gap += multiplier * fmax(slack, 0);
+    return 0;
 }
 
-static double column_gain(const struct measure *m, int j)
+static double column_gain(const struct measure *m, int j, struct optimality *o)
 {
     const moray_nlp *nlp = &m->t->nlp;
     const moray_iterate *at = &m->e->solution->iterate;
-    if (nlp->x_lower[j] == nlp->x_upper[j])
+    const double low = nlp->x_lower[j], high = nlp->x_upper[j];
+    if (low == high)
         return 0;
     return fabs(m->gradient[j]) * m->column[j] +
-           slackness(at->z_lower[j], at->x[j] - nlp->x_lower[j], nlp->x_lower[j] > -MORAY_INFINITY, m->column[j]) +
-           slackness(at->z_upper[j], nlp->x_upper[j] - at->x[j], nlp->x_upper[j] < MORAY_INFINITY, m->column[j]);
+           slackness(at->z_lower[j], at->x[j] - low, low > -MORAY_INFINITY, m->column[j], o) +
+           slackness(at->z_upper[j], high - at->x[j], high < MORAY_INFINITY, m->column[j], o);
 }
 
-static double row_gain(const struct measure *m, int i)
+static double row_gain(const struct measure *m, int i, struct optimality *o)
 {
     const moray_nlp *nlp = &m->t->nlp;
     const double lambda = m->e->solution->iterate.lambda[i];
     if (nlp->g_lower[i] == nlp->g_upper[i])
         return fabs(lambda * (m->g[i] - nlp->g_lower[i]));
-    const bool upper = lambda > 0, bounded = upper ? nlp->g_upper[i] < MORAY_INFINITY : nlp->g_lower[i] > -MORAY_INFINITY;
-    return slackness(fabs(lambda), upper ? nlp->g_upper[i] - m->g[i] : m->g[i] - nlp->g_lower[i], bounded, m->row[i]);
+    const bool upper = lambda > 0;
+    const bool bounded = upper ? nlp->g_upper[i] < MORAY_INFINITY : nlp->g_lower[i] > -MORAY_INFINITY;
+    const double slack = upper ? nlp->g_upper[i] - m->g[i] : m->g[i] - nlp->g_lower[i];
+    return slackness(fabs(lambda), slack, bounded, m->row[i], o);
 }
 
 static double outside(double value, double lower, double upper)
@@ -148,7 +154,8 @@ static void judge(const struct measure *m, struct optimality *o)
     const double *x = m->e->solution->iterate.x;
     double worst = 0;
     for (int j = 0; j < nlp->n; j++) {
-        const double gain = column_gain(m, j), far = outside(x[j], nlp->x_lower[j], nlp->x_upper[j]) / m->column[j];
+        const double gain = column_gain(m, j, o);
+        const double far = outside(x[j], nlp->x_lower[j], nlp->x_upper[j]) / m->column[j];
         o->improvement += gain;
         if (!(gain <= worst))
             worst = gain, o->column = j;
@@ -157,11 +164,12 @@ static void judge(const struct measure *m, struct optimality *o)
     }
     for (int i = 0; i < nlp->m; i++) {
         const double far = outside(m->g[i], nlp->g_lower[i], nlp->g_upper[i]) / m->row[i];
-        o->improvement += row_gain(m, i);
+        o->improvement += row_gain(m, i, o);
         if (far > o->feasibility)
             o->feasibility = far, o->row = i;
     }
     o->improvement /= moray_witness_objective(m->e);
+    o->gap /= moray_witness_objective(m->e);
     o->improvement = isnan(o->improvement) ? INFINITY : o->improvement;
 }
 

@@ -8,8 +8,8 @@
 // or a row of the programme, -1 for none.
 struct optimality {
     double improvement; // first-order gain of the Lagrangian where every variable moves by its size against its
-                        // gradient, every slack is used up and every violation taken back, relative to the size of the
-                        // objective
+                        // gradient and every violation is taken back, relative to the size of the objective
+    double gap;         // the same where every slack of a bound or row with a multiplier is used up
     double feasibility; // largest violation of a row or a bound, relative to its size
     int column, row;    // of the improvement; of the feasibility, rows + j for bounds of column j
 };

@@ -111,6 +111,8 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
     const double loose = 100 * run->mesh_tol;
     const moray_table_row filled[] = {
         {.label = "optimality and feasibility (KKT)", .value = {c->kkt, MORAY_LIMIT_KKT}},
+        {.label = "gap held by slacks", .value = {c->gap, MORAY_LIMIT_GAP}},
+        {.label = "downward curvature", .value = {c->curvature, MORAY_LIMIT_CURVATURE}},
         {.label = "error of the dynamics between nodes", .value = {c->mesh_error, run->mesh_tol}},
         {.label = "violation of limits between nodes", .value = {c->between_nodes, loose}},
         {.label = "re-simulation of each interval", .value = {c->resimulation, loose}},
@@ -124,7 +126,7 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
 
 moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
-    enum { solver_room = 10, certificate_room = 8 };
+    enum { solver_room = 10, certificate_room = 10 };
     const int solution_room = count_rows(run->app->spec);
     int meshes;
     moray_solution_history(run->solution, &meshes);

@@ -22,7 +22,7 @@ void moray_solver_to_json(moray_json *json, const moray_solution *solution)
 
 void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate)
 {
-    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, ""};
+    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, ""};
     const moray_certificate *c = certificate ? certificate : &none;
     moray_json_open(json, "certificate");
     moray_json_bool(json, "pass", c->pass);
@@ -33,6 +33,8 @@ void moray_certificate_to_json(moray_json *json, const moray_certificate *certif
     moray_json_number(json, "derivatives", c->derivatives);
     moray_json_number(json, "directions", c->directions);
     moray_json_number(json, "hamiltonian", c->hamiltonian);
+    moray_json_number(json, "gap", c->gap);
+    moray_json_number(json, "curvature", c->curvature);
     moray_json_number(json, "composed", c->composed);
     moray_json_text(json, "why", c->why);
     moray_json_close(json);
