@@ -345,8 +345,8 @@ typedef struct moray_certificate {
                           // MORAY_LIMIT_DERIVATIVES
     double directions;    // of the programme's first and second derivatives along dense directions, as in
                           // moray_derivative_report with scaled rows; limit MORAY_LIMIT_DIRECTIONS
-    double hamiltonian;   // largest departure of the Hamiltonian from H' = dH/dt over the nodes of a phase, relative to
-                          // the sum of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN with radau,
+    double hamiltonian;   // mean departure of the Hamiltonian from H' = dH/dt over a phase, relative to the largest of
+                          // the sums of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN with radau,
                           // gauss, and lobatto of 4 stages and more; none where costates are of low order
     double gap;           // what the slacks of active bounds and rows, times their multipliers, hold the objective from
                           // its optimum, relative as kkt. Limit MORAY_LIMIT_GAP

@@ -24,7 +24,8 @@ static void compare(const struct witness *w, int p, int n, const double *in_use,
     const double *doubt = p < 0 ? w->end_doubt : w->phase[p].doubt + n * block;
     const double *size = p < 0 ? w->end_size : w->phase[p].size;
     const double *out_size = p < 0 ? w->end_out_size : w->phase[p].out_size;
-    for (int k = 0; k < block; k++) {
+    const bool timeless = p >= 0 && t->layout.phase[p].t0 < 0 && t->layout.phase[p].tf < 0; // no variable moves t
+    for (int k = 0; k < block - (timeless ? map->n_out : 0); k++) {
         const int row = k % map->n_out, col = k / map->n_out;
         const double far = (fabs(in_use[k] - jac[k]) - certain * doubt[k]) * size[col];
         const double error = isfinite(doubt[k]) && out_size[row] > 0 ? far / out_size[row] : 0;

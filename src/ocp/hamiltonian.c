@@ -57,22 +57,25 @@ static void integrate(const struct course *c)
     }
 }
 
+// Mean over the phase: at the nodes beside a kink of a multiplier the Hamiltonian is of low order.
 static void measure(const struct course *c, struct finding *drift)
 {
     const struct transcription *t = c->w->solution->transcription;
     const struct phase_layout *layout = &t->layout.phase[c->p];
-    double least = INFINITY, most = -INFINITY, when = 0;
+    double mean = 0, sum = 0, worst = 0, when = 0;
+    for (int n = 0; n < layout->nodes; n++)
+        if (layout->node[n].collocated)
+            mean += layout->node[n].weight * (c->H[n] - c->gained[n]);
     for (int n = 0; n < layout->nodes; n++) {
-        if (!layout->node[n].collocated)
-            continue;
-        const double constant = c->H[n] - c->gained[n];
-        if (constant < least || constant > most)
+        const double far = layout->node[n].collocated ? fabs(c->H[n] - c->gained[n] - mean) : 0;
+        sum += layout->node[n].weight * far;
+        if (far > worst) {
+            worst = far;
             when = t->phase[c->p].t0 + (t->phase[c->p].tf - t->phase[c->p].t0) * layout->node[n].tau;
-        least = fmin(least, constant);
-        most = fmax(most, constant);
+        }
     }
     if (c->size > 0)
-        moray_find(drift, (most - least) / c->size, c->p, when);
+        moray_find(drift, sum / c->size, c->p, when);
 }
 
 moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct finding *drift)
