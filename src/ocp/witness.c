@@ -7,7 +7,8 @@
 
 #include "ocp/columns.h"
 
-static const double least_part = 1e-3; // of a magnitude, or of what would matter elsewhere, that makes a size
+static const double least_part = 1e-3; // of a magnitude, or of what would matter to the objective, that makes a size
+static const double driving = 0.1;     // of what it takes to move a state by its size
 static const double trial_part = 0.1;  // of a size, by which inputs are moved
 static const double silent = 1e-6;     // doubt of a derivative, relative, at which it says nothing
 static const double endless = 1e15;    // width of bounds that say nothing
@@ -158,7 +159,7 @@ static void raise_by_effect(struct witness *e, int p)
             if (size[i] > 0 && slope > 0)
                 least = fmin(least, size[i] / slope);
         }
-        size[j] = isfinite(least) ? fmax(size[j], least_part * least) : size[j];
+        size[j] = isfinite(least) ? fmax(size[j], driving * least) : size[j];
         if (size[j] <= 0)
             size[j] = width_of(bounds_of(e, p, j)) > 0 ? width_of(bounds_of(e, p, j)) : 1;
     }
