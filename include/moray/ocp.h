@@ -346,8 +346,9 @@ typedef struct moray_certificate {
     double directions;    // of the programme's first and second derivatives along dense directions, as in
                           // moray_derivative_report with scaled rows; limit MORAY_LIMIT_DIRECTIONS
     double hamiltonian;   // mean departure of the Hamiltonian from H' = dH/dt over a phase, relative to the largest of
-                          // the sums of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN with radau,
-                          // gauss, and lobatto of 4 stages and more; none where costates are of low order
+                          // the sums of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN of phases
+                          // that do not depend on time, with radau, gauss, and lobatto of 4 stages and more; told only
+                          // where costates are of low order or functions may jump with time
     double gap;           // what the slacks of active bounds and rows, times their multipliers, hold the objective from
                           // its optimum, relative as kkt. Limit MORAY_LIMIT_GAP
     double curvature;     // how far the Lagrangian bends down along what the active constraints leave free: relative,

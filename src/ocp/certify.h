@@ -23,7 +23,7 @@ moray_status moray_resimulate(struct examiner *e, const moray_integrator *integr
                               double *composed);
 
 // Mean departure of the Hamiltonian of phase p from what H' = dH/dt makes of it, relative to the sum of the sizes of its
-// terms, and when it is largest. Error: MORAY_MEMORY.
-moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct finding *drift);
+// terms, and when it is largest. *autonomous: no function changes with time. Error: MORAY_MEMORY.
+moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct finding *drift, bool *autonomous);
 
 #endif

@@ -13,6 +13,16 @@ struct course {
     double size;
 };
 
+static bool is_timeless(const struct witness *w, int p, int n)
+{
+    const moray_map *map = w->solution->transcription->phase[p].map;
+    const double *slope = w->phase[p].jac + ((n + 1) * map->n_in - 1) * map->n_out;
+    for (int i = 0; i < map->n_out; i++)
+        if (slope[i] != 0) // nor is it where differences find none
+            return false;
+    return true;
+}
+
 // dH/dt at a node, multipliers of path constraints as densities in time; *size: the sum of the terms of H.
 static double rate_at(const struct course *c, int n, const double *costate, double *size)
 {
@@ -78,7 +88,7 @@ static void measure(const struct course *c, struct finding *drift)
         moray_find(drift, sum / c->size, c->p, when);
 }
 
-moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct finding *drift)
+moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct finding *drift, bool *autonomous)
 {
     const struct transcription *t = w->solution->transcription;
     const int nodes = t->layout.phase[p].nodes, nx = t->ocp->phase[p].nx;
@@ -88,8 +98,10 @@ moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct find
     struct course c = {w, p, block, block + nodes, block + 2 * nodes, 0};
     moray_solution_nodes(w->solution, p, NULL, costate);
     moray_solution_hamiltonian(w->solution, p, c.H);
+    *autonomous = true;
     for (int n = 0; n < nodes; n++) {
         double size = 0;
+        *autonomous = *autonomous && is_timeless(w, p, n);
         c.rate[n] = t->layout.phase[p].node[n].collocated ? rate_at(&c, n, costate + n * nx, &size) : 0;
         c.size = fmax(c.size, size);
     }

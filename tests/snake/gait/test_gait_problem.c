@@ -177,7 +177,7 @@ static void test_current_and_limits(void)
     CHECK(!coarse.certificate.pass && coarse.certificate.between_nodes > 1e-3,
           "the certificate sees a limit passed between the nodes of a coarse mesh: %.1e",
           coarse.certificate.between_nodes);
-    const struct outcome force = solve(&spec, "lobatto5", 60);
+    const struct outcome force = solve(&spec, "lobatto5", 80);
     CHECK(force.certificate.pass, "and passes a finer one: %s", force.certificate.why);
     moray_test_rig rig;
     moray_steady steady;
