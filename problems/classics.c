@@ -130,6 +130,7 @@ static void meshes_to_json(moray_json *json, const struct classic_result *r)
         moray_json_text(json, "status", moray_nlp_outcome_text(r->mesh[k].outcome));
         moray_json_number(json, "intervals", r->mesh[k].intervals);
         moray_json_number(json, "nodes", r->mesh[k].nodes);
+        moray_json_text(json, "linear_solver", moray_linear_solver_text(r->mesh[k].linear_solver));
         moray_json_number(json, "iterations", r->mesh[k].iterations);
         moray_json_number(json, "mesh_error", r->mesh[k].error);
         moray_json_close(json);

@@ -15,6 +15,7 @@
 #include "moray/control/receding_horizon.h"
 #include "moray/dense.h"
 #include "moray/export.h"
+#include "moray/key_value.h"
 #include "moray/map.h"
 #include "moray/nlp.h"
 #include "moray/num.h"

@@ -5,6 +5,7 @@
 #define MORAY_NLP_H
 
 #include "moray/export.h"
+#include "moray/key_value.h"
 #include "moray/status.h"
 
 MORAY_BEGIN
@@ -45,14 +46,8 @@ typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
 
 // Which factorisation Ipopt works with: our own, MUMPS, or an MA57 that it finds in libhsl.so (then no other thread may
 // be solving with our own).
-typedef enum { MORAY_LINEAR_MUMPS, MORAY_LINEAR_OWN, MORAY_LINEAR_MA57 } moray_linear_solver;
+typedef enum { MORAY_LINEAR_MORAY, MORAY_LINEAR_MUMPS, MORAY_LINEAR_MA57 } moray_linear_solver;
 MORAY_API const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
-
-// An option of Ipopt by its name, after all that moray sets; not option_file_name, output_file, sb and linear_solver:
-// no option file is ever read, and Ipopt never writes on standard output.
-typedef struct moray_ipopt_option {
-    const char *key, *value; // "mu_strategy", "adaptive"; numbers as texts
-} moray_ipopt_option;
 
 typedef struct moray_nlp_settings {
     double tolerance;   // 1e-8: scaled KKT error at which the solver stops
@@ -60,10 +55,12 @@ typedef struct moray_nlp_settings {
     double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
     bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
     int print_level;    // 0: Ipopt's own log on standard error, 0..12
-    moray_linear_solver linear_solver; // MUMPS; our own falls back on it
+    moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false: true has MUMPS or MA57 timed
-    const moray_ipopt_option *ipopt;   // [n_ipopt], borrowed
-    int n_ipopt;                       // 0
+    // Options of Ipopt by their names, {"mu_strategy", "adaptive"}, after all that moray sets; not option_file_name,
+    // output_file, sb and linear_solver: no option file is ever read, and Ipopt never writes on standard output.
+    const moray_key_value *ipopt; // [n_ipopt], borrowed
+    int n_ipopt;                  // 0
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;
@@ -91,7 +88,7 @@ typedef struct moray_nlp_info {
     int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
     double evaluation_by[5];   // evaluation_seconds of each
     moray_linear_solver linear_solver; // that the result is from
-    bool linear_fallback;              // our own was not accurate enough, so that MUMPS solved it from the start
+    moray_status linear_fallback;      // why MUMPS solved it from the start though our own was asked for; MORAY_OK: no
 } moray_nlp_info;
 
 // Solves with Ipopt from iterate->x (projected into its bounds), and leaves the last iterate there; where it was

@@ -158,8 +158,9 @@ MORAY_API moray_status moray_ocp_new(moray_ocp **ocp, const moray_ocp_spec *spec
 MORAY_API void moray_ocp_free(moray_ocp *ocp);
 
 // The worst disagreement, relative as in moray_derivative_report, between the derivatives in use and differences of the
-// functions at points over the whole box of the bounds, with the names: "phase wire: d (dynamics of state v) / d (control u)
-// is 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9, differences to 1e-6.
+// functions at points over the whole box of the bounds, with the names: "phase wire: d (dynamics of state v) / d
+// (control u) is 0.2, by differences 0.3". Complex step and correct analytic derivatives come to about 1e-9,
+// differences to 1e-6.
 typedef struct moray_ocp_derivative_report {
     double jacobian_error, hessian_error;
     char jacobian[300], hessian[300];
@@ -232,9 +233,9 @@ typedef struct moray_settings {
     double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;      // true; false leaves scaling to Ipopt
     int print_level;       // 0: Ipopt's log on standard error
-    moray_linear_solver linear_solver; // MUMPS
+    moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
-    const moray_ipopt_option *ipopt;   // [n_ipopt] further options of Ipopt, which must outlive the solution
+    const moray_key_value *ipopt;      // [n_ipopt] further options of Ipopt, which must outlive the solution
     int n_ipopt;                       // 0
     moray_progress_fn *progress;
     void *observer;
@@ -301,6 +302,7 @@ MORAY_API moray_nlp_size moray_solution_size(const moray_solution *solution);
 typedef struct moray_mesh_record {
     int intervals, nodes, variables; // of all phases
     moray_nlp_outcome outcome;
+    moray_linear_solver linear_solver; // that it was solved with
     int iterations;
     double seconds;
     double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved

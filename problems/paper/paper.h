@@ -26,7 +26,7 @@ typedef struct paper_settings {
 
 // What a study told: for report.html.
 typedef struct paper_telling {
-    char *text; // paragraphs, one a line
+    const char *text; // paragraphs, one a line
     moray_table table[PAPER_TABLES];
     int n_tables;
 } paper_telling;

@@ -206,8 +206,8 @@ moray_status paper_say(paper *p, const char *format, ...)
     va_end(arguments);
     if (!text)
         return no_memory(p);
-    char *before = p->telling->text;
-    p->telling->text = (char *)paper_label(p, "%s%s%s", before ? before : "", before ? "\n" : "", text);
+    const char *before = p->telling->text;
+    p->telling->text = paper_label(p, "%s%s%s", before ? before : "", before ? "\n" : "", text);
     if (prints(p)) {
         paper_print_wrapped(text, stdout);
         printf("\n");

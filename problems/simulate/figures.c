@@ -89,9 +89,10 @@ moray_status simulate_figures(const simulate *run, const simulate_results *resul
 {
     const moray_swim_track *track = &results->track;
     const int n = track->n;
-    double *v_x = malloc(3 * (size_t)n * sizeof *v_x), *v_y = v_x + n, *heading = v_y + n;
+    double *v_x = malloc(3 * (size_t)n * sizeof *v_x);
     if (!v_x)
         return moray_error(MORAY_MEMORY, "no memory for the figures");
+    double *v_y = v_x + n, *heading = v_y + n;
     for (int k = 0; k < n; k++) {
         v_x[k] = track->pose[k].v_x;
         v_y[k] = track->pose[k].v_y;

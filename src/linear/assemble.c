@@ -30,7 +30,7 @@ static bool reserve(moray_ldl *ldl, const struct front *f)
            grow((void **)&ldl->local, &ldl->local_room, (size_t)f->height, sizeof *ldl->local);
 }
 
-static bool lay_out(moray_ldl *ldl, int s)
+static void lay_out(moray_ldl *ldl, int s)
 {
     const struct node *node = &ldl->plan.node[s];
     struct front *f = &ldl->front[s];
@@ -46,7 +46,6 @@ static bool lay_out(moray_ldl *ldl, int s)
     ldl->panel_used += (size_t)f->height * (size_t)f->width;
     ldl->index_used += (size_t)f->width;
     ldl->statistics.delayed += delayed;
-    return reserve(ldl, f);
 }
 
 static void add_matrix(moray_ldl *ldl, int s)
@@ -121,7 +120,13 @@ moray_status moray_ldl_front_assemble(moray_ldl *ldl, int s)
 {
     const struct node *node = &ldl->plan.node[s];
     const struct front *f = &ldl->front[s];
-    if (!lay_out(ldl, s))
+    lay_out(ldl, s);
+    if ((double)ldl->panel_used > ldl->most_entries)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "delayed pivots fill the factors of a sparse matrix of %d rows: %.3g entries and more, "
+                           "%.3g at first",
+                           ldl->n, (double)ldl->panel_used, (double)ldl->plan.panel_room);
+    if (!reserve(ldl, f))
         return moray_error(MORAY_MEMORY, "no memory for the factors of a sparse matrix of %d rows", ldl->n);
     memset(ldl->panel + f->panel, 0, (size_t)f->height * (size_t)f->width * sizeof *ldl->panel);
     memset(ldl->update + node->update, 0, (size_t)node->rows * (size_t)node->rows * sizeof *ldl->update);

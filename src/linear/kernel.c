@@ -54,8 +54,8 @@ INLINE void strip(int columns, int rows, int depth, struct view L, struct view W
 
 // A strip of columns begins at its first diagonal entry; what it writes above the others is not read by anyone.
 FOR_EACH_PROCESSOR
-void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw,
-                             double *C, int ldc)
+static void update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw, double *C,
+                   int ldc)
 {
     const size_t step = (size_t)ldc;
     int j = 0;
@@ -73,7 +73,7 @@ void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, 
 }
 
 FOR_EACH_PROCESSOR
-void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)
+static void subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)
 {
     const size_t step = (size_t)ldl;
     int k = 0;
@@ -86,7 +86,7 @@ void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, 
 }
 
 FOR_EACH_PROCESSOR
-void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x)
+static void subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x)
 {
     const size_t step = (size_t)ldl;
     int k = 0;
@@ -112,7 +112,7 @@ void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L
 
 // What is left of eight lanes is looked at again together with some before: a maximum does not mind.
 FOR_EACH_PROCESSOR
-double moray_ldl_kernel_largest(int n, const double *x)
+static double largest(int n, const double *x)
 {
     double lane[8] = {0}, most = 0;
     for (int i = 0; i < n && n >= 8; i += 8)
@@ -123,4 +123,28 @@ double moray_ldl_kernel_largest(int n, const double *x)
     for (int i = 0; i < n && n < 8; i++)
         most = __builtin_fabs(x[i]) > most ? __builtin_fabs(x[i]) : most;
     return most;
+}
+
+// gcc exports functions made for several processors whatever their visibility, and a program's own of the same name
+// would be called: those are static, and these lead to them.
+
+void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw,
+                             double *C, int ldc)
+{
+    update(rows, columns, depth, L, ldl, W, ldw, C, ldc);
+}
+
+void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)
+{
+    subtract(rows, columns, L, ldl, x, y);
+}
+
+void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x)
+{
+    subtract_transposed(rows, columns, L, ldl, y, x);
+}
+
+double moray_ldl_kernel_largest(int n, const double *x)
+{
+    return largest(n, x);
 }

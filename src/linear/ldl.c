@@ -8,8 +8,9 @@
 
 #include "linear/parts.h"
 
-static const double worn =
-    2; // growth of the work by delayed pivots that asks for another order, of pairs that hold now
+static const double worn = 4; // factorisations' worth of work by delayed pivots that another order costs
+// Growth of the factors by delayed pivots that ends a factorisation; but for the few that 8 MB hold.
+static const double hopeless = 8, few_entries = 1e6;
 
 double moray_ldl_clock(void)
 {
@@ -66,7 +67,7 @@ static void forget_plan(moray_ldl *ldl)
     ldl->value = ldl->update = ldl->panel = ldl->kept = ldl->pivot = ldl->local = NULL;
     ldl->index = NULL;
     ldl->planned = ldl->factored = false;
-    ldl->usual = 0;
+    ldl->usual = ldl->surplus = 0;
 }
 
 void moray_ldl_free(moray_ldl *ldl)
@@ -97,6 +98,7 @@ static moray_status make_room(moray_ldl *ldl)
 {
     const struct plan *plan = &ldl->plan;
     const size_t n = (size_t)plan->n, slots = (size_t)plan->slots;
+    ldl->most_entries = fmax(few_entries, hopeless * (double)plan->panel_room);
     ldl->panel_room = plan->panel_room + 1;
     ldl->index_room = n + 1;
     ldl->kept_room = (size_t)plan->tallest * (size_t)plan->widest + 1;
@@ -145,44 +147,47 @@ static moray_status order(moray_ldl *ldl, const double *values)
 // ---- Factorisation
 // ---------------------------------------------------------------------------------------------------
 
-// Fronts one by one; leaves off where the work passes `most`.
-static moray_status eliminate(moray_ldl *ldl, double most, bool *outgrown)
+// Fronts one by one. Error: MORAY_NOT_SOLVED where the work passes `most` or the factors what is bearable.
+static moray_status eliminate(moray_ldl *ldl, double most)
 {
     ldl->panel_used = ldl->index_used = 0;
     ldl->inertia = (moray_ldl_inertia){0};
     ldl->statistics.delayed = ldl->statistics.pivots_2x2 = 0;
     ldl->statistics.done = 0;
-    for (int s = 0; s < ldl->plan.nodes && ldl->statistics.done <= most; s++) {
+    for (int s = 0; s < ldl->plan.nodes; s++) {
         MORAY_TRY(moray_ldl_front_assemble(ldl, s));
         moray_ldl_front_eliminate(ldl, s);
+        if (ldl->statistics.done > most && s + 1 < ldl->plan.nodes)
+            return moray_error(MORAY_NOT_SOLVED, "an order of pivots is worn");
     }
-    *outgrown = ldl->statistics.done > most;
+    ldl->statistics.filled = fmax(ldl->statistics.filled, (double)ldl->panel_used);
     return moray_ok();
 }
 
-// The first factorisation after an ordering says what the next may cost.
-static moray_status factor_ordered(moray_ldl *ldl, const double *values, bool *outgrown)
+// The first factorisation after an ordering says what the next may cost: together, in what they cost more, no more than
+// another order.
+static moray_status factor_ordered(moray_ldl *ldl, const double *values)
 {
     const bool first = ldl->usual == 0;
     if (!moray_ldl_load(ldl, values))
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows is not finite", ldl->n);
-    MORAY_TRY(eliminate(ldl, first ? INFINITY : worn * ldl->usual, outgrown));
+    MORAY_TRY(eliminate(ldl, first ? INFINITY : (1 + worn) * ldl->usual - ldl->surplus));
     if (first)
         ldl->usual = ldl->statistics.done;
+    ldl->surplus += fmax(0, ldl->statistics.done - ldl->usual);
     return moray_ok();
 }
 
 static moray_status factor(moray_ldl *ldl, const double *values)
 {
-    bool outgrown = false;
-    if (!ldl->planned)
-        MORAY_TRY(order(ldl, values));
-    MORAY_TRY(factor_ordered(ldl, values, &outgrown));
-    if (!outgrown)
-        return moray_ok();
-    forget_plan(ldl);
+    if (ldl->planned) {
+        const moray_status status = factor_ordered(ldl, values);
+        if (status.code != MORAY_NOT_SOLVED)
+            return status;
+        forget_plan(ldl);
+    }
     MORAY_TRY(order(ldl, values));
-    return factor_ordered(ldl, values, &outgrown);
+    return factor_ordered(ldl, values);
 }
 
 moray_status moray_ldl_factor(moray_ldl *ldl, const double *values, double threshold)

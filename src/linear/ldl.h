@@ -23,6 +23,7 @@ typedef struct moray_ldl_statistics {
     int orders;           // so far
     double planned, done; // multiplications and additions of a factorisation without delays; of the last one
     double entries;       // in the factors, without delays
+    double filled;        // in the factors, with delays, at most so far
     double error; // backward error of the last solve: residual over matrix times solution, in the scale of the factors
     double order_seconds, factor_seconds, solve_seconds; // of the processor, so far
 } moray_ldl_statistics;
@@ -34,7 +35,8 @@ void moray_ldl_free(moray_ldl *ldl);
 
 // Factors the matrix of values[nnz], in the pattern's order. A pivot smaller than threshold (0 to 1/2) times its column
 // is passed on; 1e-8 is fast, 1e-2 is safe. A singular matrix is factored too: see the inertia. Error: MORAY_NUMERIC
-// when the values are not finite, MORAY_MEMORY; then there is nothing to solve with.
+// when the values are not finite, MORAY_NOT_SOLVED when delayed pivots fill the factors to more than 8 times what the
+// pattern says even in an order made for these values, MORAY_MEMORY; then there is nothing to solve with.
 moray_status moray_ldl_factor(moray_ldl *ldl, const double *values, double threshold);
 
 // Solves A X = B for B[columns][n]; X takes its place. Where A is singular and B in its range, X is one of the

@@ -99,7 +99,9 @@ struct moray_ldl {
     double *permuted, *rhs, *solution; // [n]
     size_t panel_room, index_room, kept_room, local_room, panel_used, index_used;
     double threshold;
-    double usual; // work of the first factorisation in this order; 0: none yet
+    double usual;        // work of the first factorisation in this order; 0: none yet
+    double surplus;      // work of those after it above that
+    double most_entries; // in the factors, delayed pivots included
     moray_ldl_inertia inertia;
     moray_ldl_statistics statistics;
 };
@@ -107,7 +109,8 @@ struct moray_ldl {
 double moray_ldl_clock(void); // of this thread
 // Sums up repeated values and equilibrates. False where a value is not finite.
 bool moray_ldl_load(moray_ldl *ldl, const double *values);
-// Lays out the front of a node behind those before and fills it from the matrix and the node's children.
+// Lays out the front of a node behind those before and fills it from the matrix and the node's children. Error:
+// MORAY_NOT_SOLVED when the factors fill up, MORAY_MEMORY.
 moray_status moray_ldl_front_assemble(moray_ldl *ldl, int node);
 // Eliminates what can be eliminated, and leaves the rest to the parent.
 void moray_ldl_front_eliminate(moray_ldl *ldl, int node);

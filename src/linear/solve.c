@@ -142,7 +142,7 @@ moray_status moray_ldl_solve(moray_ldl *ldl, int columns, double *B)
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", ldl->n);
     const double start = moray_ldl_clock();
     double error = 0;
-    for (int j = 0; j < columns; j++)
+    for (int j = 0; j < columns && ldl->n > 0; j++)
         error = fmax(error, solve_one(ldl, B + (size_t)j * (size_t)ldl->n));
     ldl->statistics.error = error;
     ldl->statistics.solves += columns;

@@ -189,7 +189,7 @@ static moray_status set_up(IpoptProblem problem, const struct session *session, 
         return moray_error(MORAY_INPUT, "Ipopt refuses the settings: tolerance %g, %d iterations", settings->tolerance,
                            settings->max_iterations);
     MORAY_TRY(moray_ipopt_set_user(problem, settings));
-    moray_ipopt_logs_open(problem, level, settings->timing && session->info->linear_solver != MORAY_LINEAR_OWN, logs);
+    moray_ipopt_logs_open(problem, level, settings->timing && session->info->linear_solver != MORAY_LINEAR_MORAY, logs);
     return moray_ok();
 }
 
@@ -222,7 +222,7 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
 static moray_status solve_with(struct session *session, moray_iterate *iterate)
 {
     const moray_nlp *nlp = session->nlp;
-    const bool alone = session->info->linear_solver != MORAY_LINEAR_OWN;
+    const bool alone = session->info->linear_solver != MORAY_LINEAR_MORAY;
     struct ipopt_logs logs = {0};
     enum ApplicationReturnStatus code = Internal_Error;
     moray_status status =
@@ -230,9 +230,10 @@ static moray_status solve_with(struct session *session, moray_iterate *iterate)
     if (alone)
         moray_mumps_lock();
     // Ipopt copies the bounds.
-    IpoptProblem problem = CreateIpoptProblem(
-        nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
-        nlp->nnz_jac, nlp->nnz_hess, 0, on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
+    IpoptProblem problem =
+        CreateIpoptProblem(nlp->n, moray_for_ipopt(nlp->x_lower), moray_for_ipopt(nlp->x_upper), nlp->m,
+                           moray_for_ipopt(nlp->g_lower), moray_for_ipopt(nlp->g_upper), nlp->nnz_jac, nlp->nnz_hess, 0,
+                           on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
     if (problem) {
         status = run(problem, session, iterate, &logs, &code);
         FreeIpoptProblem(problem); // writes the rest of the logs
@@ -246,15 +247,16 @@ static moray_status solve_with(struct session *session, moray_iterate *iterate)
     return status;
 }
 
-static moray_status solve_own(struct session *session, moray_iterate *iterate, bool *doubtful)
+static moray_status solve_own(struct session *session, moray_iterate *iterate, moray_status *verdict)
 {
     struct ipopt_linear linear;
     moray_ipopt_linear_open(&linear);
     moray_status status = solve_with(session, iterate);
     moray_ipopt_linear_close(&linear);
     session->info->linear_seconds = linear.seconds;
-    *doubtful = stopped_early(session->info->outcome) && linear.doubtful;
-    return moray_failed(status) ? status : linear.failure;
+    const moray_nlp_outcome outcome = session->info->outcome;
+    *verdict = moray_ipopt_linear_verdict(&linear, stopped_early(outcome) && outcome != MORAY_NLP_INTERRUPTED);
+    return status;
 }
 
 static void copy_iterate(const moray_nlp *nlp, const moray_iterate *from, moray_iterate *to)
@@ -271,21 +273,19 @@ static moray_status solve(struct session *session, moray_iterate *iterate, const
 {
     const moray_nlp_settings *settings = session->settings;
     moray_nlp_info *info = session->info;
-    bool doubtful = false;
     info->linear_solver = settings->linear_solver;
-    if (info->linear_solver == MORAY_LINEAR_OWN && !moray_ipopt_linear_available())
+    if (info->linear_solver == MORAY_LINEAR_MORAY && !moray_ipopt_linear_available())
         info->linear_solver = MORAY_LINEAR_MUMPS;
     if (info->linear_solver == MORAY_LINEAR_MA57)
         moray_ipopt_linear_stand_back();
-    if (info->linear_solver != MORAY_LINEAR_OWN)
+    if (info->linear_solver != MORAY_LINEAR_MORAY)
         return solve_with(session, iterate);
-    MORAY_TRY(solve_own(session, iterate, &doubtful));
-    if (!doubtful)
-        return moray_ok();
+    MORAY_TRY(solve_own(session, iterate, &info->linear_fallback));
+    if (info->linear_fallback.code != MORAY_NOT_SOLVED)
+        return info->linear_fallback;
     copy_iterate(session->nlp, start, iterate);
     session->best_violation = session->best_objective = INFINITY;
     info->linear_solver = MORAY_LINEAR_MUMPS;
-    info->linear_fallback = true;
     return solve_with(session, iterate);
 }
 

@@ -18,7 +18,6 @@ static _Thread_local struct ipopt_linear *current;
 
 // Numbers of MA57's info[], from 0, and what they say.
 enum { needed_fact = 8, needed_ifact = 9, negative = 23, rank = 24 };
-static const double trusted = 1e-7; // backward error of a solution that Ipopt can refine
 enum { fine = 0, no_object = -1, no_factors = -2, singular = 4 };
 
 static double now(void)
@@ -34,7 +33,7 @@ static void set_defaults(double *cntl, ipfint *icntl)
     memset(icntl, 0, 20 * sizeof *icntl);
 }
 
-// The object of this pattern, made if there is none yet. Error: MORAY_MEMORY.
+// The object of this pattern, made if there is none yet. Error: MORAY_NOT_SOLVED, MORAY_MEMORY.
 static moray_status find_object(int n, const moray_pattern *pattern, int *number)
 {
     for (int k = 0; k < current->patterns; k++)
@@ -43,7 +42,7 @@ static moray_status find_object(int n, const moray_pattern *pattern, int *number
             return moray_ok();
         }
     if (current->patterns == ipopt_linear_patterns)
-        return moray_error(MORAY_MEMORY, "Ipopt changes its pattern more than %d times", ipopt_linear_patterns);
+        return moray_error(MORAY_NOT_SOLVED, "Ipopt changes its pattern more than %d times", ipopt_linear_patterns);
     MORAY_TRY(moray_ldl_new(&current->ldl[current->patterns], n, pattern));
     *number = current->patterns++;
     return moray_ok();
@@ -86,7 +85,7 @@ static void factor(ipfint *n, ipfint *entries, double *values, double *fact, ipf
     moray_ldl *ldl = current->ldl[keep[0]];
     const moray_status status = moray_ldl_factor(ldl, values, cntl[0]);
     const moray_ldl_inertia inertia = moray_ldl_inertia_of(ldl);
-    if (status.code == MORAY_MEMORY)
+    if (status.code == MORAY_MEMORY || status.code == MORAY_NOT_SOLVED)
         current->failure = status;
     else // what is not finite is as good as singular: Ipopt then shortens its step or gives up
         info[0] = moray_failed(status) || inertia.zero > 0 ? singular : fine;
@@ -104,7 +103,9 @@ static void solve(ipfint *job, ipfint *n, double *fact, ipfint *fact_size, ipfin
     const double start = now();
     moray_ldl *ldl = current->ldl[ifact[0]];
     const moray_status status = moray_ldl_solve(ldl, *columns, B);
-    current->doubtful = current->doubtful || !(moray_ldl_statistics_of(ldl).error < trusted);
+    const double error = moray_ldl_statistics_of(ldl).error;
+    if (!(error <= current->error)) // a NaN too
+        current->error = error;
     info[0] = moray_failed(status) ? no_factors : fine;
     current->seconds += now() - start;
 }
@@ -139,6 +140,15 @@ void moray_ipopt_linear_close(struct ipopt_linear *linear)
     current = linear->outer;
 }
 
+moray_status moray_ipopt_linear_verdict(const struct ipopt_linear *linear, bool failed)
+{
+    static const double trusted = 1e-7; // backward error of a solution that Ipopt can refine
+    if (moray_failed(linear->failure) || !failed || linear->error < trusted)
+        return linear->failure;
+    return moray_error(MORAY_NOT_SOLVED, "linear systems were solved with backward errors up to %.1e, not below %g",
+                       linear->error, trusted);
+}
+
 void moray_ipopt_linear_stand_back(void)
 {
     LSL_setMA57(NULL, NULL, NULL, NULL, NULL);
@@ -159,6 +169,12 @@ void moray_ipopt_linear_open(struct ipopt_linear *linear)
 void moray_ipopt_linear_close(struct ipopt_linear *linear)
 {
     (void)linear;
+}
+
+moray_status moray_ipopt_linear_verdict(const struct ipopt_linear *linear, bool failed)
+{
+    (void)linear, (void)failed;
+    return moray_ok();
 }
 
 void moray_ipopt_linear_stand_back(void)

@@ -11,9 +11,9 @@ enum { ipopt_linear_patterns = 4 };
 struct ipopt_linear {
     moray_ldl *ldl[ipopt_linear_patterns];
     int patterns;
-    double seconds; // of the processor
-    moray_status failure;
-    bool doubtful;              // a solution was not accurate
+    double seconds;             // of the processor
+    moray_status failure;       // MORAY_NOT_SOLVED: another linear solver may do better; MORAY_MEMORY
+    double error;               // largest backward error of a solution
     struct ipopt_linear *outer; // of a solve within a callback of another one
 };
 
@@ -23,6 +23,10 @@ bool moray_ipopt_linear_available(void);
 // Between the two, calls of Ipopt in this thread come to `linear`. Close frees its factors, not what it has found out.
 void moray_ipopt_linear_open(struct ipopt_linear *linear);
 void moray_ipopt_linear_close(struct ipopt_linear *linear);
+
+// Whether what Ipopt found, or failed at, is worth being found out again with another linear solver: MORAY_NOT_SOLVED
+// says why. Error: MORAY_MEMORY.
+moray_status moray_ipopt_linear_verdict(const struct ipopt_linear *linear, bool failed);
 
 // Lets Ipopt look for an MA57 of its own in libhsl.so.
 void moray_ipopt_linear_stand_back(void);

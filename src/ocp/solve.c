@@ -189,6 +189,7 @@ moray_mesh_record moray_record_of(const moray_solution *solution, double error)
     const struct layout *layout = &solution->transcription->layout;
     moray_mesh_record record = {.variables = layout->columns,
                                 .outcome = solution->info.outcome,
+                                .linear_solver = solution->info.linear_solver,
                                 .iterations = solution->info.iterations,
                                 .seconds = solution->info.seconds,
                                 .error = error,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "options/options.h"
 
-static const char *const linear_solvers[] = {"mumps", "moray", "ma57", NULL}; // by moray_linear_solver
+static const char *const linear_solvers[] = {"moray", "mumps", "ma57", NULL}; // by moray_linear_solver
 
 static const moray_option shell_rows[] = {
     {.section = "solver",
@@ -34,7 +34,7 @@ static const moray_option shell_rows[] = {
      .type = MORAY_OPTION_CHOICE,
      MORAY_AT(moray_common, linear_solver),
      .choices = linear_solvers,
-     .help = "factorisation inside Ipopt: MUMPS, our own (fast on small fronts; on trial), or an MA57 in libhsl.so"},
+     .help = "factorisation inside Ipopt: our own, MUMPS, or an MA57 in libhsl.so"},
     {.section = "ipopt",
      .key = "ipopt.KEY",
      .argument = "VALUE",

@@ -8,7 +8,7 @@
 
 // ---- Options -------------------------------------------------------------------------------------------------------
 
-_Static_assert(MORAY_LINEAR_MUMPS == 0 && MORAY_LINEAR_OWN == 1 && MORAY_LINEAR_MA57 == 2,
+_Static_assert(MORAY_LINEAR_MORAY == 0 && MORAY_LINEAR_MUMPS == 1 && MORAY_LINEAR_MA57 == 2,
                "the choices of linear_solver in this order");
 
 static const moray_option own_rows[] = {

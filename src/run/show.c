@@ -87,6 +87,7 @@ static int solver_rows(const app_run *run, moray_table_row *rows)
         {.label = "variables", .value = {size.variables}},
         {.label = "constraints", .value = {size.constraints}},
         {.label = "iterations", .value = {info->iterations}},
+        {.label = "linear solver", .text = moray_linear_solver_text(info->linear_solver)},
         {.label = "solver time", .value = {info->seconds}, .unit = "s"},
         {.label = "of it in the problem's functions", .value = {info->evaluation_seconds}, .unit = "s"}};
     memcpy(rows, filled, sizeof filled);

@@ -18,6 +18,7 @@ void moray_solver_to_json(moray_json *json, const moray_solution *solution)
     moray_json_number(json, "time_s", info->seconds);
     moray_json_number(json, "eval_time_s", info->evaluation_seconds);
     moray_json_text(json, "linear_solver", moray_linear_solver_text(info->linear_solver));
+    moray_json_text(json, "linear_fallback", moray_failed(info->linear_fallback) ? info->linear_fallback.text : NULL);
 }
 
 void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate)
@@ -44,9 +45,10 @@ void moray_solver_line(const moray_solution *solution, const char *scheme, int i
 {
     const moray_nlp_info *info = moray_solution_info(solution);
     const moray_nlp_size n = moray_solution_size(solution);
-    snprintf(text, size, "%s, %d intervals: %s in %d iterations, %.2f s (%d variables, %d constraints)", scheme,
+    snprintf(text, size, "%s, %d intervals: %s in %d iterations, %.2f s (%d variables, %d constraints)%s%s", scheme,
              intervals, moray_nlp_outcome_text(info->outcome), info->iterations, info->seconds, n.variables,
-             n.constraints);
+             n.constraints, moray_failed(info->linear_fallback) ? "; with MUMPS, since " : "",
+             info->linear_fallback.text);
 }
 
 void moray_certificate_line(const moray_certificate *c, char *text, size_t size)

@@ -283,7 +283,7 @@ static moray_status factor_arrow(moray_ldl *ldl, double shaft)
     for (int i = 0; i < SHAFT; i++) {
         value[3 * i] = 1;
         value[3 * i + 1] = shaft;
-        value[3 * i + 2] = 1 + i;
+        value[3 * i + 2] = 0.1 * (1 + i);
     }
     MORAY_TRY(moray_ldl_factor(ldl, value, 0.1));
     return moray_ldl_solve(ldl, 1, x);
@@ -299,10 +299,8 @@ static moray_status factors(void)
         row[3 * i + 2] = 2 * SHAFT;
     }
     moray_status status = moray_ldl_new(&ldl, 2 * SHAFT + 1, &(moray_pattern){3 * SHAFT, row, col});
-    if (!moray_failed(status))
-        status = factor_arrow(ldl, 1);
-    if (!moray_failed(status))
-        status = factor_arrow(ldl, 1e-3);
+    for (int k = 0; k < 3 && !moray_failed(status); k++)
+        status = factor_arrow(ldl, k == 0 ? 1 : 1e-3);
     if (!moray_failed(status) && moray_ldl_statistics_of(ldl).orders != 2)
         status = moray_error(MORAY_NUMERIC, "nothing was outgrown");
     moray_ldl_free(ldl);

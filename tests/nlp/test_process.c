@@ -146,7 +146,7 @@ static double solve(chain *c, const moray_nlp_settings *settings, moray_status *
 static double solve_with(const char *key, const char *value, moray_status *status, moray_nlp_info *info)
 {
     chain c = chain_new(40);
-    const moray_ipopt_option option = {key, value};
+    const moray_key_value option = {key, value};
     moray_nlp_settings settings = moray_nlp_settings_default();
     settings.ipopt = &option;
     settings.n_ipopt = key != NULL;
@@ -359,7 +359,7 @@ static void test_memory(void)
     }
     for (int megabytes = 1; megabytes <= 16; megabytes *= 2)
         for (int own = 0; own < 2; own++) {
-            const moray_linear_solver solver = own ? MORAY_LINEAR_OWN : MORAY_LINEAR_MUMPS;
+            const moray_linear_solver solver = own ? MORAY_LINEAR_MORAY : MORAY_LINEAR_MUMPS;
             const int code = code_within(megabytes, 2500, solver);
             CHECK(code == MORAY_MEMORY || (megabytes >= 4 && code == MORAY_OK), "%s within %d MB: %s",
                   moray_linear_solver_text(solver), megabytes,
@@ -375,6 +375,6 @@ int main(void)
     test_streams();
     test_option_file();
     test_threads(MORAY_LINEAR_MUMPS);
-    test_threads(MORAY_LINEAR_OWN);
+    test_threads(MORAY_LINEAR_MORAY);
     return tap_done();
 }

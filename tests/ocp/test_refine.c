@@ -11,7 +11,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 100;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 // ---- Hypersensitive problem (Rao & Mease 1999): x' = -x^3 + u, minimise the integral of (x^2 + u^2)/2, x(0) = 1.5,
 //      x(tf) = 1. For long times the Hamiltonian vanishes, so the costate is -x^3 +- x sqrt(x^4 + 1) on the way in and

@@ -11,7 +11,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 200;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 static moray_solution *solve(moray_ocp *ocp, const char *scheme, int intervals, const moray_guess *guess)
 {

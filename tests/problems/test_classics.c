@@ -9,7 +9,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 40;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 // Too long for here; problems/classics solves them.
 static const char *const long_ones[] = {

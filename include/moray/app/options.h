@@ -9,7 +9,8 @@
 #include <stdio.h>
 
 #include "moray/export.h"
-#include "moray/nlp.h"
+#include "moray/key_value.h"
+#include "moray/status.h"
 
 MORAY_BEGIN
 
@@ -50,7 +51,7 @@ enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };
 enum { MORAY_IPOPT_OPTIONS = 32, MORAY_IPOPT_SIZE = 128 };
 typedef struct moray_ipopt_list {
     int n;
-    moray_ipopt_option at[MORAY_IPOPT_OPTIONS];       // [n], into text
+    moray_key_value at[MORAY_IPOPT_OPTIONS];          // [n], into text
     char text[MORAY_IPOPT_OPTIONS][MORAY_IPOPT_SIZE]; // key, 0, value
 } moray_ipopt_list;
 

@@ -64,11 +64,7 @@ typedef struct moray_heading {
     moray_heading_task *task;
 } moray_heading;
 
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_heading_free.
-MORAY_API moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec);
-MORAY_API void moray_heading_free(moray_heading *problem);
-
-// A plan from t = 0 on that begins in the straight straight of its gait.
+// A plan from t = 0 on that begins in the straight motion of its gait.
 typedef struct moray_heading_plan {
     moray_heading problem;
     moray_solution *solution;
@@ -79,8 +75,8 @@ typedef struct moray_heading_plan {
 // Solves; start and undulation of the spec are set by this, t0 is 0. On the averaged plant the gait is found within the
 // limits, from `gait` on. Elsewhere it is `gait`, whatever the limits of gait and power: the undulation's phase omega t
 // goes round so often that a free omega has a local optimum every fraction of a percent. Starts from the plan `from`
-// (of any model, averaged or not), or with NULL from the reference as though it were followed. Errors: those of
-// moray_heading_new, moray_straight_motion_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or
+// (of any model, averaged or not), or with NULL from the reference as though it were followed. Errors:
+// MORAY_INPUT, those of moray_straight_motion_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or
 // not. Free with moray_heading_plan_free.
 MORAY_API moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
                                                const moray_settings *settings, const moray_gait *gait,

@@ -52,11 +52,7 @@ typedef struct moray_path_problem {
     moray_path_task *task;
 } moray_path_problem;
 
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_path_problem_free.
-MORAY_API moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
-MORAY_API void moray_path_problem_free(moray_path_problem *problem);
-
-// A plan from t = 0 on that begins in the straight straight of its gait; see moray_heading_plan.
+// A plan from t = 0 on that begins in the straight motion of its gait; see moray_heading_plan.
 typedef struct moray_path_plan {
     moray_path_problem problem;
     moray_solution *solution;

@@ -5,7 +5,7 @@
 #define MORAY_SNAKE_TRIAL_H
 
 #include "moray/export.h"
-#include "moray/snake/gait_problem.h"
+#include "moray/snake/model.h"
 #include "moray/app/results.h"
 #include "moray/snake/swim.h"
 
@@ -35,7 +35,7 @@ typedef struct moray_gait_trial {
     moray_status why[2];
 } moray_gait_trial;
 
-// Tries the gait of `model` on both. Error: those of moray_swim_steady.
+// Tries the gait of `model` on both. Error: MORAY_INPUT (a series); those of moray_swim_steady.
 MORAY_API moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *gait, moray_model model,
                                             moray_gait_trial *trial);
 

@@ -10,7 +10,7 @@
 
 MORAY_BEGIN
 
-// The problem of turning in the least time: at its end heading and turning are those of the straight straight, and the
+// The problem of turning in the least time: at its end heading and turning are those of the straight motion, and the
 // offset is back at rest. The heading swings with every stroke, and the stroke that the turn ends in is free: what is
 // to be reached is the heading without its undulation, factors of cos and sin of omega t at whatever time it ends.
 typedef struct moray_turn_task moray_turn_task;
@@ -34,11 +34,7 @@ typedef struct moray_turn {
     moray_turn_task *task;
 } moray_turn;
 
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_turn_free.
-MORAY_API moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec);
-MORAY_API void moray_turn_free(moray_turn *problem);
-
-// A plan from t = 0, p = 0 and mean heading 0 on, in the straight straight of its gait; see moray_heading_plan.
+// A plan from t = 0, p = 0 and mean heading 0 on, in the straight motion of its gait; see moray_heading_plan.
 typedef struct moray_turn_plan {
     moray_turn problem;
     moray_solution *solution;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "snake/gait/problem.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { most_states = MORAY_BODY_STATES + 2 * 512 };
+enum { most_states = MORAY_BODY_STATES + 2 * (MORAY_MOST_LINKS - 1) };
 
 static moray_gait gait_of(const moray_gait_problem *problem, const double *s)
 {
@@ -62,6 +63,10 @@ moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const m
                                       const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution)
 {
     const int nx = problem->size.nx;
+    MORAY_TRY(moray_gait_without_series(gait, "the start of an optimisation"));
+    if (problem->size.ns != MORAY_GAIT_PARAMETERS)
+        return moray_error(MORAY_INPUT, "a problem of %d parameters does not start from a gait, which has %d",
+                           problem->size.ns, MORAY_GAIT_PARAMETERS);
     double s[MORAY_GAIT_PARAMETERS], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
     if (!x)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", orbit->n);
@@ -79,9 +84,10 @@ moray_status moray_gait_problem_continue(const moray_gait_problem *problem, cons
                                          const moray_solution *from, const double *s, moray_solution **solution)
 {
     const int nx = problem->size.nx, n = 4 * settings->intervals + 1;
-    double *time = calloc((size_t)(n * (1 + nx)), sizeof *time), *x = time + n, t0, tf;
+    double *time = calloc((size_t)(n * (1 + nx)), sizeof *time), t0, tf;
     if (!time)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", n);
+    double *x = time + n;
     moray_solution_times(from, 0, &t0, &tf);
     for (int k = 0; k < n; k++) {
         time[k] = t0 + (tf - t0) * k / (n - 1);

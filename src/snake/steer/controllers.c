@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "moray/snake/orbit.h"
+#include "snake/steer/problems.h"
 
 // ---- Straight swimming ---------------------------------------------------------------------------------------------
 
@@ -116,9 +117,9 @@ static moray_offset blind(double t, const void *self)
     return moray_plan_offset(self, t);
 }
 
-moray_swim_controller moray_plan_controller(const moray_plan *plan)
+moray_swim_controller moray_plan_controller(moray_plan *plan)
 {
-    return (moray_swim_controller){.offset = blind, .self = (void *)plan};
+    return (moray_swim_controller){.offset = blind, .self = plan};
 }
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------

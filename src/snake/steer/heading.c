@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "moray/snake/heading.h"
+#include "snake/steer/problems.h"
 
 struct moray_heading_task {
     moray_heading_spec spec;

@@ -5,6 +5,7 @@
 
 #include "snake/steer/guess.h"
 #include "moray/snake/path.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES };
 

@@ -4,6 +4,7 @@
 #include <tgmath.h>
 
 #include "moray/snake/path.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES };
 

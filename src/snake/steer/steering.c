@@ -8,6 +8,7 @@
 
 #include "base/numeric_map.h"
 #include "snake/swim/limits.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2 };
 

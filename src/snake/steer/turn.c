@@ -7,6 +7,7 @@
 #include <tgmath.h>
 
 #include "snake/steer/guess.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES };
 

@@ -25,7 +25,7 @@ static const moray_option columns[] = {
     MORAY_GAIT_OPTIONS(line_values, gait),
 };
 _Static_assert(sizeof columns / sizeof *columns <= MOST_COLUMNS, "a column each");
-static const moray_options table = {.row = (moray_option *)columns, .n = sizeof columns / sizeof *columns};
+static const moray_options table = {.row = columns, .n = sizeof columns / sizeof *columns};
 
 typedef struct {
     moray_csv csv;

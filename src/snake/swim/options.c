@@ -39,7 +39,7 @@ static const moray_option robot_rows[] = {
      .flag = "links",
      .type = MORAY_OPTION_INT,
      MORAY_AT(moray_snake_options, robot.links),
-     SPAN(2, 1000),
+     SPAN(2, MORAY_MOST_LINKS),
      .help = "number of links N"},
     {.section = "problem",
      .key = "model",

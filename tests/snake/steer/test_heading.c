@@ -12,6 +12,7 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/closed_loop.h"
+#include "snake/steer/problems.h"
 
 // ---- References ----------------------------------------------------------------------------------------------------
 
@@ -93,9 +94,9 @@ static void test_refused(const char *folder)
 {
     static const struct {
         const char *text, *says;
-    } files[] = {{"time,heading\n0,1\n", "t_s,heading_deg"}, {"t_s,heading_deg\n0,1\n1;2\n", ":3:"},
-                 {"t_s,heading_deg\n2,1\n1,2\n", "ascend"},  {"t_s,heading_deg\n0,1,2\n", ":2:"},
-                 {"t_s,heading_deg\n\n", "a line of values"},       {"t_s,heading_deg\n0,nan\n", "finite"}};
+    } files[] = {{"time,heading\n0,1\n", "t_s,heading_deg"},  {"t_s,heading_deg\n0,1\n1;2\n", ":3:"},
+                 {"t_s,heading_deg\n2,1\n1,2\n", "ascend"},   {"t_s,heading_deg\n0,1,2\n", ":2:"},
+                 {"t_s,heading_deg\n\n", "a line of values"}, {"t_s,heading_deg\n0,nan\n", "finite"}};
     char name[200];
     refuse("steps:", MORAY_INPUT, "no points");
     refuse("steps:2", MORAY_INPUT, "'2'");
@@ -193,7 +194,7 @@ static double steering_effort(const moray_heading_plan *plan, double limit)
 // The objective of the plan is that of the swimmer, all joints controlled by (34), who steers by it.
 static void test_objective(const moray_heading_plan *plan, const moray_heading_spec *spec)
 {
-    const moray_plan steer = {plan->solution, 1};
+    moray_plan steer = {plan->solution, 1};
     const moray_swim_controller controller = moray_plan_controller(&steer);
     moray_swim_closed_loop closed_loop;
     const moray_swim_closed_loop_spec how = {.robot = &spec->robot,

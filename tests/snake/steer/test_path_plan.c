@@ -9,6 +9,7 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/path.h"
 #include "moray/snake/closed_loop.h"
+#include "snake/steer/problems.h"
 
 // ---- The problem ---------------------------------------------------------------------------------------------------
 

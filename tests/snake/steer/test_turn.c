@@ -8,6 +8,7 @@
 
 #include "moray/snake/trial.h"
 #include "moray/snake/turn.h"
+#include "snake/steer/problems.h"
 
 static moray_turn_spec spec_of(moray_model model, bool averaged, int links)
 {

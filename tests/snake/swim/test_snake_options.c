@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "arguments.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -19,13 +20,11 @@ static char path[] = "/tmp/moray-robot-XXXXXX";
 
 static moray_status parse(settings *s, const char *const arguments[8])
 {
-    char *argv[10] = {"test"};
-    int argc = 1;
-    for (int i = 0; i < 8 && arguments[i]; i++)
-        argv[argc++] = (char *)arguments[i];
+    command_line line;
+    command_set(&line, "test", arguments, 8);
     moray_request request;
     *s = (settings){.common = moray_common_default(), .snake = moray_snake_options_default()};
-    return moray_app_parse(&program, argc, argv, s, &request);
+    return moray_app_parse(&program, line.argc, line.argv, s, &request);
 }
 #define PARSE(s, ...) parse((s), (const char *const[8]){__VA_ARGS__})
 
