@@ -39,7 +39,8 @@ static moray_status examine_phase(struct verdict *v, int p, const moray_integrat
     const struct phase_layout *layout = &t->layout.phase[p];
     for (int k = 0; k < layout->mesh.intervals; k++) {
         double outside = 0;
-        const double T = t->phase[p].tf - t->phase[p].t0, error = moray_examiner_interval(&e, &layout->interval[k], &outside);
+        const double T = t->phase[p].tf - t->phase[p].t0,
+                     error = moray_examiner_interval(&e, &layout->interval[k], &outside);
         const double middle = t->phase[p].t0 + T * (layout->mesh.edge[k] + layout->mesh.edge[k + 1]) / 2;
         moray_find(&v->mesh, error, p, middle);
         moray_find(&v->between, outside, p, middle);
@@ -109,7 +110,8 @@ static void judge(struct verdict *v, const char *what, double value, double limi
 static void judge_finding(struct verdict *v, const char *what, const struct finding *f, double limit)
 {
     char where[where_size];
-    snprintf(where, sizeof where, "phase %.100s near t = %.6g", v->solution->transcription->ocp->phase[f->p].name, f->time);
+    snprintf(where, sizeof where, "phase %.100s near t = %.6g", v->solution->transcription->ocp->phase[f->p].name,
+             f->time);
     judge(v, what, f->value, limit, where);
 }
 

@@ -22,8 +22,8 @@ void moray_find(struct finding *finding, double value, int p, double time);
 moray_status moray_resimulate(struct examiner *e, const moray_integrator *integrator, struct finding *shooting,
                               double *composed);
 
-// Mean departure of the Hamiltonian of phase p from what H' = dH/dt makes of it, relative to the sum of the sizes of its
-// terms, and when it is largest. *autonomous: no function changes with time. Error: MORAY_MEMORY.
+// Mean departure of the Hamiltonian of phase p from what H' = dH/dt makes of it, relative to the sum of the sizes of
+// its terms, and when it is largest. *autonomous: no function changes with time. Error: MORAY_MEMORY.
 moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct finding *drift, bool *autonomous);
 
 #endif

@@ -60,13 +60,13 @@ static void find_held(struct bend *b)
     const moray_iterate *at = &b->w->solution->iterate;
     for (int j = 0; j < nlp->n; j++) {
         const double low = nlp->x_lower[j], high = nlp->x_upper[j], size = b->column[j], weight = b->weight[j];
-        b->held[j] = low == high ||
-                     (low > -MORAY_INFINITY && holds(b, at->z_lower[j], at->x[j] - low, size, weight)) ||
+        b->held[j] = low == high || (low > -MORAY_INFINITY && holds(b, at->z_lower[j], at->x[j] - low, size, weight)) ||
                      (high < MORAY_INFINITY && holds(b, at->z_upper[j], high - at->x[j], size, weight));
     }
     for (int i = 0; i < nlp->m; i++) {
         const double low = nlp->g_lower[i], high = nlp->g_upper[i], size = b->row[i], weight = b->weight[nlp->n + i];
-        b->held[nlp->n + i] = low != high && !(low > -MORAY_INFINITY && holds(b, -at->lambda[i], b->g[i] - low, size, weight)) &&
+        b->held[nlp->n + i] = low != high &&
+                              !(low > -MORAY_INFINITY && holds(b, -at->lambda[i], b->g[i] - low, size, weight)) &&
                               !(high < MORAY_INFINITY && holds(b, at->lambda[i], high - b->g[i], size, weight));
     }
 }

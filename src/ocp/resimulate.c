@@ -35,8 +35,8 @@ static double difference(const struct examiner *e, const double *x, const double
 }
 
 // One pass over the intervals, the integrals along with the states: from every start anew, or on from where it is.
-static moray_status run(struct examiner *e, const moray_integrator *integrator, bool anew, double *x, const double *time,
-                        struct finding *worst)
+static moray_status run(struct examiner *e, const moray_integrator *integrator, bool anew, double *x,
+                        const double *time, struct finding *worst)
 {
     const struct phase_layout *layout = &e->solution->transcription->layout.phase[e->p];
     const double *found = e->solution->iterate.x;

@@ -33,7 +33,8 @@ static double span_of(const struct witness *e, int p)
 static moray_status allocate_phase(struct witness *e, int p)
 {
     const moray_map *map = cache_of(e, p)->map;
-    const size_t n_in = (size_t)map->n_in, n_out = (size_t)map->n_out, nq = (size_t)e->solution->transcription->ocp->phase[p].nq;
+    const size_t n_in = (size_t)map->n_in, n_out = (size_t)map->n_out,
+                 nq = (size_t)e->solution->transcription->ocp->phase[p].nq;
     const size_t entries = (size_t)layout_of(e, p)->nodes * n_in * n_out;
     struct phase_witness *phase = &e->phase[p];
     phase->size = calloc(n_in + n_out + nq + 2 * entries, sizeof *phase->size);
@@ -130,8 +131,9 @@ static moray_status difference_phase(struct witness *e, int p)
     }
     for (int n = 0; n < layout_of(e, p)->nodes && !moray_failed(status); n++)
         if (layout_of(e, p)->node[n].collocated)
-            status = moray_difference_columns(cache->map, cache->in + (size_t)n * n_in, step,
-                                              e->phase[p].jac + (size_t)n * block, e->phase[p].doubt + (size_t)n * block);
+            status =
+                moray_difference_columns(cache->map, cache->in + (size_t)n * n_in, step,
+                                         e->phase[p].jac + (size_t)n * block, e->phase[p].doubt + (size_t)n * block);
     free(step);
     return status;
 }
@@ -357,8 +359,7 @@ void moray_witness_rows(const struct witness *e, double *size)
         const struct phase_layout *layout = layout_of(e, p);
         for (int n = 0; n < layout->nodes; n++)
             if (layout->node[n].collocated)
-                memcpy(size + layout->node[n].path, e->phase[p].out_size + phase->nx,
-                       (size_t)phase->nc * sizeof *size);
+                memcpy(size + layout->node[n].path, e->phase[p].out_size + phase->nx, (size_t)phase->nc * sizeof *size);
         for (int k = 0; k < layout->mesh.intervals; k++)
             for (int i = 0; i < layout->interval[k].scheme->points - 1; i++)
                 memcpy(size + layout->interval[k].defect + i * phase->nx, e->phase[p].size,

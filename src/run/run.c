@@ -179,10 +179,10 @@ static void say_failure(const app_run *run)
     const char *advice =
         !(c->derivatives <= MORAY_LIMIT_DERIVATIVES && c->directions <= MORAY_LIMIT_DIRECTIONS)
             ? "the derivatives are wrong at the solution, or it lies on a kink of a function: see --check"
-        : !(c->kkt <= MORAY_LIMIT_KKT)       ? "the solver stopped short of an optimum: try a smaller tol, or bounds and "
-                                               "guesses of the sizes that occur"
-        : !(c->mesh_error <= run->mesh_tol)  ? "the mesh is too coarse: try more refinements, intervals or stages"
-                                             : "try more intervals or refinements";
+        : !(c->kkt <= MORAY_LIMIT_KKT) ? "the solver stopped short of an optimum: try a smaller tol, or bounds and "
+                                         "guesses of the sizes that occur"
+        : !(c->mesh_error <= run->mesh_tol) ? "the mesh is too coarse: try more refinements, intervals or stages"
+                                            : "try more intervals or refinements";
     fprintf(stderr, "%s: certificate failed: %s. %s\n", run->name, c->why, advice);
 }
 

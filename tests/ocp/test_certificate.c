@@ -10,7 +10,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 40;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 // ---- A cart with cubic drag, x' = v, v' = u - v^3, from rest to rest over 1 m in 2 s; J = integral of u^2 + v^4 / 4.
 //      Derivatives by hand, with a fault ----
@@ -58,7 +58,8 @@ struct cart {
     const char *scheme;
     int intervals;
     enum fault fault;
-    double barrier, fastest; // where the solver's barrier ends, 0: at nothing; bound of the path constraint v <= fastest
+    double barrier,
+        fastest; // where the solver's barrier ends, 0: at nothing; bound of the path constraint v <= fastest
 };
 
 static moray_solution *solve_cart(struct cart *cart, moray_ocp **ocp)
@@ -91,7 +92,7 @@ static moray_solution *solve_cart(struct cart *cart, moray_ocp **ocp)
     settings.intervals = cart->intervals;
     char target[20];
     snprintf(target, sizeof target, "%g", cart->barrier);
-    const moray_ipopt_option end = {"mu_target", target};
+    const moray_key_value end = {"mu_target", target};
     settings.ipopt = &end;
     settings.n_ipopt = cart->barrier > 0;
     CHECK_OK(moray_ocp_new(ocp, &(moray_ocp_spec){.phases = 1, .phase = &track, .endpoint = total}), "cart");

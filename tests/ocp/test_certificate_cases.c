@@ -11,7 +11,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 40;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 static moray_solution *solve(const moray_ocp *ocp, const moray_settings *settings, moray_certificate *certificate)
 {
@@ -191,8 +191,8 @@ static void test_no_length(void)
 
 int main(void)
 {
-    const struct dash dashes[] = {{1, 1, 0},          {1e-6, 1e-6, 0}, {1e-9, 1e-9, 0}, {1e-9, 1, 0}, {1e6, 1e6, 0},
-                                  {1e9, 1e3, 0}, {1, 1, 1e4},     {1, 1, 1e6}};
+    const struct dash dashes[] = {{1, 1, 0},     {1e-6, 1e-6, 0}, {1e-9, 1e-9, 0}, {1e-9, 1, 0},
+                                  {1e6, 1e6, 0}, {1e9, 1e3, 0},   {1, 1, 1e4},     {1, 1, 1e6}};
     test_maximum();
     test_kink();
     for (unsigned k = 0; k < sizeof dashes / sizeof *dashes; k++)
