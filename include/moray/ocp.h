@@ -354,7 +354,8 @@ typedef struct moray_certificate {
     double gap;          // what the slacks of active bounds and rows, times their multipliers, hold the objective from
                          // its optimum, relative as kkt. Limit MORAY_LIMIT_GAP
     double curvature;    // how far the Lagrangian bends down along what the active constraints leave free: relative,
-                         // per square of sizes; 0 at a minimum, strict or not. Limit MORAY_LIMIT_CURVATURE
+                         // per square of sizes; 0 at a minimum, strict or not; NAN where no factorisation tells. Limit
+                         // MORAY_LIMIT_CURVATURE
     double composed;     // as resimulation, each phase in one go from its start: for information, as unstable
                          // equations make it as large as they like
     char why[400];       // one sentence on the first number that fails, with its limit and where; empty if none does

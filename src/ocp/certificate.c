@@ -133,8 +133,9 @@ static void judge_optimality(struct verdict *v)
     judge(v, "the objective could still improve, relative to its size", o->improvement, MORAY_LIMIT_KKT, where);
     judge(v, "multipliers times slacks, relative to the objective's size", o->gap, MORAY_LIMIT_GAP,
           "the solver stopped inside the constraints");
-    judge(v, "the Lagrangian bends down along the active constraints", v->c->curvature, MORAY_LIMIT_CURVATURE,
-          "a saddle or a maximum");
+    if (!isnan(v->c->curvature))
+        judge(v, "the Lagrangian bends down along the active constraints", v->c->curvature, MORAY_LIMIT_CURVATURE,
+              "a saddle or a maximum");
 }
 
 // Whether costates at the nodes are of an order that makes the Hamiltonian a judge.

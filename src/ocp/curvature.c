@@ -12,9 +12,9 @@
 
 static const double regularity = 1e-10; // r: dependent constraints are no saddle
 static const double least_shift = 1e-5, most_shift = 1e7;
-static const double held_part = 1e-3; // of a slack, that a multiplier outweighs where its bound is held
-static const double safe = 1e-2;      // threshold of the factorisation
-enum { turns = 6 };                   // of inverse iteration
+static const double held_part = 1e-3;         // of a slack, that a multiplier outweighs where its bound is held
+static const double safe = 1e-2, fast = 1e-8; // thresholds of the factorisation; the second where the first fills it
+enum { turns = 6 };                           // of inverse iteration
 
 struct bend {
     const struct witness *w;
@@ -111,7 +111,10 @@ static void fill(struct bend *b, double shift)
 static moray_status factor(struct bend *b, double shift, bool *convex)
 {
     fill(b, shift);
-    MORAY_TRY(moray_ldl_factor(b->ldl, b->values, safe));
+    moray_status status = moray_ldl_factor(b->ldl, b->values, safe);
+    if (status.code == MORAY_NOT_SOLVED)
+        status = moray_ldl_factor(b->ldl, b->values, fast);
+    MORAY_TRY(status);
     *convex = moray_ldl_inertia_of(b->ldl).negative <= b->nlp->m;
     return moray_ok();
 }
@@ -203,7 +206,11 @@ static moray_status examine(struct bend *b, double *worst, double *direction)
         return moray_ok();
     }
     find_held(b);
-    MORAY_TRY(search(b, worst));
+    const moray_status status = search(b, worst);
+    if (status.code == MORAY_NOT_SOLVED)
+        *worst = NAN;
+    else
+        MORAY_TRY(status);
     for (int j = 0; direction && j < nlp->n; j++)
         direction[j] = *worst > 0 ? b->d[j] * b->column[j] : 0;
     return moray_ok();
