@@ -105,10 +105,8 @@ static void print_line(const struct line *line)
 {
     const struct classic_result *r = &line->result;
     const moray_certificate *c = &r->certificate;
-    char failed[100], difference[32] = "-", history[100];
-    snprintf(failed, sizeof failed, "%smesh error %.0e, re-simulation %.0e, between nodes %.0e, KKT %.0e",
-             line->classic->fixed_mesh ? "fixed mesh: " : "FAILS: ", c->mesh_error, c->resimulation, c->between_nodes,
-             c->kkt);
+    char failed[500], difference[32] = "-", history[100];
+    snprintf(failed, sizeof failed, "%s%s", line->classic->fixed_mesh ? "fixed mesh: " : "FAILS: ", c->why);
     if (!isnan(r->difference))
         snprintf(difference, sizeof difference, "%.1e", r->difference);
     history_text(r, history, sizeof history);

@@ -154,20 +154,18 @@ static moray_status judge(const app_run *run)
 
 static const double doubtful = 1e-4; // difference that rounding does not explain
 
-// What to do about the number that fails the certificate.
+// What failed, and what to do about it.
 static void say_failure(const app_run *run)
 {
     const moray_certificate *c = &run->certificate;
-    const double loose = 100 * run->mesh_tol, tight = 100 * run->common.tol;
-    const char *text =
-        c->derivatives > MORAY_WORST_DERIVATIVES
+    const char *advice =
+        !(c->derivatives <= MORAY_LIMIT_DERIVATIVES && c->directions <= MORAY_LIMIT_DIRECTIONS)
             ? "the derivatives are wrong at the solution, or it lies on a kink of a function: see --check"
-        : c->kkt > tight                ? "the solver stopped short of an optimum: try a smaller tol"
-        : c->mesh_error > run->mesh_tol ? "the mesh is too coarse: try more refinements, intervals or stages"
-        : c->between_nodes > loose      ? "limits are passed between the nodes: try more intervals"
-                                        : "the simulation departs from the solution: try more intervals "
-                                          "or, where the equations are unstable, distrust it";
-    fprintf(stderr, "%s: certificate failed: %s\n", run->name, text);
+        : !(c->kkt <= MORAY_LIMIT_KKT) ? "the solver stopped short of an optimum: try a smaller tol, or bounds and "
+                                         "guesses of the sizes that occur"
+        : !(c->mesh_error <= run->mesh_tol) ? "the mesh is too coarse: try more refinements, intervals or stages"
+                                            : "try more intervals or refinements";
+    fprintf(stderr, "%s: certificate failed: %s. %s\n", run->name, c->why, advice);
 }
 
 static moray_status check(const app_run *run)

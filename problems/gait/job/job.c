@@ -18,7 +18,7 @@ static const moray_option shared[] = {
     GAIT_LIMIT("joint_rate", joint_rate, NULL,
                "rate amplitude of the joints (m/s; deg/s with the first-principles model)"),
     GAIT_LIMIT("joint_effort", joint_effort, NULL,
-               "peak joint force at the nodes of the mesh, which then has 60 intervals (N; torque in N m with the "
+               "peak joint force at the nodes of the mesh, which then has 80 intervals (N; torque in N m with the "
                "complex model)"),
     {.section = "problem",
      .key = "joints",
@@ -38,7 +38,7 @@ static const moray_option shared[] = {
 static const moray_option continuation = MORAY_CONTINUE(gait_job, from_file);
 
 // A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
-enum { usual_intervals = 12, effort_intervals = 60 };
+enum { usual_intervals = 12, effort_intervals = 80 };
 
 gait_job gait_job_defaults(const gait_program *program)
 {
