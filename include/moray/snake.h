@@ -10,6 +10,7 @@
 #include "moray/snake/gait_problem.h"
 #include "moray/snake/gait_search.h"
 #include "moray/snake/heading.h"
+#include "moray/snake/ladder.h"
 #include "moray/snake/model.h"
 #include "moray/snake/options.h"
 #include "moray/snake/orbit.h"

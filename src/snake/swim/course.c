@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 #include "moray/control/path.h"
-#include "moray/snake/orbit.h"
+#include "snake/swim/orbit.h"
 #include "snake/swim/steady.h"
 
 static const double ON_COURSE = 1e-6; // [rad]
@@ -142,6 +142,12 @@ static moray_status match_by(trier *by, moray_gait *gait, const aim *to, moray_s
     }
     return moray_error(MORAY_NOT_SOLVED, "no omega found at which the %s is %.6g %s: it is %.6g at omega = %.6g rad/s",
                        to->name, to->target, to->unit, to->is_power ? steady->power : steady->speed, gait->omega);
+}
+
+moray_status moray_orbit_match_power(moray_orbit *orbit, moray_gait *gait, double power, moray_steady *steady)
+{
+    trier by = {.orbit = orbit};
+    return match_by(&by, gait, &(aim){"mean power", "W", power, 2, true}, steady);
 }
 
 static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
