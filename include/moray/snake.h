@@ -7,6 +7,7 @@
 #include "moray/snake/closed_loop.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/gait_input.h"
+#include "moray/snake/gait_over.h"
 #include "moray/snake/gait_problem.h"
 #include "moray/snake/gait_search.h"
 #include "moray/snake/heading.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "moray/parallel.h"
-#include "snake/swim/orbit.h"
+#include "moray/snake/orbit.h"
 
 // ---- The rungs -----------------------------------------------------------------------------------------------------
 
@@ -126,9 +126,11 @@ static moray_status swim_baseline(place *at, moray_steady *steady)
 static moray_status swim_gait(place *at, moray_gait *gait, double power, moray_steady *steady)
 {
     moray_gait tried = *gait;
-    if (!gait->series && !moray_failed(moray_orbit_match_power(at->orbit, &tried, power, steady)) &&
+    moray_orbit_result found;
+    if (!gait->series && !moray_failed(moray_orbit_match_power(at->orbit, &tried, power, &found)) &&
         !moray_failed(check_stable(at->orbit))) {
-        *gait = tried;
+        *gait = found.gait;
+        *steady = found.steady;
         return moray_ok();
     }
     return moray_swim_match_power(&at->setup, gait, at->spec->course, power, steady);

@@ -46,8 +46,4 @@ moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample 
 // Means over the period and peaks over samples of every degree; sets orbit->peak. Error: MORAY_NUMERIC.
 moray_status moray_orbit_measure(moray_orbit *orbit, moray_steady *steady);
 
-// Rescales gait->omega until the mean power on the orbit is `power` > 0 [W], to 1e-8 of it. Error: those of
-// moray_orbit_solve; MORAY_NOT_SOLVED when no omega is found.
-moray_status moray_orbit_match_power(moray_orbit *orbit, moray_gait *gait, double power, moray_steady *steady);
-
 #endif
