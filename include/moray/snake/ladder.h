@@ -50,6 +50,9 @@ typedef struct moray_ladder_row {
     moray_status why;
 } moray_ladder_row;
 
+// Whether a gait is one to compare with. Error: MORAY_NOT_SOLVED where it makes less than a hundredth of a link a period.
+MORAY_API moray_status moray_makes_way(const moray_robot *robot, const moray_gait *gait, const moray_steady *steady);
+
 // Swims them all, into row[gaits][MORAY_RUNGS]: as stable periodic orbits, on which phi_0 holds the heading; where there is
 // none, and with a series, from rest (moray_swim_match_power). Error: MORAY_INPUT (robot), MORAY_NUMERIC (moray_parallel).
 MORAY_API moray_status moray_ladder_climb(const moray_ladder_spec *spec, moray_ladder_row *row);

@@ -9,7 +9,9 @@ static const char *const joint_forms[] = {"on-gait", "closed-loop", NULL};
 static const moray_option shared[] = {
     GAIT_RANGE("theta_max_deg", theta_max, 0, 89, "deg", "link-angle amplitude of (24)"),
     GAIT_RANGE("omega_deg_s", omega, 1, 3600, "deg/s", "gait frequency"),
-    GAIT_RANGE("delta_deg", delta, 1, 179, "deg", "phase shift between joints"),
+    GAIT_RANGE("delta_deg", delta, 1, 179, "deg",
+               "phase shift between joints; by default from 0.375 to 2.25 times the paper's 2 pi/(N-1), and 15 to 90 deg at "
+               "least, 150 deg at most"),
     GAIT_RANGE("phi0_m", offset, -1, 1, "m", "joint offset of the control-oriented model"),
     GAIT_RANGE("phi0_deg", offset_angle, -90, 90, "deg", "joint offset of the first-principles model"),
     GAIT_RANGE("taper", taper, -1, 1, NULL,
@@ -61,7 +63,8 @@ gait_job gait_job_defaults(const gait_program *program)
                     .power = program->power,
                     .speed = program->speed,
                     .joint_rate = INFINITY,
-                    .joint_effort = INFINITY};
+                    .joint_effort = INFINITY,
+                    .refinements = 3};
     job.snake.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "lobatto5");
     job.common.intervals = usual_intervals;
@@ -78,13 +81,13 @@ const char *gait_job_baseline(const gait_job *job, char text[64])
     return text;
 }
 
-// A number asked for, by default the paper's gait's; NaN where that has none.
+// A number asked for, by default the paper's gait's, which may have none.
 static moray_status demand(const gait_job *job, moray_model model, const char *key, double given, double paper,
                            double *value)
 {
     char baseline[64];
     *value = isnan(given) ? paper : given;
-    if (isnan(*value))
+    if (isnan(given) && !(paper > 0))
         return moray_error(MORAY_NOT_SOLVED, "%s: its default is that of %s, which is left out: %.150s; give %s", key,
                            gait_job_baseline(job, baseline), job->no_paper[model].text, key);
     return moray_ok();
@@ -154,25 +157,23 @@ static moray_status optimise_and_prove(gait_job *job, moray_model model, const g
     return moray_ok();
 }
 
-// By delta = 2 pi/(N-1) of the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and longer robots.
+// By delta = 2 pi/(N-1) of the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and longer robots, and not
+// near 180 deg, where (33) has no amplitude.
 static void delta_range(double delta[2], double paper)
 {
     const double least = 0.375, most = 2.25; // of it
     if (isnan(delta[0]))
         delta[0] = fmin(15 * DEG, least * paper);
     if (isnan(delta[1]))
-        delta[1] = fmin(fmax(90 * DEG, most * paper), 179 * DEG);
+        delta[1] = fmin(fmax(90 * DEG, most * paper), 150 * DEG);
 }
 
-// A gait that makes less than a hundredth of a link a period makes no way.
-static moray_status makes_way(const gait_job *job, moray_model model)
+// Why the paper's gait is no baseline on a model, where it is not.
+static moray_status baseline_check(const gait_job *job, moray_model model)
 {
-    const double speed = job->paper.steady[model].speed, period = 2 * M_PI / job->paper.gait[model].omega;
     if (!job->paper.held[model])
         return job->paper.why[model];
-    if (!(speed * period > 0.02 * job->snake.robot.l))
-        return moray_error(MORAY_NOT_SOLVED, "it makes no way: %.2g m/s", speed);
-    return moray_ok();
+    return moray_makes_way(&job->snake.robot, &job->paper.gait[model], &job->paper.steady[model]);
 }
 
 moray_status gait_job_prepare(gait_job *job)
@@ -188,7 +189,7 @@ moray_status gait_job_prepare(gait_job *job)
     moray_ticker_show(&job->ticker, "%s: the paper's gait on both models", job->name);
     gait_job_try(job, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
     for (int model = 0; model < 2; model++)
-        job->no_paper[model] = makes_way(job, (moray_model)model);
+        job->no_paper[model] = baseline_check(job, (moray_model)model);
     return moray_ok();
 }
 

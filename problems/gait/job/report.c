@@ -149,12 +149,17 @@ static void make_tables(const gait_job *job, struct tables *t)
     }
 }
 
-// "; WHAT 1 UNIT (control-oriented model) and 2 UNIT (first-principles model)"
-static void print_demand(const gait_job *job, const char *what, double control, double revolute, const char *unit)
+// "; WHAT 1 UNIT (control-oriented model) and 2 UNIT (first-principles model)", by model
+static void print_demand(const gait_job *job, const char *what, const double by[2], const char *unit)
 {
-    printf("; %s %.4g %s (%s model)", what, control, unit, moray_model_name(MORAY_CONTROL_ORIENTED));
-    if (job->snake.model == MORAY_FIRST_PRINCIPLES)
-        printf(" and %.4g %s (%s model)", revolute, unit, moray_model_name(MORAY_FIRST_PRINCIPLES));
+    const char *before = "; ";
+    for (int model = 0; model <= (int)job->snake.model; model++) {
+        if (job->stage[model].left_out)
+            continue;
+        printf("%s%s%.4g %s (%s model)", before, what, by[model], unit, moray_model_name((moray_model)model));
+        before = " and ";
+        what = "";
+    }
 }
 
 void gait_job_print_head(const gait_job *job)
@@ -166,12 +171,12 @@ void gait_job_print_head(const gait_job *job)
 
 static void print_demands(const gait_job *job)
 {
-    const stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
+    const stage *asked = last_stage(job), *control = &job->stage[MORAY_CONTROL_ORIENTED];
     gait_job_print_head(job);
-    if (isfinite(control->power))
-        print_demand(job, "mean joint power at most", control->power, revolute->power, "W");
-    if (control->speed > 0)
-        print_demand(job, "speed along the course at least", control->speed, revolute->speed, "m/s");
+    if (isfinite(asked->power))
+        print_demand(job, "mean joint power at most ", (double[]){control->power, asked->power}, "W");
+    if (asked->speed > 0)
+        print_demand(job, "speed along the course at least ", (double[]){control->speed, asked->speed}, "m/s");
     printf("\n\n");
 }
 

@@ -111,6 +111,14 @@ static moray_status check_stable(moray_orbit *orbit)
     return moray_ok();
 }
 
+moray_status moray_makes_way(const moray_robot *robot, const moray_gait *gait, const moray_steady *steady)
+{
+    const double period = 2 * M_PI / gait->omega;
+    if (!(steady->speed * period > 0.02 * robot->l))
+        return moray_error(MORAY_NOT_SOLVED, "the gait makes no way: %.2g m/s", steady->speed);
+    return moray_ok();
+}
+
 static moray_status swim_baseline(place *at, moray_steady *steady)
 {
     const moray_gait *gait = &at->spec->baseline;
@@ -156,6 +164,8 @@ static moray_status climb_rung(const moray_ladder_spec *spec, const moray_robot 
     moray_status status = place_new(&at, spec, robot);
     if (!moray_failed(status)) {
         status = swim_baseline(&at, &base);
+        if (!moray_failed(status))
+            status = moray_makes_way(robot, &spec->baseline, &base);
         if (moray_failed(status))
             status = moray_error(status.code, "the baseline: %.270s", status.text);
     }
