@@ -13,7 +13,7 @@
 
 MORAY_BEGIN
 
-enum { MORAY_RUNGS = 15 };
+enum { MORAY_RUNGS = 15, MORAY_RUNG_CHANGES = 0x7f80 }; // the bits of those with a coefficient changed
 
 // In this order: the robot with the hydrodynamics paper (all as printed), split2, split3, split5 (the same, every link
 // cut into so many pieces), strip (drag and added mass along the link), quadratic (the paper's with quadratic drag),
@@ -58,7 +58,8 @@ MORAY_API moray_status moray_makes_way(const moray_robot *robot, const moray_gai
 MORAY_API moray_status moray_ladder_climb(const moray_ladder_spec *spec, moray_ladder_row *row);
 
 // What a ladder says: of the n rungs that compare, on how many the gait wins, by more than 0.05 %, and the range.
-// `found_on` has a bit 1 << rung for each one that the gait was optimised on.
+// `found_on` has a bit 1 << rung for each one that the gait was optimised on; those with a coefficient changed are of the
+// same model as moray_rung_of.
 typedef struct moray_ladder_count {
     int n, wins, wins_elsewhere; // elsewhere: not among found_on
     double least, most;          // gain [%]; NaN where n is 0
@@ -67,7 +68,7 @@ typedef struct moray_ladder_count {
 MORAY_API moray_ladder_count moray_ladder_counted(const moray_ladder_row row[MORAY_RUNGS], unsigned found_on);
 
 // Adds the verdict to what stands in text[size]: "wins on all 15, from +1.3 to +4.0 %", "wins on 6 of 15, from -2.1 to
-// +4.0 %", "wins only on the model it was found on, from -19.0 to +3.3 %" (where it was found on several: models), with
+// +4.0 %", "wins only on the model it was found on, 9 of 15, from -19.0 to +3.3 %" (where it was found on several: models), with
 // what is left out and why behind it.
 MORAY_API void moray_ladder_verdict(const moray_ladder_row row[MORAY_RUNGS], unsigned found_on, char *text,
                                     size_t size);

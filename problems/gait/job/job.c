@@ -99,7 +99,7 @@ moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at)
     const moray_steady *paper = &job->paper.steady[model];
     const double power = model == job->snake.model || isinf(job->power) ? job->power : NAN;
     at->model = model;
-    at->found_on = model == MORAY_FIRST_PRINCIPLES ? moray_rung_of(&job->snake.robot) : 0;
+    at->found_on = gait_job_found_on(job, model);
     memcpy(at->taper, job->taper, sizeof at->taper);
     MORAY_TRY(demand(job, model, "power_W", power, paper->power, &at->power));
     if (isinf(job->speed)) {

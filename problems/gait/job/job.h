@@ -176,6 +176,9 @@ moray_status gait_job_over(gait_job *job, const gait_starts *known);
 // The names in job->over. Error: MORAY_INPUT.
 moray_status gait_job_rungs(const gait_job *job, rungs *over);
 
+// The rungs that are of the model on which a gait of the job is found.
+unsigned gait_job_found_on(const gait_job *job, moray_model model);
+
 // Ladders of the first-principles gaits of n stages over the paper's. Error: those of moray_ladder_climb.
 moray_status gait_job_climb(const gait_job *job, stage *const *at, int n);
 
@@ -198,6 +201,9 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
 // "ladder" and "verdict" of a stage that has climbed.
 enum { GAIT_TEXT = 1500 };
 void gait_job_json_ladder(moray_json *json, const stage *at);
+
+// Adds to text[GAIT_TEXT] which gait is recommended, and what the ladder says of it.
+void gait_job_headline(const gait_job *job, char *text);
 
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);

@@ -29,6 +29,12 @@ moray_status gait_job_rungs(const gait_job *job, rungs *over)
     return moray_ok();
 }
 
+unsigned gait_job_found_on(const gait_job *job, moray_model model)
+{
+    const unsigned own = moray_rung_of(&job->snake.robot);
+    return model == MORAY_FIRST_PRINCIPLES && own ? own | MORAY_RUNG_CHANGES : 0;
+}
+
 moray_status gait_job_climb(const gait_job *job, stage *const *at, int n)
 {
     enum { most = 128 };
@@ -188,6 +194,8 @@ moray_status gait_job_over(gait_job *job, const gait_starts *known)
                   .taper = {job->taper[0], job->taper[1]}};
     for (int k = 0; k < set.over.n; k++)
         at->found_on |= 1u << set.over.at[k];
+    if (at->found_on & moray_rung_of(&job->snake.robot))
+        at->found_on |= MORAY_RUNG_CHANGES;
     if (moray_failed(job->no_paper[MORAY_FIRST_PRINCIPLES]))
         return moray_error(MORAY_NOT_SOLVED, "there is no baseline to gain over: %.250s",
                            job->no_paper[MORAY_FIRST_PRINCIPLES].text);

@@ -64,8 +64,7 @@ static void judge(const gait_job *job, const stage *at, char *text)
                    percent(at->prediction.power, here->power));
 }
 
-// What the ladder says of a gait, in one sentence, and of the one recommended what it is.
-static void headline(const gait_job *job, char *text)
+void gait_job_headline(const gait_job *job, char *text)
 {
     const stage *at = recommended(job);
     const moray_gait *gait = &at->trial.gait[MORAY_FIRST_PRINCIPLES];
@@ -220,7 +219,7 @@ static void print(const void *found, const moray_report *report)
     }
     print_left_out(job);
     text[0] = 0;
-    headline(job, text);
+    gait_job_headline(job, text);
     printf("%s\n\n", text);
     for (int k = 0; k < n; k++)
         print_solver(job, at[k]);
@@ -325,7 +324,7 @@ moray_status gait_job_report(gait_job *job)
     struct tables t;
     char text[text_size] = "";
     make_tables(job, &t);
-    headline(job, text);
+    gait_job_headline(job, text);
     const moray_report report = {.title = job->name, .text = text, .tables = t.table, .n_tables = tables};
     return moray_app_show(&job->common, &(moray_results){.name = job->name,
                                                          .found = job,

@@ -238,7 +238,10 @@ moray_status search_gait_run(search_gait *run)
             return status;
         }
     }
-    return moray_ok();
+    stage *at[SEARCH_GAIT_SHOWN];
+    for (int k = 0; k < run->shown; k++)
+        at[k] = &run->optimum[k].at;
+    return gait_job_climb(&run->job, at, run->shown);
 }
 
 // ---- Ridge ---------------------------------------------------------------------------------------------------------

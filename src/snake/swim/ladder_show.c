@@ -42,6 +42,12 @@ static const char *signed_text(double value, char text[32])
     return text;
 }
 
+static bool several(unsigned found_on)
+{
+    const unsigned models = found_on & ~(unsigned)MORAY_RUNG_CHANGES;
+    return models & (models - 1);
+}
+
 void moray_ladder_verdict(const moray_ladder_row row[MORAY_RUNGS], unsigned found_on, char *text, size_t size)
 {
     const moray_ladder_count count = moray_ladder_counted(row, found_on);
@@ -53,7 +59,8 @@ void moray_ladder_verdict(const moray_ladder_row row[MORAY_RUNGS], unsigned foun
     if (count.wins == count.n)
         moray_text_add(text, size, "wins on all %d", count.n);
     else if (count.wins > 0 && count.wins_elsewhere == 0)
-        moray_text_add(text, size, "wins only on the model%s it was found on", count.wins > 1 ? "s" : "");
+        moray_text_add(text, size, "wins only on the model%s it was found on, %d of %d", several(found_on) ? "s" : "",
+                       count.wins, count.n);
     else
         moray_text_add(text, size, "wins on %d of %d", count.wins, count.n);
     moray_text_add(text, size, ", from %s to %s %%", signed_text(count.least, least), signed_text(count.most, most));

@@ -166,7 +166,10 @@ int main(void)
     check_notes();
     check_left_out();
     verdict_of(4.03, 1.3, -1, 1, "wins on all 15, from +1.30 to +4.03 %");
-    verdict_of(4.03, -1.3, -1, 1, "wins only on the model it was found on, from -1.30 to +4.03 %");
+    verdict_of(4.03, -1.3, -1, 1, "wins only on the model it was found on, 1 of 15, from -1.30 to +4.03 %");
+    verdict_of(4.03, -1.3, -1, 3, "wins only on the models it was found on, 1 of 15, from -1.30 to +4.03 %");
+    verdict_of(4.03, -1.3, -1, 1 | MORAY_RUNG_CHANGES,
+               "wins only on the model it was found on, 1 of 15, from -1.30 to +4.03 %");
     verdict_of(4.03, -1.3, -1, 2, "wins on 1 of 15, from -1.30 to +4.03 %");
     verdict_of(-0.001, -1.3, -1, 1, "wins on 0 of 15, from -1.30 to 0.00 %");
     verdict_of(-1, 2, 3, 0, "wins on 13 of 14, from -1.00 to +2.00 %; left out: rung (why)");
