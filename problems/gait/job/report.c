@@ -66,6 +66,7 @@ static void judge(const gait_job *job, const stage *at, char *text)
 
 void gait_job_headline(const gait_job *job, char *text)
 {
+    const double nothing = 5e-4;
     const stage *at = recommended(job);
     const moray_gait *gait = &at->trial.gait[MORAY_FIRST_PRINCIPLES];
     const double theta_max = moray_theta_max_from_amplitude(&job->snake.robot, MORAY_FIRST_PRINCIPLES, gait->amplitude,
@@ -78,6 +79,8 @@ void gait_job_headline(const gait_job *job, char *text)
                    gait_job_baseline(job, baseline));
     moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
     moray_text_add(text, text_size, ".");
+    if (at == &job->ladder && moray_gait_over_gain(at->solution) < nothing)
+        moray_text_add(text, text_size, " No gait was found that gains on all of %.100s.", job->over);
 }
 
 static void say_stage(const gait_job *job, const stage *at, char *text)
