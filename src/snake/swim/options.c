@@ -58,7 +58,7 @@ static const moray_option robot_rows[] = {
     {LINK("C_M", C_M), AT_LEAST(0), .help = "added inertia constant"},
     {ROBOT("l_m", l), ABOVE(0), .unit = "m", .help = "half the length of a link" FROM_GEOMETRY},
     {ROBOT("m_kg", m), ABOVE(0), .unit = "kg", .help = "mass of a link" FROM_GEOMETRY},
-    {ROBOT("J_kg_m2", J), ABOVE(0), .unit = "kg m^2", .help = "moment of inertia of a link" FROM_GEOMETRY},
+    {ROBOT("J_kg_m2", J), ABOVE(0), .unit = "kg m^2", .help = "moment of inertia of a link; from mass and geometry unless given"},
     {ROBOT("c_t", c_t), AT_LEAST(0), .unit = "kg/s", .help = "tangential drag of a link" FROM_GEOMETRY},
     {ROBOT("c_n", c_n), AT_LEAST(0), .unit = "kg/s", .help = "normal drag of a link" FROM_GEOMETRY},
     {ROBOT("mu_n", mu_n), AT_LEAST(0), .unit = "kg", .help = "normal added mass of a link" FROM_GEOMETRY},
@@ -115,6 +115,8 @@ static moray_status make_robot(void *settings)
                           &made.mu_n, &made.lambda_1, &made.lambda_2, &made.lambda_3};
     const double from[] = {given->l,    given->m,        given->J,        given->c_t,     given->c_n,
                            given->mu_n, given->lambda_1, given->lambda_2, given->lambda_3};
+    if (!isnan(given->m))
+        made.J *= given->m / made.m; // of the same shape
     for (unsigned i = 0; i < sizeof from / sizeof *from; i++)
         if (!isnan(from[i]))
             *to[i] = from[i];
