@@ -3,6 +3,7 @@
 
 #include <tgmath.h>
 
+#include "snake/model/circle.h"
 #include "snake/model/model.h"
 #include "snake/model/shape.h"
 

@@ -10,6 +10,7 @@
 
 #include "snake/plant/fp_free.h"
 #include "snake/plant/series.h"
+#include "snake/model/circle.h"
 #include "snake/model/taper.h"
 
 enum { body = MORAY_BODY_STATES, most_inputs = 13 };
@@ -27,19 +28,27 @@ struct fp_plant {
     moray_map by_step; // values, Jacobian and patterns
 };
 
-// (25) and its derivatives; the offset and its own.
+// (25) and its derivatives; the offset and its own. sin and cos of the next joint's angle are those of this one turned
+// by delta, and worked out anew before rounding adds up.
+enum { anew = 16 };
 static void gait_motion(struct fp_plant *plant, const double complex *s, double complex taper, double complex t,
                         const double complex offset[3])
 {
     const double complex alpha = s[0], omega = s[1], delta = s[2];
     const int joints = plant->spec.robot.links - 1;
+    double complex sine = 0, cosine = 1, sine_delta, cosine_delta;
+    circle_z(delta, &cosine_delta, &sine_delta);
     for (int i = 0; i < joints; i++) {
-        const double complex sine = plant->sine[i] = sin(omega * t + i * delta);
-        const double complex cosine = plant->cosine[i] = cos(omega * t + i * delta);
+        if (i % anew == 0)
+            circle_z(omega * t + i * delta, &cosine, &sine);
+        plant->sine[i] = sine;
+        plant->cosine[i] = cosine;
         const double complex growth = plant->growth[i] = 1 + taper * taper_place(i, joints);
         plant->phi[i] = alpha * growth * sine + offset[0];
         plant->dphi[i] = alpha * growth * omega * cosine + offset[1];
         plant->ubar[i] = -alpha * growth * omega * omega * sine + offset[2];
+        sine = plant->sine[i] * cosine_delta + plant->cosine[i] * sine_delta;
+        cosine = plant->cosine[i] * cosine_delta - plant->sine[i] * sine_delta;
     }
 }
 
