@@ -53,7 +53,9 @@ static const moray_option options[] = {
 
 static const moray_program program = {
     .name = "benchmark",
-    .summary = "Measures what solving and simulating cost, where the time goes and how it grows.",
+    .summary = "Measures what solving and simulating cost, where the time goes and how it grows, and beside it what "
+               "solving costs "
+               "with MUMPS.",
     .options = options,
     .n_options = sizeof options / sizeof *options,
     .without = unused,
@@ -73,7 +75,8 @@ static moray_status add_case(benchmark *run, const char *name, const subject *of
     named_cost *to = &run->cases[run->n_cases];
     moray_ticker_show(&run->ticker, "benchmark: %s", name);
     to->name = name;
-    MORAY_TRY(measure(of, run->repeats, &to->cost));
+    MORAY_TRY(measure(of, run->common.linear_solver, run->repeats, &to->cost));
+    MORAY_TRY(measure(of, MORAY_LINEAR_MUMPS, run->repeats, &to->mumps));
     run->n_cases++;
     return moray_ok();
 }
@@ -142,7 +145,7 @@ static moray_status measure_growth(benchmark *run, const gait_case *of, const ch
         status = gait_case_begin(&one);
         const subject it = gait_case_subject(&one);
         if (!moray_failed(status))
-            status = measure(&it, run->repeats, &g->cost[g->n]);
+            status = measure(&it, run->common.linear_solver, run->repeats, &g->cost[g->n]);
         gait_case_end(&one);
         g->size[g->n++] = *sizes;
     }
@@ -193,7 +196,7 @@ static moray_status measure_horizon_of(benchmark *run, const char *name, moray_m
         moray_ticker_show(&run->ticker, "benchmark: %s, %d seconds", name, *seconds);
         MORAY_TRY(horizon_begin(&one));
         const subject it = horizon_subject(&one);
-        MORAY_TRY(measure(&it, run->repeats, &g->cost[g->n]));
+        MORAY_TRY(measure(&it, run->common.linear_solver, run->repeats, &g->cost[g->n]));
         g->size[g->n++] = *seconds;
     }
     return moray_ok();
@@ -242,11 +245,8 @@ int main(int argc, char **argv)
 {
     static benchmark run;
     int exit_code;
-    run = (benchmark){.common = moray_common_default(),
-                      .repeats = 5,
-                      .most_intervals = 1000,
-                      .most_links = 100,
-                      .most_seconds = 600};
+    run = (benchmark){
+        .common = moray_common_default(), .repeats = 5, .most_intervals = 1000, .most_links = 100, .most_seconds = 600};
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;
     return moray_app_end(&program, &run, work(&run));

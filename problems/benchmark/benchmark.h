@@ -18,6 +18,7 @@ typedef struct cost {
     double total;         // their sum
     double wall;          // the same by the clock on the wall
     bool solved;
+    moray_linear_solver linear_solver; // that solved it
     int iterations;
     double objective;
     moray_nlp_size size;
@@ -31,13 +32,13 @@ double cost_over_floor(const cost *c);
 
 // What is measured. `solve` builds the problem and solves it; `forget` frees what it built, the solution apart.
 typedef struct subject {
-    moray_status (*solve)(void *self, moray_solution **solution);
+    moray_status (*solve)(void *self, moray_linear_solver linear, moray_solution **solution);
     void (*forget)(void *self);
     void *self;
 } subject;
 
 // Medians of `repeats` measurements, piece by piece. Error: that of solve.
-moray_status measure(const subject *of, int repeats, cost *found);
+moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found);
 
 double median(double *values, int n); // sorts them
 
@@ -47,7 +48,7 @@ double fitted_exponent(const double *x, const double *y, int n);
 // ---- Subjects ------------------------------------------------------------------------------------------------------
 
 // Settings of every solve here.
-moray_settings benchmark_settings(const char *scheme, int intervals);
+moray_settings benchmark_settings(const char *scheme, int intervals, moray_linear_solver linear);
 
 // The optimal-gait problem as max_speed and min_energy pose it, from the orbit of the paper's gait.
 typedef struct gait_case {
@@ -115,8 +116,12 @@ enum { MOST_CASES = 72, MOST_GROWTHS = 6, MOST_POINTS = 8 };
 
 typedef struct named_cost {
     const char *name;
-    cost cost;
+    cost cost, mumps; // the latter solved with MUMPS, side by side
 } named_cost;
+
+// What MUMPS costs over what the linear solver asked for does: start to finish; linear solver alone, an iteration.
+double total_over_ours(const named_cost *c);
+double linear_over_ours(const named_cost *c);
 
 typedef struct growth {
     const char *name, *over; // over: "intervals", "links" or "seconds"

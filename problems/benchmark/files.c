@@ -10,6 +10,7 @@ static void json_cost(moray_json *json, const cost *c)
 {
     moray_json_bool(json, "solved", c->solved);
     moray_json_number(json, "objective", c->objective);
+    moray_json_text(json, "linear_solver", moray_linear_solver_text(c->linear_solver));
     moray_json_number(json, "iterations", c->iterations);
     moray_json_number(json, "nvar", c->size.variables);
     moray_json_number(json, "ncon", c->size.constraints);
@@ -21,6 +22,20 @@ static void json_cost(moray_json *json, const cost *c)
     moray_json_number(json, "total_s", c->total);
     moray_json_number(json, "wall_s", c->wall);
     moray_json_number(json, "total_over_floor", cost_over_floor(c));
+}
+
+// The same with MUMPS, and how many times more that costs.
+static void json_mumps(moray_json *json, const named_cost *c)
+{
+    moray_json_open(json, "with_mumps");
+    moray_json_bool(json, "solved", c->mumps.solved);
+    moray_json_number(json, "objective", c->mumps.objective);
+    moray_json_number(json, "iterations", c->mumps.iterations);
+    moray_json_number(json, "linear_solver_s", c->mumps.piece[LINEAR]);
+    moray_json_number(json, "total_s", c->mumps.total);
+    moray_json_number(json, "total_over_ours", total_over_ours(c));
+    moray_json_number(json, "linear_solver_over_ours", linear_over_ours(c));
+    moray_json_close(json);
 }
 
 static void json_growth(moray_json *json, const growth *g)
@@ -69,6 +84,7 @@ void benchmark_summary(const void *found, moray_json *json)
         moray_json_open(json, NULL);
         moray_json_text(json, "name", run->cases[k].name);
         json_cost(json, &run->cases[k].cost);
+        json_mumps(json, &run->cases[k]);
         moray_json_close(json);
     }
     moray_json_close(json);

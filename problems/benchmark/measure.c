@@ -21,14 +21,25 @@ double cost_over_floor(const cost *c)
     return c->total / (c->total - cost_evaluation(c));
 }
 
-moray_settings benchmark_settings(const char *scheme, int intervals)
+moray_settings benchmark_settings(const char *scheme, int intervals, moray_linear_solver linear)
 {
     moray_settings settings = moray_settings_default();
     settings.scheme = scheme;
     settings.intervals = intervals;
     settings.barrier = 1e-4; // every start is an orbit
     settings.timing = true;
+    settings.linear_solver = linear;
     return settings;
+}
+
+double total_over_ours(const named_cost *c)
+{
+    return c->mumps.total / c->cost.total;
+}
+
+double linear_over_ours(const named_cost *c)
+{
+    return c->mumps.piece[LINEAR] / c->mumps.iterations / (c->cost.piece[LINEAR] / c->cost.iterations);
 }
 
 static cost read_account(const moray_solution *solution, double total, double wall)
@@ -44,16 +55,17 @@ static cost read_account(const moray_solution *solution, double total, double wa
                   .total = total,
                   .wall = wall,
                   .solved = info->outcome == MORAY_NLP_SOLVED,
+                  .linear_solver = info->linear_solver,
                   .iterations = info->iterations,
                   .objective = moray_solution_objective(solution),
                   .size = moray_solution_size(solution)};
 }
 
-static moray_status measure_once(const subject *of, cost *found)
+static moray_status measure_once(const subject *of, moray_linear_solver linear, cost *found)
 {
     moray_solution *solution = NULL;
     const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID), wall = clock_seconds(CLOCK_MONOTONIC);
-    moray_status status = of->solve(of->self, &solution);
+    moray_status status = of->solve(of->self, linear, &solution);
     const double total = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
     if (!moray_failed(status))
         *found = read_account(solution, total, clock_seconds(CLOCK_MONOTONIC) - wall);
@@ -82,13 +94,13 @@ static double median_cost(const cost *costs, size_t offset, int n, double *work)
     return median(work, n);
 }
 
-moray_status measure(const subject *of, int repeats, cost *found)
+moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found)
 {
     cost *costs = calloc((size_t)repeats, sizeof *costs);
     double *work = calloc((size_t)repeats, sizeof *work);
     moray_status status = costs && work ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d costs", repeats);
     for (int k = 0; k < repeats && !moray_failed(status); k++)
-        status = measure_once(of, &costs[k]);
+        status = measure_once(of, linear, &costs[k]);
     if (!moray_failed(status)) {
         *found = costs[0];
         for (size_t k = 0; k < PIECES; k++)
