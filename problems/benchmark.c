@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What the solver costs: where the time of a solve goes, how it grows with the mesh and the robot, and how near it is
-// to the floor that evaluations free of charge would leave. Times are the processor's, medians of several measurements
-// in this run.
+// to a floor of arithmetic, memory and calls. Times are the processor's, medians of several measurements in this run.
 #include "benchmark/benchmark.h"
 
 enum part { ALL, S1, PROBLEMS, CLASSICS, INTERVALS, LINKS, HORIZON, SIMULATION };
@@ -232,7 +231,7 @@ static moray_status work(benchmark *run)
                {LINKS, measure_links},
                {HORIZON, measure_horizon},
                {SIMULATION, measure_simulation}};
-    moray_status status = moray_ok();
+    moray_status status = machine_measure(&run->machine);
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
     for (unsigned k = 0; k < sizeof all / sizeof *all && !moray_failed(status); k++)
         if (wanted(run, all[k].part))

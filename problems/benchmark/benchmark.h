@@ -22,13 +22,26 @@ typedef struct cost {
     int iterations;
     double objective;
     moray_nlp_size size;
+    int nodes, sweeps; // nodes of all phases; evaluations of constraints, Jacobian and Hessian, each over all nodes
+    double sweep;      // of the constraints' functions once at every node
 } cost;
 
 double cost_evaluation(const cost *c);
 
-// total/floor: how much the solve costs above what it would were its evaluations free (same iterates, same linear
-// algebra), which is the total less the time that the solver's adapter measured inside the callbacks.
-double cost_over_floor(const cost *c);
+double processor_seconds(void);
+
+// What this machine does in a second of the processor.
+typedef struct machine {
+    double flops, bytes; // in factors of a dense matrix; read and written in copies
+} machine;
+moray_status machine_measure(machine *found); // Error: MORAY_MEMORY
+
+// The floor in seconds, from dimensions, these rates and the same number of iterations, and its terms: factorisations
+// that follow the stages (mean numbers of variables and constraints a node); J, H, iterate and multipliers written and
+// read once an iteration; one call of the functions a node and evaluation.
+enum { FLOOR_FACTORS, FLOOR_STREAM, FLOOR_CALLS, FLOOR_TERMS };
+double cost_floor(const machine *rates, const cost *c, double term[FLOOR_TERMS]);
+const char *floor_term_text(const double term[FLOOR_TERMS]); // the largest
 
 // What is measured. `solve` builds the problem and solves it; `forget` frees what it built, the solution apart.
 typedef struct subject {
@@ -142,6 +155,7 @@ typedef struct simulated {
 typedef struct benchmark {
     moray_common common;
     int part, repeats, most_intervals, most_links, most_seconds;
+    machine machine;
     int n_cases, n_growths;
     named_cost cases[MOST_CASES]; // S1 first, where it is among them
     growth growths[MOST_GROWTHS];

@@ -11,14 +11,14 @@ static double clock_seconds(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+double processor_seconds(void)
+{
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+
 double cost_evaluation(const cost *c)
 {
     return c->piece[FUNCTION] + c->piece[JACOBIAN] + c->piece[HESSIAN];
-}
-
-double cost_over_floor(const cost *c)
-{
-    return c->total / (c->total - cost_evaluation(c));
 }
 
 moray_settings benchmark_settings(const char *scheme, int intervals, moray_linear_solver linear)
@@ -46,6 +46,9 @@ static cost read_account(const moray_solution *solution, double total, double wa
 {
     const moray_nlp_info *info = moray_solution_info(solution);
     const double *by = info->evaluation_by;
+    const int *calls = info->evaluations;
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(solution, &meshes);
     return (cost){.piece = {[SETUP] = total - info->cpu_seconds,
                             [FUNCTION] = by[0] + by[2],
                             [JACOBIAN] = by[1] + by[3],
@@ -58,15 +61,18 @@ static cost read_account(const moray_solution *solution, double total, double wa
                   .linear_solver = info->linear_solver,
                   .iterations = info->iterations,
                   .objective = moray_solution_objective(solution),
-                  .size = moray_solution_size(solution)};
+                  .size = moray_solution_size(solution),
+                  .nodes = mesh[meshes - 1].nodes,
+                  .sweeps = calls[2] + calls[3] + calls[4],
+                  .sweep = by[2] / calls[2]};
 }
 
 static moray_status measure_once(const subject *of, moray_linear_solver linear, cost *found)
 {
     moray_solution *solution = NULL;
-    const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID), wall = clock_seconds(CLOCK_MONOTONIC);
+    const double start = processor_seconds(), wall = clock_seconds(CLOCK_MONOTONIC);
     moray_status status = of->solve(of->self, linear, &solution);
-    const double total = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+    const double total = processor_seconds() - start;
     if (!moray_failed(status))
         *found = read_account(solution, total, clock_seconds(CLOCK_MONOTONIC) - wall);
     moray_solution_free(solution);
@@ -106,6 +112,7 @@ moray_status measure(const subject *of, moray_linear_solver linear, int repeats,
         for (size_t k = 0; k < PIECES; k++)
             found->piece[k] = median_cost(costs, offsetof(cost, piece) + k * sizeof(double), repeats, work);
         found->total = median_cost(costs, offsetof(cost, total), repeats, work);
+        found->sweep = median_cost(costs, offsetof(cost, sweep), repeats, work);
         found->wall = median_cost(costs, offsetof(cost, wall), repeats, work);
     }
     free(costs);
