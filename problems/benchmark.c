@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What the solver costs: where the time of a solve goes, how it grows with the mesh and the robot, and how near it is
-// to the floor that evaluations free of charge would leave. Times are the processor's, medians of several measurements
-// in this run.
+// to a floor of arithmetic, memory and calls. Times are the processor's, medians of several measurements in this run.
 #include "benchmark/benchmark.h"
 
 enum part { ALL, S1, PROBLEMS, CLASSICS, INTERVALS, LINKS, HORIZON, SIMULATION };
@@ -28,7 +27,9 @@ static const moray_option options[] = {
 
 static const moray_program program = {
     .name = "benchmark",
-    .summary = "Measures what solving and simulating cost, where the time goes and how it grows.",
+    .summary = "Measures what solving and simulating cost, where the time goes and how it grows, and beside it what "
+               "solving costs "
+               "with MUMPS.",
     .options = options,
     .n_options = sizeof options / sizeof *options,
     .without = unused,
@@ -48,7 +49,8 @@ static moray_status add_case(benchmark *run, const char *name, const subject of)
     named_cost *to = &run->cases[run->n_cases];
     moray_ticker_show(&run->ticker, "benchmark: %s", name);
     to->name = name;
-    MORAY_TRY(measure(&of, run->repeats, &to->cost));
+    MORAY_TRY(measure(&of, run->common.linear_solver, run->repeats, &to->cost));
+    MORAY_TRY(measure(&of, MORAY_LINEAR_MUMPS, run->repeats, &to->mumps));
     run->n_cases++;
     return moray_ok();
 }
@@ -101,7 +103,7 @@ static growth *add_growth(benchmark *run, const char *name, const char *over)
 static moray_status add_point(benchmark *run, growth *g, int size, const subject of)
 {
     moray_ticker_show(&run->ticker, "benchmark: %s, %d %s", g->name, size, g->over);
-    MORAY_TRY(measure(&of, run->repeats, &g->cost[g->n]));
+    MORAY_TRY(measure(&of, run->common.linear_solver, run->repeats, &g->cost[g->n]));
     g->size[g->n++] = size;
     return moray_ok();
 }
@@ -192,7 +194,7 @@ static moray_status work(benchmark *run)
                {LINKS, measure_links},
                {HORIZON, measure_horizon},
                {SIMULATION, measure_simulation}};
-    moray_status status = moray_ok();
+    moray_status status = machine_measure(&run->machine);
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
     for (unsigned k = 0; k < sizeof all / sizeof *all && !moray_failed(status); k++)
         if (wanted(run, all[k].part))

@@ -18,27 +18,41 @@ typedef struct cost {
     double total;         // their sum
     double wall;          // the same by the clock on the wall
     bool solved;
+    moray_linear_solver linear_solver; // that solved it
     int iterations;
     double objective;
     moray_nlp_size size;
+    int nodes, sweeps; // nodes of all phases; evaluations of constraints, Jacobian and Hessian, each over all nodes
+    double sweep;      // of the constraints' functions once at every node
 } cost;
 
 double cost_evaluation(const cost *c);
 
-// total/floor: how much the solve costs above what it would were its evaluations free (same iterates, same linear
-// algebra), which is the total less the time that the solver's adapter measured inside the callbacks.
-double cost_over_floor(const cost *c);
+double processor_seconds(void);
+
+// What this machine does in a second of the processor.
+typedef struct machine {
+    double flops, bytes; // in factors of a dense matrix; read and written in copies
+} machine;
+moray_status machine_measure(machine *found); // Error: MORAY_MEMORY
+
+// The floor in seconds, from dimensions, these rates and the same number of iterations, and its terms: factorisations
+// that follow the stages (mean numbers of variables and constraints a node); J, H, iterate and multipliers written and
+// read once an iteration; one call of the functions a node and evaluation.
+enum { FLOOR_FACTORS, FLOOR_STREAM, FLOOR_CALLS, FLOOR_TERMS };
+double cost_floor(const machine *rates, const cost *c, double term[FLOOR_TERMS]);
+const char *floor_term_text(const double term[FLOOR_TERMS]); // the largest
 
 // What is measured. `solve` builds the problem and solves it; `forget` frees what it built, the solution apart. `begin`
 // prepares what does not count as part of a solve, `end` frees that; NULL: nothing.
 typedef struct subject {
-    moray_status (*begin)(void *self), (*solve)(void *self, moray_solution **solution);
+    moray_status (*begin)(void *self), (*solve)(void *self, moray_linear_solver linear, moray_solution **solution);
     void (*forget)(void *self), (*end)(void *self);
     void *self;
 } subject;
 
 // Medians of `repeats` measurements, piece by piece. Error: those of begin and solve.
-moray_status measure(const subject *of, int repeats, cost *found);
+moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found);
 
 double median(double *values, int n); // sorts them
 
@@ -48,7 +62,7 @@ double fitted_exponent(const double *x, const double *y, int n);
 // ---- Subjects ------------------------------------------------------------------------------------------------------
 
 // Settings of every solve here.
-moray_settings benchmark_settings(const char *scheme, int intervals);
+moray_settings benchmark_settings(const char *scheme, int intervals, moray_linear_solver linear);
 
 // The optimal-gait problem as max_speed and min_energy pose it, from the orbit of the paper's gait.
 typedef struct gait_case {
@@ -112,8 +126,12 @@ enum { MOST_CASES = 72, MOST_GROWTHS = 6, MOST_POINTS = 8 };
 
 typedef struct named_cost {
     const char *name;
-    cost cost;
+    cost cost, mumps; // the latter solved with MUMPS, side by side
 } named_cost;
+
+// What MUMPS costs over what the linear solver asked for does: start to finish; linear solver alone, an iteration.
+double total_over_ours(const named_cost *c);
+double linear_over_ours(const named_cost *c);
 
 typedef struct growth {
     const char *name, *over; // over: "intervals", "links" or "seconds"
@@ -134,6 +152,7 @@ typedef struct simulated {
 typedef struct benchmark {
     moray_common common;
     int part, repeats, most_intervals, most_links, most_seconds;
+    machine machine;
     int n_cases, n_growths;
     named_cost cases[MOST_CASES]; // S1 first, where it is among them
     growth growths[MOST_GROWTHS];

@@ -6,19 +6,44 @@
 static const char *const piece_keys[PIECES] = {"setup_s",   "function_s", "jacobian_s",
                                                "hessian_s", "ipopt_s",    "linear_solver_s"};
 
-static void json_cost(moray_json *json, const cost *c)
+static void json_floor(moray_json *json, const machine *rates, const cost *c)
+{
+    double term[FLOOR_TERMS];
+    const double floor = cost_floor(rates, c, term);
+    moray_json_members(json,
+                       MORAY_MEMBERS({"floor_s", floor}, {"floor_factorisation_s", term[FLOOR_FACTORS]},
+                                     {"floor_streaming_s", term[FLOOR_STREAM]},
+                                     {"floor_functions_s", term[FLOOR_CALLS]}, {"total_over_floor", c->total / floor}));
+    moray_json_text(json, "floor_is_mostly", floor_term_text(term));
+}
+
+static void json_cost(moray_json *json, const machine *rates, const cost *c)
 {
     moray_json_bool(json, "solved", c->solved);
+    moray_json_text(json, "linear_solver", moray_linear_solver_text(c->linear_solver));
     moray_json_members(json, MORAY_MEMBERS({"objective", c->objective}, {"iterations", c->iterations},
                                            {"nvar", c->size.variables}, {"ncon", c->size.constraints},
                                            {"nnz_jac", c->size.nnz_jac}, {"nnz_hess", c->size.nnz_hess}));
     for (int k = 0; k < PIECES; k++)
         moray_json_number(json, piece_keys[k], c->piece[k]);
-    moray_json_members(json, MORAY_MEMBERS({"evaluation_s", cost_evaluation(c)}, {"total_s", c->total},
-                                           {"wall_s", c->wall}, {"total_over_floor", cost_over_floor(c)}));
+    moray_json_members(json,
+                       MORAY_MEMBERS({"evaluation_s", cost_evaluation(c)}, {"total_s", c->total}, {"wall_s", c->wall}));
+    json_floor(json, rates, c);
 }
 
-static void json_growth(moray_json *json, const growth *g)
+// The same with MUMPS, and how many times more that costs.
+static void json_mumps(moray_json *json, const named_cost *c)
+{
+    moray_json_open(json, "with_mumps");
+    moray_json_bool(json, "solved", c->mumps.solved);
+    moray_json_members(json, MORAY_MEMBERS({"objective", c->mumps.objective}, {"iterations", c->mumps.iterations},
+                                           {"linear_solver_s", c->mumps.piece[LINEAR]}, {"total_s", c->mumps.total},
+                                           {"total_over_ours", total_over_ours(c)},
+                                           {"linear_solver_over_ours", linear_over_ours(c)}));
+    moray_json_close(json);
+}
+
+static void json_growth(moray_json *json, const machine *rates, const growth *g)
 {
     double exponent[EXPONENTS];
     growth_exponents(g, exponent);
@@ -33,7 +58,7 @@ static void json_growth(moray_json *json, const growth *g)
     for (int k = 0; k < g->n; k++) {
         moray_json_open(json, NULL);
         moray_json_number(json, g->over, g->size[k]);
-        json_cost(json, &g->cost[k]);
+        json_cost(json, rates, &g->cost[k]);
         moray_json_close(json);
     }
     moray_json_close(json);
@@ -59,17 +84,20 @@ void benchmark_summary(const void *found, moray_json *json)
     const benchmark *run = found;
     moray_json_text(json, "clock", "processor time, medians");
     moray_json_number(json, "repeats", run->repeats);
+    moray_json_number(json, "dense_flops_per_s", run->machine.flops);
+    moray_json_number(json, "streamed_bytes_per_s", run->machine.bytes);
     moray_json_open_list(json, "problems");
     for (int k = 0; k < run->n_cases; k++) {
         moray_json_open(json, NULL);
         moray_json_text(json, "name", run->cases[k].name);
-        json_cost(json, &run->cases[k].cost);
+        json_cost(json, &run->machine, &run->cases[k].cost);
+        json_mumps(json, &run->cases[k]);
         moray_json_close(json);
     }
     moray_json_close(json);
     moray_json_open_list(json, "growth");
     for (int k = 0; k < run->n_growths; k++)
-        json_growth(json, &run->growths[k]);
+        json_growth(json, &run->machine, &run->growths[k]);
     moray_json_close(json);
     json_simulation(json, &run->simulation);
 }

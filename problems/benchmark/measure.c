@@ -11,30 +11,44 @@ static double clock_seconds(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+double processor_seconds(void)
+{
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+
 double cost_evaluation(const cost *c)
 {
     return c->piece[FUNCTION] + c->piece[JACOBIAN] + c->piece[HESSIAN];
 }
 
-double cost_over_floor(const cost *c)
-{
-    return c->total / (c->total - cost_evaluation(c));
-}
-
-moray_settings benchmark_settings(const char *scheme, int intervals)
+moray_settings benchmark_settings(const char *scheme, int intervals, moray_linear_solver linear)
 {
     moray_settings settings = moray_settings_default();
     settings.scheme = scheme;
     settings.intervals = intervals;
     settings.barrier = 1e-4; // every start is an orbit
     settings.timing = true;
+    settings.linear_solver = linear;
     return settings;
+}
+
+double total_over_ours(const named_cost *c)
+{
+    return c->mumps.total / c->cost.total;
+}
+
+double linear_over_ours(const named_cost *c)
+{
+    return c->mumps.piece[LINEAR] / c->mumps.iterations / (c->cost.piece[LINEAR] / c->cost.iterations);
 }
 
 static cost read_account(const moray_solution *solution, double total, double wall)
 {
     const moray_nlp_info *info = moray_solution_info(solution);
     const double *by = info->evaluation_by;
+    const int *calls = info->evaluations;
+    int meshes;
+    const moray_mesh_record *mesh = moray_solution_history(solution, &meshes);
     return (cost){.piece = {[SETUP] = total - info->cpu_seconds,
                             [FUNCTION] = by[0] + by[2],
                             [JACOBIAN] = by[1] + by[3],
@@ -44,17 +58,21 @@ static cost read_account(const moray_solution *solution, double total, double wa
                   .total = total,
                   .wall = wall,
                   .solved = info->outcome == MORAY_NLP_SOLVED,
+                  .linear_solver = info->linear_solver,
                   .iterations = info->iterations,
                   .objective = moray_solution_objective(solution),
-                  .size = moray_solution_size(solution)};
+                  .size = moray_solution_size(solution),
+                  .nodes = mesh[meshes - 1].nodes,
+                  .sweeps = calls[2] + calls[3] + calls[4],
+                  .sweep = by[2] / calls[2]};
 }
 
-static moray_status measure_once(const subject *of, cost *found)
+static moray_status measure_once(const subject *of, moray_linear_solver linear, cost *found)
 {
     moray_solution *solution = NULL;
-    const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID), wall = clock_seconds(CLOCK_MONOTONIC);
-    moray_status status = of->solve(of->self, &solution);
-    const double total = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+    const double start = processor_seconds(), wall = clock_seconds(CLOCK_MONOTONIC);
+    moray_status status = of->solve(of->self, linear, &solution);
+    const double total = processor_seconds() - start;
     if (!moray_failed(status))
         *found = read_account(solution, total, clock_seconds(CLOCK_MONOTONIC) - wall);
     moray_solution_free(solution);
@@ -82,19 +100,21 @@ static double median_cost(const cost *costs, size_t offset, int n, double *work)
     return median(work, n);
 }
 
-static moray_status measure_all(const subject *of, int repeats, cost *costs, double *work, cost *found)
+static moray_status measure_all(const subject *of, moray_linear_solver linear, int repeats, cost *costs, double *work,
+                                cost *found)
 {
     for (int k = 0; k < repeats; k++)
-        MORAY_TRY(measure_once(of, &costs[k]));
+        MORAY_TRY(measure_once(of, linear, &costs[k]));
     *found = costs[0];
     for (size_t k = 0; k < PIECES; k++)
         found->piece[k] = median_cost(costs, offsetof(cost, piece) + k * sizeof(double), repeats, work);
     found->total = median_cost(costs, offsetof(cost, total), repeats, work);
+    found->sweep = median_cost(costs, offsetof(cost, sweep), repeats, work);
     found->wall = median_cost(costs, offsetof(cost, wall), repeats, work);
     return moray_ok();
 }
 
-moray_status measure(const subject *of, int repeats, cost *found)
+moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found)
 {
     cost *costs = calloc((size_t)repeats, sizeof *costs);
     double *work = calloc((size_t)repeats, sizeof *work);
@@ -102,7 +122,7 @@ moray_status measure(const subject *of, int repeats, cost *found)
     if (!moray_failed(status) && of->begin)
         status = of->begin(of->self);
     if (!moray_failed(status))
-        status = measure_all(of, repeats, costs, work, found);
+        status = measure_all(of, linear, repeats, costs, work, found);
     if (of->end)
         of->end(of->self);
     free(costs);

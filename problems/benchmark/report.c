@@ -47,38 +47,53 @@ static void sizes_row(struct sheet *sheet, const char *label, const cost *c)
                                       c->size.nnz_hess, c->objective});
 }
 
-static void totals_row(struct sheet *sheet, const char *label, const cost *c)
+static void totals_row(struct sheet *sheet, const char *label, const machine *rates, const cost *c)
 {
+    double term[FLOOR_TERMS];
+    const double floor = cost_floor(rates, c, term);
     add(sheet, label,
-        (double[MORAY_TABLE_COLUMNS]){1000 * c->total, 1000 * c->wall, 1000 * cost_evaluation(c), cost_over_floor(c),
-                                      1000 * c->total / c->iterations});
+        (double[MORAY_TABLE_COLUMNS]){1000 * c->total, 1000 * c->wall, 1000 * c->total / c->iterations,
+                                      1000 * term[FLOOR_FACTORS], 1000 * term[FLOOR_STREAM], 1000 * term[FLOOR_CALLS],
+                                      c->total / floor});
 }
 
+static void solvers_row(struct sheet *sheet, const char *label, const named_cost *c)
+{
+    add(sheet, label,
+        (double[MORAY_TABLE_COLUMNS]){c->cost.iterations, c->mumps.iterations, 1000 * c->cost.total,
+                                      1000 * c->mumps.total, total_over_ours(c), linear_over_ours(c),
+                                      c->cost.objective - c->mumps.objective});
+}
+
+static const char *const solver_columns[MORAY_TABLE_COLUMNS] = {
+    "iterations", "with MUMPS", "total [ms]", "with MUMPS", "ratio", "linear solver's", "objectives differ"};
 static const char *const time_columns[MORAY_TABLE_COLUMNS] = {"set-up",  "function", "Jacobian",
                                                               "Hessian", "Ipopt",    "linear solver"};
 static const char *const growth_columns[MORAY_TABLE_COLUMNS] = {
     "set-up", "function", "Jacobian", "Hessian", "Ipopt", "linear solver", "iterations", "an iteration"};
 static const char *const size_columns[MORAY_TABLE_COLUMNS] = {"iterations", "variables",    "constraints",
                                                               "nnz(J)",     "nnz(Hessian)", "objective"};
-static const char *const total_columns[MORAY_TABLE_COLUMNS] = {"total", "wall", "evaluation", "total/floor",
-                                                               "an iteration"};
+static const char *const total_columns[MORAY_TABLE_COLUMNS] = {
+    "total", "wall", "an iteration", "floor: factors", "streaming", "functions", "total/floor"};
 
 static void print_cases(const benchmark *run)
 {
-    struct sheet times = {0}, sizes = {0}, totals = {0};
+    struct sheet times = {0}, sizes = {0}, totals = {0}, solvers = {0};
     for (int k = 0; k < run->n_cases; k++) {
         const cost *c = &run->cases[k].cost;
         char name[80];
         snprintf(name, sizeof name, "%.60s%s", run->cases[k].name, c->solved ? "" : " (NOT SOLVED)");
         sizes_row(&sizes, name, c);
         times_row(&times, name, c);
-        totals_row(&totals, name, c);
+        totals_row(&totals, name, &run->machine, c);
+        solvers_row(&solvers, name, &run->cases[k]);
     }
     if (run->n_cases == 0)
         return;
     print_sheet(&sizes, "Programmes", size_columns);
     print_sheet(&times, "Processor time [ms]", time_columns);
     print_sheet(&totals, "Start to finish [ms]", total_columns);
+    print_sheet(&solvers, "Beside MUMPS, ratios of its time to that above", solver_columns);
 }
 
 static void print_growth(const growth *g)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <stdlib.h>
+#include <string.h>
 
 #include "linear/parts.h"
 
-enum { work_size = 8 };
+enum { work_size = 10 };
 
 // Multiplications and additions, before fronts are merged.
 static double cost(const struct plan *plan)
@@ -14,33 +15,37 @@ static double cost(const struct plan *plan)
     return sum;
 }
 
-// mate, order and tree by pairs of that strength.
-static moray_status try_pairs(struct plan *plan, const struct graph *graph, double strong, int *mate, int *work)
+// How strong a partner must be decides which of several stable ones is taken, and that decides the fill, which cannot
+// be told beforehand: both are tried.
+// other[2 n]: partners and order of the first.
+static moray_status choose_order(struct plan *plan, const struct graph *graph, int *mate, int *other, int *work)
 {
-    plan->pairs = moray_ldl_graph_pair(graph, strong, mate, work);
+    static const double strong = 0.1, stronger = 0.5;
+    const size_t size = (size_t)graph->n * sizeof *mate;
+    const int pairs = plan->pairs = moray_ldl_graph_pair(graph, strong, mate, work);
     MORAY_TRY(moray_ldl_graph_order(graph, mate, plan->order));
+    moray_ldl_plan_tree(plan, graph, work);
+    const double before = cost(plan);
+    memcpy(other, mate, size);
+    plan->pairs = moray_ldl_graph_pair(graph, stronger, mate, work);
+    if (memcmp(other, mate, size) == 0)
+        return moray_ok();
+    memcpy(other + graph->n, plan->order, size);
+    MORAY_TRY(moray_ldl_graph_order(graph, mate, plan->order));
+    moray_ldl_plan_tree(plan, graph, work);
+    if (cost(plan) < before)
+        return moray_ok();
+    plan->pairs = pairs;
+    memcpy(mate, other, size);
+    memcpy(plan->order, other + graph->n, size);
     moray_ldl_plan_tree(plan, graph, work);
     return moray_ok();
 }
 
-// How strong a partner must be decides which of several stable ones is taken, and that decides the fill, which cannot
-// be told beforehand: both are tried.
-static moray_status choose_order(struct plan *plan, const struct graph *graph, int *mate, int *work)
-{
-    enum { trials = 2 };
-    static const double strengths[trials] = {0.1, 0.5};
-    double costs[trials];
-    for (int k = 0; k < trials; k++) {
-        MORAY_TRY(try_pairs(plan, graph, strengths[k], mate, work));
-        costs[k] = cost(plan);
-    }
-    return costs[1] < costs[0] ? moray_ok() : try_pairs(plan, graph, strengths[0], mate, work);
-}
-
 static moray_status make(struct plan *plan, const struct graph *graph, const moray_pattern *pattern, int *mate)
 {
-    int *work = mate + graph->n;
-    MORAY_TRY(choose_order(plan, graph, mate, work));
+    int *other = mate + graph->n, *work = other + 2 * graph->n;
+    MORAY_TRY(choose_order(plan, graph, mate, other, work));
     MORAY_TRY(moray_ldl_plan_fronts(plan, mate, work));
     MORAY_TRY(moray_ldl_plan_structure(plan, graph, work));
     return moray_ldl_plan_entries(plan, pattern, work);

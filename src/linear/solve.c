@@ -8,7 +8,7 @@
 #include "linear/parts.h"
 
 static const double accurate = 1e-14; // backward error that refinement would hardly better
-enum { refinements = 2 };
+enum { refinements = 5 };             // at most; one that does not halve the error is the last
 
 struct part {
     const double *P, *D;
@@ -125,10 +125,11 @@ static double solve_one(moray_ldl *ldl, double *b)
     }
     substitute(ldl);
     add_solution(ldl);
-    double error = find_residual(ldl);
-    for (int k = 0; k < refinements && error > accurate; k++) {
+    double error = find_residual(ldl), before = INFINITY;
+    for (int k = 0; k < refinements && error > accurate && error < before / 2; k++) {
         substitute(ldl);
         add_solution(ldl);
+        before = error;
         error = find_residual(ldl);
     }
     for (int c = 0; c < plan->n; c++)

@@ -383,6 +383,34 @@ static void test_other_values(void)
     moray_ldl_free(ldl);
 }
 
+// An arrow whose shaft is too weak for pivots of its own: all of it is delayed to the head.
+static void test_filled(void)
+{
+    enum { SHAFT = 1100 };
+    static int row[3 * SHAFT], col[3 * SHAFT];
+    static double value[3 * SHAFT];
+    moray_ldl *ldl = NULL;
+    for (int i = 0; i < SHAFT; i++) {
+        row[3 * i] = col[3 * i] = col[3 * i + 1] = 2 * i;
+        row[3 * i + 1] = col[3 * i + 2] = 2 * i + 1;
+        row[3 * i + 2] = 2 * SHAFT;
+        value[3 * i] = value[3 * i + 1] = value[3 * i + 2] = 1;
+    }
+    CHECK_OK(moray_ldl_new(&ldl, 2 * SHAFT + 1, &(moray_pattern){3 * SHAFT, row, col}), "an arrow");
+    CHECK_OK(moray_ldl_factor(ldl, value, 0.1), "with a strong shaft");
+    for (int i = 0; i < SHAFT; i++)
+        value[3 * i + 1] = 1e-3;
+    const moray_status status = moray_ldl_factor(ldl, value, 0.1);
+    const moray_ldl_statistics statistics = moray_ldl_statistics_of(ldl);
+    CHECK(status.code == MORAY_NOT_SOLVED && statistics.orders == 2, "a weak one, ordered twice: %s", status.text);
+    CHECK(moray_ldl_solve(ldl, 0, NULL).code == MORAY_NUMERIC && moray_ldl_inertia_of(ldl).positive == 0,
+          "leaves nothing to solve with");
+    CHECK_OK(moray_ldl_factor(ldl, value, 1e-8), "but for one who minds small pivots less");
+    CHECK(moray_ldl_statistics_of(ldl).filled < 8 * statistics.entries, "then %.3g entries for %.3g",
+          moray_ldl_statistics_of(ldl).filled, statistics.entries);
+    moray_ldl_free(ldl);
+}
+
 static void test_refusals(void)
 {
     int row[] = {0, 1}, col[] = {0, 2};
@@ -424,6 +452,7 @@ int main(void)
     test_dependent();
     test_empty();
     test_other_values();
+    test_filled();
     test_refusals();
     return tap_done();
 }

@@ -9,8 +9,14 @@ check "S1 is measured: $(cat err)" [ $code -eq 0 ]
 check "and solved: $(number S1 objective)" near "$(number S1 objective)" -0.603772 1e-5
 check "in $(number S1 iterations) iterations" [ "$(number S1 iterations)" -le 12 ]
 check "of 960 defects and more" [ "$(number S1 ncon)" -ge 960 ]
-check "the pieces make the total" awk -v t="$(number S1 total_s)" -v e="$(number S1 evaluation_s)" \
-    -v f="$(number S1 total_over_floor)" 'BEGIN { d = f - t / (t - e); exit !(t > 0 && d * d < 1e-12) }'
+check "as with MUMPS beside it" near "$(number with_mumps objective)" "$(number S1 objective)" 1e-9
+check "which costs $(number with_mumps total_over_ours) times as much" awk -v r="$(number with_mumps total_over_ours)" \
+    'BEGIN { exit !(r > 1) }'
+check "the pieces make the floor" awk -v a="$(number S1 floor_factorisation_s)" -v b="$(number S1 floor_streaming_s)" \
+    -v c="$(number S1 floor_functions_s)" -v f="$(number S1 floor_s)" \
+    'BEGIN { d = f - a - b - c; exit !(a > 0 && b > 0 && c > 0 && d * d < 1e-20) }'
+check "below which nothing goes: $(number S1 total_over_floor)" awk -v t="$(number S1 total_s)" -v f="$(number S1 floor_s)" \
+    -v r="$(number S1 total_over_floor)" 'BEGIN { d = r - t / f; exit !(r > 1 && d * d < 1e-12 * r * r) }'
 check "evaluations are function, Jacobian and Hessian" awk -v e="$(number S1 evaluation_s)" -v a="$(number S1 function_s)" \
     -v b="$(number S1 jacobian_s)" -v c="$(number S1 hessian_s)" 'BEGIN { d = e - a - b - c; exit !(d * d < 1e-20) }'
 

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+//
+// A programme on which our own factors fill up, and MUMPS takes over: min |x|^2 / 2, STEP x_i + w_i p = w_i, whose
+// pivots can all but one be had only after the last unknown, p. Solved by x = 0, p = 1.
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/nlp.h"
+
+enum { ROWS = 1100 };
+static const double step = 1e-3;
+
+static double weight(int i)
+{
+    return (1.0 + i) / ROWS;
+}
+
+static bool objective(void *self, const double *x, bool fresh, double *f)
+{
+    (void)self, (void)fresh;
+    *f = 0;
+    for (int i = 0; i < ROWS; i++)
+        *f += x[i] * x[i] / 2;
+    return true;
+}
+
+static bool gradient(void *self, const double *x, bool fresh, double *g)
+{
+    (void)self, (void)fresh;
+    memcpy(g, x, ROWS * sizeof *g);
+    g[ROWS] = 0;
+    return true;
+}
+
+static bool constraints(void *self, const double *x, bool fresh, double *g)
+{
+    (void)self, (void)fresh;
+    for (int i = 0; i < ROWS; i++)
+        g[i] = step * x[i] + weight(i) * x[ROWS];
+    return true;
+}
+
+static bool jacobian(void *self, const double *x, bool fresh, double *v)
+{
+    (void)self, (void)x, (void)fresh;
+    for (int i = 0; i < ROWS; i++) {
+        v[2 * i] = step;
+        v[2 * i + 1] = weight(i);
+    }
+    return true;
+}
+
+static bool hessian(void *self, const double *x, bool fresh, double sigma, const double *lambda, double *v)
+{
+    (void)self, (void)x, (void)fresh, (void)lambda;
+    for (int i = 0; i < ROWS; i++)
+        v[i] = sigma;
+    return true;
+}
+
+static moray_status solve(moray_linear_solver solver, double *p, moray_nlp_info *info)
+{
+    static double lower[ROWS + 1], upper[ROWS + 1], right[ROWS];
+    static double x[ROWS + 1], z_lower[ROWS + 1], z_upper[ROWS + 1], g[ROWS], lambda[ROWS];
+    static int jac_row[2 * ROWS], jac_col[2 * ROWS], diagonal[ROWS];
+    const moray_nlp nlp = {.n = ROWS + 1,
+                           .m = ROWS,
+                           .x_lower = lower,
+                           .x_upper = upper,
+                           .g_lower = right,
+                           .g_upper = right,
+                           .nnz_jac = 2 * ROWS,
+                           .nnz_hess = ROWS,
+                           .jac_row = jac_row,
+                           .jac_col = jac_col,
+                           .hess_row = diagonal,
+                           .hess_col = diagonal,
+                           .objective = objective,
+                           .gradient = gradient,
+                           .constraints = constraints,
+                           .jacobian = jacobian,
+                           .hessian = hessian};
+    moray_nlp_settings settings = moray_nlp_settings_default();
+    settings.linear_solver = solver;
+    for (int i = 0; i <= ROWS; i++) {
+        lower[i] = -MORAY_INFINITY;
+        upper[i] = MORAY_INFINITY;
+        x[i] = 2;
+    }
+    for (int i = 0; i < ROWS; i++) {
+        jac_row[2 * i] = jac_row[2 * i + 1] = jac_col[2 * i] = diagonal[i] = i;
+        jac_col[2 * i + 1] = ROWS;
+        right[i] = weight(i);
+    }
+    const moray_status status =
+        moray_ipopt_solve(&nlp, &settings, &(moray_iterate){x, z_lower, z_upper, g, lambda, 0}, info);
+    *p = x[ROWS];
+    return status;
+}
+
+int main(void)
+{
+    moray_nlp_info info;
+    double p;
+    CHECK(moray_nlp_settings_default().linear_solver == MORAY_LINEAR_MORAY, "our own is the default");
+    CHECK_OK(solve(MORAY_LINEAR_MUMPS, &p, &info), "MUMPS");
+    CHECK(info.outcome == MORAY_NLP_SOLVED && fabs(p - 1) < 1e-6, "finds p = %.9g", p);
+    CHECK(info.linear_solver == MORAY_LINEAR_MUMPS && !moray_failed(info.linear_fallback), "as it was asked to");
+    CHECK_OK(solve(MORAY_LINEAR_MORAY, &p, &info), "our own");
+    CHECK(info.outcome == MORAY_NLP_SOLVED && fabs(p - 1) < 1e-6, "p = %.9g is found", p);
+    CHECK(info.linear_solver == MORAY_LINEAR_MUMPS && info.linear_fallback.code == MORAY_NOT_SOLVED &&
+              strstr(info.linear_fallback.text, "fill the factors"),
+          "by MUMPS, told: %s", info.linear_fallback.text);
+    return tap_done();
+}
