@@ -21,6 +21,7 @@
 #include "moray/num.h"
 #include "moray/ocp.h"
 #include "moray/ode.h"
+#include "moray/parallel.h"
 #include "moray/scheme.h"
 #include "moray/search.h"
 #include "moray/sensitivity.h"

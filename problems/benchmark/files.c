@@ -9,18 +9,13 @@ static const char *const piece_keys[PIECES] = {"setup_s",   "function_s", "jacob
 static void json_cost(moray_json *json, const cost *c)
 {
     moray_json_bool(json, "solved", c->solved);
-    moray_json_number(json, "objective", c->objective);
-    moray_json_number(json, "iterations", c->iterations);
-    moray_json_number(json, "nvar", c->size.variables);
-    moray_json_number(json, "ncon", c->size.constraints);
-    moray_json_number(json, "nnz_jac", c->size.nnz_jac);
-    moray_json_number(json, "nnz_hess", c->size.nnz_hess);
+    moray_json_members(json, MORAY_MEMBERS({"objective", c->objective}, {"iterations", c->iterations},
+                                           {"nvar", c->size.variables}, {"ncon", c->size.constraints},
+                                           {"nnz_jac", c->size.nnz_jac}, {"nnz_hess", c->size.nnz_hess}));
     for (int k = 0; k < PIECES; k++)
         moray_json_number(json, piece_keys[k], c->piece[k]);
-    moray_json_number(json, "evaluation_s", cost_evaluation(c));
-    moray_json_number(json, "total_s", c->total);
-    moray_json_number(json, "wall_s", c->wall);
-    moray_json_number(json, "total_over_floor", cost_over_floor(c));
+    moray_json_members(json, MORAY_MEMBERS({"evaluation_s", cost_evaluation(c)}, {"total_s", c->total},
+                                           {"wall_s", c->wall}, {"total_over_floor", cost_over_floor(c)}));
 }
 
 static void json_growth(moray_json *json, const growth *g)

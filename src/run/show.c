@@ -179,13 +179,10 @@ static void json_meshes(moray_json *json, const moray_solution *solution)
     for (int k = 0; k < meshes; k++) {
         moray_json_open(json, NULL);
         moray_json_text(json, "status", moray_nlp_outcome_text(mesh[k].outcome));
-        moray_json_number(json, "intervals", mesh[k].intervals);
-        moray_json_number(json, "nodes", mesh[k].nodes);
-        moray_json_number(json, "nvar", mesh[k].variables);
-        moray_json_number(json, "iterations", mesh[k].iterations);
-        moray_json_number(json, "time_s", mesh[k].seconds);
-        moray_json_number(json, "mesh_error", mesh[k].error);
-        moray_json_number(json, "objective", mesh[k].objective);
+        moray_json_members(json, MORAY_MEMBERS({"intervals", mesh[k].intervals}, {"nodes", mesh[k].nodes},
+                                               {"nvar", mesh[k].variables}, {"iterations", mesh[k].iterations},
+                                               {"time_s", mesh[k].seconds}, {"mesh_error", mesh[k].error},
+                                               {"objective", mesh[k].objective}));
         moray_json_close(json);
     }
     moray_json_close(json);

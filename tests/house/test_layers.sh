@@ -24,7 +24,7 @@ public_headers() {
         header=${path#include/}
         case $header in
         moray/moray.h | moray/snake.h) continue ;;
-        moray/export.h | moray/status.h | moray/key_value.h | moray/num.h | moray/angle.h | moray/map.h | moray/dense.h | moray/ode.h) room=base ;;
+        moray/export.h | moray/status.h | moray/key_value.h | moray/num.h | moray/angle.h | moray/map.h | moray/dense.h | moray/ode.h | moray/parallel.h) room=base ;;
         moray/nlp.h | moray/search.h) room=nlp ;;
         moray/ocp.h | moray/scheme.h | moray/sensitivity.h) room=ocp ;;
         moray/sim.h) room=sim ;;
@@ -34,7 +34,7 @@ public_headers() {
         moray/app/*) room=run ;;
         moray/snake/model.h) room=snake/model ;;
         moray/snake/plant.h) room=snake/plant ;;
-        moray/snake/gait_problem.h | moray/snake/gait_search.h) room=snake/gait ;;
+        moray/snake/gait_problem.h | moray/snake/gait_search.h | moray/snake/gait_over.h) room=snake/gait ;;
         moray/snake/steering.h | moray/snake/heading.h | moray/snake/path.h | moray/snake/turn.h | moray/snake/controllers.h | \
             moray/snake/closed_loop.h | moray/snake/receding_horizon.h) room=snake/steer ;;
         moray/snake/*) room=snake/swim ;;

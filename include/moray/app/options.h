@@ -45,6 +45,13 @@ typedef struct moray_option {
 // .offset and .size of a row: {.key = "tol", MORAY_AT(moray_common, tol), ...}
 #define MORAY_AT(settings, field) .offset = offsetof(settings, field), .size = sizeof(((settings *)0)->field)
 
+// A row of a field, of a type without its prefix, with what else it has behind the key:
+//   MORAY_ROW(REAL, moray_common, tol, "solver", "tol", .max = 1, .open = true, .help = "tolerance of the solver")
+#define MORAY_ROW(kind, settings, field, part, name, ...)                                                              \
+    {                                                                                                                  \
+        .section = part, .key = name, .type = MORAY_OPTION_##kind, MORAY_AT(settings, field), __VA_ARGS__              \
+    }
+
 enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };
 
 // Options of Ipopt that the user names, for moray_settings.ipopt.

@@ -34,6 +34,16 @@ MORAY_API moray_status moray_turn_rate(const moray_robot *robot, moray_model mod
 // Heading at t without the undulation.
 MORAY_API double moray_straight_motion_heading(const moray_straight_motion *straight, double t, double heading);
 
+// ---- Plans made ----------------------------------------------------------------------------------------------------
+
+// A plan from t = 0 on that begins in the straight motion of its gait.
+typedef struct moray_steering_plan {
+    moray_steering_problem problem;
+    moray_solution *solution;
+    moray_straight_motion straight; // its speed is the start's, its undulation is what the heading is without
+} moray_steering_plan;
+MORAY_API void moray_steering_plan_free(moray_steering_plan *plan); // safe on a zeroed plan, and twice
+
 // ---- Plans carried out ---------------------------------------------------------------------------------------------
 
 // The offset of a plan, times `scale`: 1, or from one model to the other alpha/a with the sign of erratum E3.

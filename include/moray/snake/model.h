@@ -20,7 +20,7 @@ typedef enum { MORAY_DRAG_LINEAR, MORAY_DRAG_QUADRATIC, MORAY_DRAG_BOTH } moray_
 typedef enum { MORAY_ADDED_MASS_PAPER, MORAY_ADDED_MASS_INVARIANT } moray_added_mass;
 typedef enum { MORAY_FRAME_PAPER, MORAY_FRAME_INVARIANT } moray_frame;
 typedef struct moray_hydrodynamics {
-    moray_rotation rotation; // drag and added mass at the centre of a link, or spread evenly along it
+    moray_rotation rotation; // drag and added mass at the centre of a link, or spread evenly along it in place of (4)
     moray_drag drag;         // the terms of (2) relative to the water: linear, quadratic, both (Remark 2, erratum E8)
     moray_added_mass added_mass; // (2) as printed, or the same to every observer who moves with a constant velocity
     moray_frame frame; // (15b), (15c) of the control-oriented model, or with theta' v_n, -theta' v_t (erratum E7)

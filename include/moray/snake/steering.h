@@ -56,6 +56,12 @@ typedef struct moray_steering_spec {
 
 typedef struct moray_steering moray_steering;
 
+// A problem with the task it owns; of a plan.
+typedef struct moray_steering_problem {
+    moray_steering *steering;
+    void *task;
+} moray_steering_problem;
+
 // The gait of a solution's parameters, offset 0.
 MORAY_API moray_gait moray_steering_gait(const double s[MORAY_STEERING_PARAMETERS]);
 

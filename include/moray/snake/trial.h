@@ -48,7 +48,8 @@ MORAY_API moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_mo
 MORAY_API moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const moray_gait_trial *trial,
                                                moray_model model, double horizon, int n, double *time, double *speed);
 
-// theta_max 20 deg, omega 120 deg/s, delta 40 deg (Sec. V), as a gait of the control-oriented model.
+// The paper's gait for N links, theta_max 20 deg, omega 120 deg/s, delta = 2 pi/(N-1), 40 deg for its 10 (Assumption 2,
+// Sec. V), as a gait of the control-oriented model.
 MORAY_API moray_gait moray_gait_paper(const moray_robot *robot);
 
 // First-principles model: by how much the trial's gait beats the baseline's at the baseline's power (omega rescaled),

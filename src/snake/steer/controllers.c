@@ -101,6 +101,15 @@ double moray_straight_motion_heading(const moray_straight_motion *straight, doub
     return heading - straight->undulation[0] * cos(phase) - straight->undulation[1] * sin(phase);
 }
 
+// ---- Plans made ----------------------------------------------------------------------------------------------------
+
+void moray_steering_plan_free(moray_steering_plan *plan)
+{
+    moray_solution_free(plan->solution);
+    moray_steering_problem_free(&plan->problem);
+    *plan = (moray_steering_plan){0};
+}
+
 // ---- Plans carried out ---------------------------------------------------------------------------------------------
 
 moray_offset moray_plan_offset(const moray_plan *plan, double t)

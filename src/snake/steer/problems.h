@@ -22,19 +22,13 @@ double moray_steering_work(const moray_steering *problem, const moray_solution *
 void moray_steering_parameters(const moray_gait *gait, double s[MORAY_STEERING_PARAMETERS]);
 
 // The state of a steering problem that swims so at t = 0, with this mean heading, in the current, from p = 0.
-void moray_straight_motion_start(const moray_straight_motion *straight, double heading,
-                                           const double current[2], double state[MORAY_STEERING_STATES]);
+void moray_straight_motion_start(const moray_straight_motion *straight, double heading, const double current[2],
+                                 double state[MORAY_STEERING_STATES]);
 
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_heading_free.
-moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec);
-void moray_heading_free(moray_heading *problem);
-
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_path_problem_free.
-moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
-void moray_path_problem_free(moray_path_problem *problem);
-
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_turn_free.
-moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec);
-void moray_turn_free(moray_turn *problem);
+// Error of all: those of moray_steering_new, and MORAY_INPUT. Free with moray_steering_problem_free.
+moray_status moray_heading_new(moray_steering_problem *problem, const moray_heading_spec *spec);
+moray_status moray_path_problem_new(moray_steering_problem *problem, const moray_path_spec *spec);
+moray_status moray_turn_new(moray_steering_problem *problem, const moray_turn_spec *spec);
+void moray_steering_problem_free(moray_steering_problem *problem); // safe on a zeroed problem, and twice
 
 #endif

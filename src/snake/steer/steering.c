@@ -275,6 +275,13 @@ void moray_steering_free(moray_steering *problem)
     free(problem);
 }
 
+void moray_steering_problem_free(moray_steering_problem *problem)
+{
+    moray_steering_free(problem->steering);
+    free(problem->task);
+    *problem = (moray_steering_problem){0};
+}
+
 // ---- Reading -------------------------------------------------------------------------------------------------------
 
 const moray_ocp *moray_steering_ocp(const moray_steering *problem)

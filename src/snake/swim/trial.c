@@ -38,7 +38,7 @@ moray_swim_setup moray_test_rig_setup(const moray_test_rig *rig, moray_model mod
 
 moray_gait moray_gait_paper(const moray_robot *robot)
 {
-    const double delta = 40 * MORAY_DEGREE;
+    const double delta = 2 * M_PI / (robot->links - 1);
     return (moray_gait){.amplitude =
                             moray_amplitude_from_theta_max(robot, MORAY_CONTROL_ORIENTED, 20 * MORAY_DEGREE, delta),
                         .omega = 120 * MORAY_DEGREE,
