@@ -127,10 +127,10 @@ typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_end_va
 typedef struct moray_phase_spec {
     const char *name; // NULL: "phase", or the number of several
     int nx, nu, nc, nq;
-    moray_continuous_fn *continuous; // complex step
-    const moray_map *map;            // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
-    moray_bounds t0, tf;
-    moray_bounds_list x, x0, xf, u, c, q;                         // x0 and xf narrow x at the ends
+    moray_continuous_fn *continuous;      // complex step
+    const moray_map *map;                 // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
+    moray_bounds t0, tf;                  // t0 <= tf holds whatever they say
+    moray_bounds_list x, x0, xf, u, c, q; // x0 and xf narrow x at the ends
     const char *const *x_names, *const *u_names, *const *c_names; // NULL: x[0], ...
     moray_continuous_real_fn *continuous_real;                    // differences
 } moray_phase_spec;

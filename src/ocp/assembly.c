@@ -4,6 +4,7 @@
 // interval width w and t = t0 + T tau:
 //   defect   sum_j P_ij x_j - T w sum_j Q_ij f_j
 //   integral q - T sum_n weight_n g_n
+//   length   T
 #include "ocp/transcription.h"
 
 #include <string.h>
@@ -59,6 +60,8 @@ void moray_assemble_constraints(const struct transcription *t, double *g)
         for (int k = 0; k < t->layout.phase[p].mesh.intervals; k++)
             interval_defects(t, p, &t->layout.phase[p].interval[k], g);
         path_and_integrals(t, p, g);
+        if (t->layout.phase[p].length_row >= 0)
+            g[t->layout.phase[p].length_row] = duration(t, p);
     }
     memcpy(g + t->layout.events, t->end_out + 1, (size_t)t->ocp->ne * sizeof *g);
 }
@@ -154,6 +157,8 @@ void moray_walk_jacobian(const struct transcription *t, triplets *out)
                 put_path_and_integrals(t, p, n, out);
         for (int m = 0; m < t->ocp->phase[p].nq; m++)
             triplets_put(out, layout->integral_row + m, layout->q + m, 1);
+        if (layout->length_row >= 0)
+            put_duration(t, p, layout->length_row, 1, out);
     }
     const moray_pattern *jac = &t->endpoint->jac;
     for (int k = 0; k < jac->nnz; k++)

@@ -11,7 +11,7 @@
 #include "ocp/names.h"
 #include "ocp/optimality.h"
 
-static const double no_length = 1e-9; // of a phase, relative to the longest
+static const double no_length = 1e-5; // of a phase, relative to the longest: what a barrier leaves of none
 enum { where_size = 300, good_stages = 4 };
 
 // What was found, and where it is worst.

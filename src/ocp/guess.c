@@ -62,17 +62,31 @@ static double end_value(moray_bounds end, moray_bounds other)
     return moray_bounds_middle(known ? end : other);
 }
 
+// Middles of the bounds; where those leave no length, the phases share what lies between in turn.
+static void guess_times(const struct transcription *t, int p, double *x)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    double t0 = moray_bounds_middle(phase->t0), tf = moray_bounds_middle(phase->tf);
+    if (phase->tf.upper >= MORAY_INFINITY)
+        tf = fmax(phase->tf.lower, t0 + 1);
+    if (tf <= t0 && phase->t0.lower > -MORAY_INFINITY) {
+        const double start = phase->t0.lower, width = phase->tf.upper - start;
+        t0 = layout->t0 < 0 ? start : start + width * p / t->ocp->phases;
+        tf = layout->tf < 0 ? phase->tf.upper : start + width * (p + 1) / t->ocp->phases;
+    }
+    if (layout->t0 >= 0)
+        x[layout->t0] = t0;
+    if (layout->tf >= 0)
+        x[layout->tf] = tf;
+}
+
 // Straight from x0 to xf by the middles of their bounds; a state known at one end stays as it is there.
 static void guess_from_bounds(const struct transcription *t, int p, double *x)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
-    const double t0 = moray_bounds_middle(phase->t0);
-    if (layout->t0 >= 0)
-        x[layout->t0] = t0;
-    if (layout->tf >= 0)
-        x[layout->tf] =
-            phase->tf.upper < MORAY_INFINITY ? moray_bounds_middle(phase->tf) : fmax(phase->tf.lower, t0 + 1);
+    guess_times(t, p, x);
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
         for (int r = 0; r < phase->nx; r++)

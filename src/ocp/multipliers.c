@@ -113,6 +113,8 @@ static moray_status carry_phase(const moray_solution *from, moray_solution *to, 
     carry(&t, from->iterate.lambda, to->iterate.lambda, of_path, phase->nc);
     memcpy(to->iterate.lambda + t.new->integral_row, from->iterate.lambda + t.old->integral_row,
            (size_t)phase->nq * sizeof *t.here);
+    if (t.new->length_row >= 0)
+        to->iterate.lambda[t.new->length_row] = from->iterate.lambda[t.old->length_row];
     free(t.density);
     return moray_ok();
 }

@@ -67,7 +67,9 @@ void moray_layout_row_name(const struct layout *layout, const moray_ocp *ocp, co
     while (p + 1 < layout->phases && row >= layout->phase[p + 1].node[0].path)
         p++;
     const struct phase_layout *phase = &layout->phase[p];
-    if (row >= phase->integral_row) {
+    if (row == phase->length_row) {
+        snprintf(text, (size_t)size, "length of phase %s", ocp->phase[p].name);
+    } else if (row >= phase->integral_row) {
         snprintf(text, (size_t)size, "definition of integral q[%d] of phase %s", row - phase->integral_row,
                  ocp->phase[p].name);
     } else if (row >= phase->interval[0].defect) {

@@ -80,6 +80,8 @@ static void add_linear(struct measure *m, int p)
     }
     for (int q = 0; q < m->t->ocp->phase[p].nq; q++)
         m->gradient[layout->q + q] += lambda[layout->integral_row + q];
+    if (layout->length_row >= 0)
+        add_time(m, layout, -lambda[layout->length_row], lambda[layout->length_row]);
 }
 
 static void add_endpoint(struct measure *m)

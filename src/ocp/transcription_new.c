@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <math.h>
 #include <stdlib.h>
 
 #include "ocp/transcription.h"
@@ -17,6 +18,22 @@ static void set_column(struct transcription *t, int column, moray_bounds bounds)
     upper[column] = bounds.upper;
 }
 
+// Time has a direction: a free time stays on its side of a fixed one, two free ones have a row between them.
+static void set_times(struct transcription *t, const struct phase *phase, const struct phase_layout *layout)
+{
+    moray_bounds t0 = phase->t0, tf = phase->tf;
+    if (layout->tf < 0)
+        t0.upper = fmax(fmin(t0.upper, tf.upper), t0.lower);
+    if (layout->t0 < 0)
+        tf.lower = fmin(fmax(tf.lower, t0.lower), tf.upper);
+    if (layout->t0 >= 0)
+        set_column(t, layout->t0, t0);
+    if (layout->tf >= 0)
+        set_column(t, layout->tf, tf);
+    if (layout->length_row >= 0)
+        set_row(t, layout->length_row, moray_at_least(0));
+}
+
 static void set_phase_bounds(struct transcription *t, int p)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -33,10 +50,7 @@ static void set_phase_bounds(struct transcription *t, int p)
     }
     for (int r = 0; r < phase->nq; r++)
         set_column(t, layout->q + r, phase->q[r]); // rows of defects and integrals stay at zero
-    if (layout->t0 >= 0)
-        set_column(t, layout->t0, phase->t0);
-    if (layout->tf >= 0)
-        set_column(t, layout->tf, phase->tf);
+    set_times(t, phase, layout);
 }
 
 static void set_bounds(struct transcription *t)

@@ -365,6 +365,8 @@ void moray_witness_rows(const struct witness *e, double *size)
                 memcpy(size + layout->interval[k].defect + i * phase->nx, e->phase[p].size,
                        (size_t)phase->nx * sizeof *size);
         memcpy(size + layout->integral_row, e->phase[p].integral, (size_t)phase->nq * sizeof *size);
+        if (layout->length_row >= 0)
+            size[layout->length_row] = e->duration;
     }
     memcpy(size + t->layout.events, e->end_out_size + 1, (size_t)t->ocp->ne * sizeof *size);
     for (int i = 0; i < t->layout.rows; i++)

@@ -189,6 +189,46 @@ static void test_no_length(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Time has a direction: two phases whose times share one window, and a bonus for a final time before the first
+// ----
+
+static void early(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    const moray_phase_ends *one = &at->phase[0], *other = &at->phase[1];
+    (void)data;
+    out->objective = one->tf - one->t0 + 0.5 * (other->tf - other->t0); // the second runs backwards if it may
+    out->e[0] = other->t0 - one->tf;
+    out->e[1] = other->x0[0] - one->xf[0];
+}
+
+static void test_direction_of_time(void)
+{
+    const moray_phase_spec half = {.nx = 1,
+                                   .nu = 1,
+                                   .continuous = drift,
+                                   .t0 = moray_between(0, 10),
+                                   .tf = moray_between(0, 10),
+                                   .u = MORAY_BOUNDS(moray_between(0.5, 1))};
+    moray_phase_spec phases[] = {half, half};
+    moray_ocp *ocp = NULL;
+    moray_settings settings = moray_settings_default();
+    moray_certificate certificate;
+    phases[0].x0 = (moray_bounds_list)MORAY_BOUNDS(moray_fixed(0));
+    phases[1].x0 = (moray_bounds_list)MORAY_BOUNDS(moray_at_least(1));
+    phases[1].xf = (moray_bounds_list)MORAY_BOUNDS(moray_between(-5, 3));
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 2,
+                                                   .phase = phases,
+                                                   .ne = 2,
+                                                   .e = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                                   .endpoint = early}),
+             "times that share a window");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    CHECK_NEAR(moray_solution_objective(solution), 1, 1e-5, "one way of a second, and no time won back");
+    CHECK(!certificate.pass && strstr(certificate.why, "has no length"), "told: %s", certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     const struct dash dashes[] = {{1, 1, 0},     {1e-6, 1e-6, 0}, {1e-9, 1e-9, 0}, {1e-9, 1, 0},
@@ -198,5 +238,6 @@ int main(void)
     for (unsigned k = 0; k < sizeof dashes / sizeof *dashes; k++)
         test_dash(&dashes[k]);
     test_no_length();
+    test_direction_of_time();
     return tap_done();
 }
