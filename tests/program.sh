@@ -44,6 +44,14 @@ number() {
         seen && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
 }
 
+# rung MODEL: its gain in the first ladder of the JSON; BLOCK MODEL: in the first after BLOCK opens.
+rung() {
+    [ $# -eq 1 ] && set -- . "$1"
+    awk -v block="\"$1\":" -v model="\"$2\"" 'index($0, block) || block == "\".\":" { seen = 1 }
+        seen && /"model"/ && index($0, model) { found = 1 }
+        found && /gain_percent/ { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
+}
+
 # near VALUE EXPECTED TOLERANCE
 near() {
     awk -v is="$1" -v want="$2" -v by="$3" 'BEGIN { exit !(is != "" && want != "" && is - want <= by && want - is <= by) }'

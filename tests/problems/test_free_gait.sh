@@ -14,6 +14,8 @@ no_worse() {
 
 run --quiet --links 5 --set harmonics=3 --out results
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
+check "every motion on the ladder" [ "$(grep -c '"verdict"' results/summary.json)" -eq $(($(grep -c '"motion"' results/summary.json) + 1)) ]
+check "in words: $(grep '^In speed at the power' out)" grep -q "^In speed at the power of the paper's gait the free motion wins .*15, from" out
 for file in summary.json trajectory.csv motion.csv series.csv report.html joints.svg link_angles.svg; do
     check "--out has $file" [ -s results/$file ]
 done

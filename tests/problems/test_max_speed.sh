@@ -34,14 +34,6 @@ check "simulation confirms its speed" near "$(number predicted speed_m_s)" "$(nu
 check "simulation confirms its power" near "$(number predicted power_W)" "$(number validated power_W)" 1e-5
 check "the control-oriented optimum is beside it" near "$(number control_oriented_optimum delta_deg)" 34.9 0.1
 
-# rung MODEL: its gain in the first ladder of the JSON; BLOCK MODEL: in the first after BLOCK opens.
-rung() {
-    [ $# -eq 1 ] && set -- . "$1"
-    awk -v block="\"$1\":" -v model="\"$2\"" 'index($0, block) || block == "\".\":" { seen = 1 }
-        seen && /"model"/ && index($0, model) { found = 1 }
-        found && /gain_percent/ { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
-}
-
 # The ladder: the recommended gait's and the others', as an independent code has them (paper-notes, section 6).
 check "the gait optimised for the ladder is recommended: $(number recommended)" [ "$(number recommended)" = '"ladder_optimum"' ]
 check "it wins on all: $(number verdict)" eval 'number verdict | grep -q "\"wins on all 15"'

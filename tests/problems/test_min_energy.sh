@@ -14,6 +14,8 @@ check "which is the gain at equal speed" near "$(number gain power_percent_at_eq
     "$(awk -v p="$(number predicted power_W)" 'BEGIN { print 100 * (p / 0.2646 - 1) }')" 0.03
 check "the objective is joint work per distance" near "$(number solver objective)" "$(number predicted course_cost_J_m)" 1e-9
 check "the control-oriented optimum is beside it" near "$(number control_oriented_optimum delta_deg)" 34.9 0.1
+check "both on the ladder" [ "$(grep -c gain_percent_at_equal_power out)" = 30 ]
+check "by $(rung paper) % on the paper's model" near "$(rung paper)" "$(number gain speed_percent_at_equal_power)" 1e-3
 for file in summary.json trajectory.csv start.svg report.html; do
     check "--out has $file" [ -s results/$file ]
 done

@@ -17,6 +17,9 @@ falling() {
 
 run --quiet --set points=6 --set theta_max_deg=1:60 --out results
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
+check "every gait on the ladder" [ "$(grep -c '"gain_percent_at_equal_power"' results/summary.json)" -eq \
+    $((15 * $(grep -c '"speed_per_power_m_s_W"' results/summary.json))) ]
+check "and the fronts in words" [ "$(grep -c 'gaits win on all models; gains from' out)" -ge 4 ]
 for file in summary.json report.html front.svg omega.svg delta.svg theta_max.svg taper.svg; do
     check "--out has $file" [ -s results/$file ]
 done

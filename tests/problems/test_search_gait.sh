@@ -17,6 +17,9 @@ check "the best $(optimum 1 value) m/s" near "$(optimum 1 value)" 0.23856 2e-5
 check "at delta $(optimum 1 delta_deg)" near "$(optimum 1 delta_deg)" 51.33 0.02
 check "the other $(optimum 2 value) m/s" near "$(optimum 2 value)" 0.23678 2e-5
 check "at delta $(optimum 2 delta_deg)" near "$(optimum 2 delta_deg)" 86.6 0.05
+check "on the ladder the best: $(optimum 1 verdict)" [ "$(optimum 1 verdict)" = '"wins on all 15' ]
+check "and the other: $(optimum 2 verdict)" [ "$(optimum 2 verdict)" = '"wins only on the model it was found on' ]
+check "by $(rung paper) % on the paper's model" near "$(rung paper)" "$(number gain speed_percent_at_equal_power)" 1e-3
 check "search and collocation agree to $(number largest_difference)" near "$(number largest_difference)" 0 1e-7
 check "simulation too" near "$(optimum 1 value)" "$(number validated course_speed_m_s)" 1e-6
 check "the power is that of the paper's gait" near "$(optimum 1 power_W)" 0.26464 1e-5

@@ -18,6 +18,7 @@ alike() {
 
 # ---- The first-principles optimum
 run --json --out results
+check "the gait's ladder: $(number verdict)" eval 'number verdict | grep -q "wins on all 15"'
 check "solved, certified, confirmed by solving again: $(cat err)" [ $code -eq 0 ]
 for file in summary.json trajectory.csv report.html; do
     check "--out has $file" [ -s results/$file ]
