@@ -10,44 +10,19 @@ static const char *const parts[] = {"all",   "s1",      "problems",   "classics"
 static const char *const unused[] = {"scheme", "intervals", "tol", NULL};
 
 static const moray_option options[] = {
-    {.section = "benchmark",
-     .key = "part",
-     .flag = "part",
-     .argument = "NAME",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(benchmark, part),
-     .choices = parts,
-     .help =
-         "what to measure: a programme that other tools can be given, optimal gaits, textbook problems, growth over "
-         "intervals, over links and over the horizon of heading tracking, simulation"},
-    {.section = "benchmark",
-     .key = "repeats",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, repeats),
-     .min = 1,
-     .max = 1000,
-     .help = "measurements of each, of which the median counts"},
-    {.section = "benchmark",
-     .key = "most_intervals",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, most_intervals),
-     .min = 10,
-     .max = 2000,
-     .help = "where growth over intervals ends; textbook problems that begin with more are left out"},
-    {.section = "benchmark",
-     .key = "most_links",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, most_links),
-     .min = 5,
-     .max = 100,
-     .help = "where growth over links ends"},
-    {.section = "benchmark",
-     .key = "most_seconds",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(benchmark, most_seconds),
-     .min = 60,
-     .max = 800,
-     .help = "where growth over the horizon ends"},
+    MORAY_ROW(
+        CHOICE, benchmark, part, "benchmark", "part", .flag = "part", .argument = "NAME", .choices = parts,
+        .help =
+            "what to measure: a programme that other tools can be given, optimal gaits, textbook problems, growth over "
+            "intervals, over links and over the horizon of heading tracking, simulation"),
+    MORAY_ROW(INT, benchmark, repeats, "benchmark", "repeats", .min = 1, .max = 1000,
+              .help = "measurements of each, of which the median counts"),
+    MORAY_ROW(INT, benchmark, most_intervals, "benchmark", "most_intervals", .min = 10, .max = 2000,
+              .help = "where growth over intervals ends; textbook problems that begin with more are left out"),
+    MORAY_ROW(INT, benchmark, most_links, "benchmark", "most_links", .min = 5, .max = 100,
+              .help = "where growth over links ends"),
+    MORAY_ROW(INT, benchmark, most_seconds, "benchmark", "most_seconds", .min = 60, .max = 800,
+              .help = "where growth over the horizon ends"),
 };
 
 static const moray_program program = {
@@ -69,13 +44,13 @@ static bool wanted(const benchmark *run, enum part part)
     return run->part == ALL || run->part == (int)part;
 }
 
-static moray_status add_case(benchmark *run, const char *name, const subject *of)
+static moray_status add_case(benchmark *run, const char *name, const subject of)
 {
     named_cost *to = &run->cases[run->n_cases];
     moray_ticker_show(&run->ticker, "benchmark: %s", name);
     to->name = name;
-    MORAY_TRY(measure(of, run->common.linear_solver, run->repeats, &to->cost));
-    MORAY_TRY(measure(of, MORAY_LINEAR_MUMPS, run->repeats, &to->mumps));
+    MORAY_TRY(measure(&of, run->common.linear_solver, run->repeats, &to->cost));
+    MORAY_TRY(measure(&of, MORAY_LINEAR_MUMPS, run->repeats, &to->mumps));
     run->n_cases++;
     return moray_ok();
 }
@@ -83,12 +58,7 @@ static moray_status add_case(benchmark *run, const char *name, const subject *of
 static moray_status measure_s1(benchmark *run)
 {
     s1_case s1 = {0};
-    moray_status status = s1_begin(&s1);
-    const subject it = s1_subject(&s1);
-    if (!moray_failed(status))
-        status = add_case(run, "S1", &it);
-    s1_end(&s1);
-    return status;
+    return add_case(run, "S1", s1_subject(&s1));
 }
 
 static moray_status measure_problems(benchmark *run)
@@ -106,50 +76,48 @@ static moray_status measure_problems(benchmark *run)
          ON_GAIT(MORAY_FIRST_PRINCIPLES),
          .goal = MORAY_GAIT_THRIFTIEST},
     };
-    moray_status status = moray_ok();
-    for (unsigned k = 0; k < sizeof cases / sizeof *cases && !moray_failed(status); k++) {
+    for (unsigned k = 0; k < sizeof cases / sizeof *cases; k++) {
         gait_case one = cases[k];
-        status = gait_case_begin(&one);
-        const subject it = gait_case_subject(&one);
-        if (!moray_failed(status))
-            status = add_case(run, one.name, &it);
-        gait_case_end(&one);
+        MORAY_TRY(add_case(run, one.name, gait_case_subject(&one)));
     }
-    return status;
+    return moray_ok();
 }
 
 static moray_status measure_classics(benchmark *run)
 {
-    moray_status status = moray_ok();
-    for (int k = 0; classics[k] && !moray_failed(status); k++) {
+    for (int k = 0; classics[k]; k++) {
         classic_case one = {.classic = classics[k]};
-        const subject it = classic_subject(&one);
-        if (one.classic->intervals <= run->most_intervals)
-            status = add_case(run, one.classic->name, &it);
+        if (classic_settings(one.classic).intervals <= run->most_intervals)
+            MORAY_TRY(add_case(run, one.classic->name, classic_subject(&one)));
     }
-    return status;
+    return moray_ok();
 }
 
-// Sizes up to `most`; `pick` tells the case which.
+static growth *add_growth(benchmark *run, const char *name, const char *over)
+{
+    growth *g = &run->growths[run->n_growths++];
+    *g = (growth){.name = name, .over = over};
+    return g;
+}
+
+static moray_status add_point(benchmark *run, growth *g, int size, const subject of)
+{
+    moray_ticker_show(&run->ticker, "benchmark: %s, %d %s", g->name, size, g->over);
+    MORAY_TRY(measure(&of, run->common.linear_solver, run->repeats, &g->cost[g->n]));
+    g->size[g->n++] = size;
+    return moray_ok();
+}
+
+// Sizes up to `most`, of the links or the intervals.
 static moray_status measure_growth(benchmark *run, const gait_case *of, const char *over, const int *sizes, int most)
 {
-    growth *g = &run->growths[run->n_growths];
-    const bool links = over[0] == 'l';
-    moray_status status = moray_ok();
-    *g = (growth){.name = of->name, .over = over};
-    for (; *sizes && *sizes <= most && !moray_failed(status); sizes++) {
+    growth *g = add_growth(run, of->name, over);
+    for (; *sizes && *sizes <= most; sizes++) {
         gait_case one = *of;
-        *(links ? &one.links : &one.intervals) = *sizes;
-        moray_ticker_show(&run->ticker, "benchmark: %s, %d %s", of->name, *sizes, over);
-        status = gait_case_begin(&one);
-        const subject it = gait_case_subject(&one);
-        if (!moray_failed(status))
-            status = measure(&it, run->common.linear_solver, run->repeats, &g->cost[g->n]);
-        gait_case_end(&one);
-        g->size[g->n++] = *sizes;
+        *(over[0] == 'l' ? &one.links : &one.intervals) = *sizes;
+        MORAY_TRY(add_point(run, g, *sizes, gait_case_subject(&one)));
     }
-    run->n_growths++;
-    return status;
+    return moray_ok();
 }
 
 static const int interval_sizes[] = {10, 20, 50, 100, 200, 500, 1000, 0};
@@ -188,15 +156,10 @@ static moray_status measure_links(benchmark *run)
 static moray_status measure_horizon_of(benchmark *run, const char *name, moray_model model)
 {
     static const int horizons[] = {60, 120, 240, 600, 0};
-    growth *g = &run->growths[run->n_growths++];
-    *g = (growth){.name = name, .over = "seconds"};
+    growth *g = add_growth(run, name, "seconds");
     for (const int *seconds = horizons; *seconds && *seconds <= run->most_seconds; seconds++) {
         horizon_case one = {.model = model, .seconds = *seconds};
-        moray_ticker_show(&run->ticker, "benchmark: %s, %d seconds", name, *seconds);
-        MORAY_TRY(horizon_begin(&one));
-        const subject it = horizon_subject(&one);
-        MORAY_TRY(measure(&it, run->common.linear_solver, run->repeats, &g->cost[g->n]));
-        g->size[g->n++] = *seconds;
+        MORAY_TRY(add_point(run, g, *seconds, horizon_subject(&one)));
     }
     return moray_ok();
 }

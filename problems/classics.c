@@ -22,14 +22,10 @@ typedef struct classics_run {
 static const char own_scheme[] = "recommended";
 
 static const moray_option options[] = {
-    {.section = "solver",
-     .key = "refinements",
-     .flag = "refinements",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(classics_run, refinements),
-     .min = -1,
-     .max = CLASSIC_MOST_MESHES - 1,
-     .help = "finer meshes tried until the certificate passes; -1: 20, but none where a value belongs to its mesh"},
+    MORAY_ROW(
+        INT, classics_run, refinements, "solver", "refinements", .flag = "refinements", .min = -1,
+        .max = CLASSIC_MOST_MESHES - 1,
+        .help = "finer meshes tried until the certificate passes; -1: 20, but none where a value belongs to its mesh"),
 };
 
 static classics_run defaults(void)
@@ -109,10 +105,8 @@ static void print_line(const struct line *line)
 {
     const struct classic_result *r = &line->result;
     const moray_certificate *c = &r->certificate;
-    char failed[100], difference[32] = "-", history[100];
-    snprintf(failed, sizeof failed, "%smesh error %.0e, re-simulation %.0e, between nodes %.0e, KKT %.0e",
-             line->classic->fixed_mesh ? "fixed mesh: " : "FAILS: ", c->mesh_error, c->resimulation, c->between_nodes,
-             c->kkt);
+    char failed[500], difference[32] = "-", history[100];
+    snprintf(failed, sizeof failed, "%s%s", line->classic->fixed_mesh ? "fixed mesh: " : "FAILS: ", c->why);
     if (!isnan(r->difference))
         snprintf(difference, sizeof difference, "%.1e", r->difference);
     history_text(r, history, sizeof history);
@@ -130,11 +124,10 @@ static void meshes_to_json(moray_json *json, const struct classic_result *r)
     for (int k = 0; k < r->meshes; k++) {
         moray_json_open(json, NULL);
         moray_json_text(json, "status", moray_nlp_outcome_text(r->mesh[k].outcome));
-        moray_json_number(json, "intervals", r->mesh[k].intervals);
-        moray_json_number(json, "nodes", r->mesh[k].nodes);
         moray_json_text(json, "linear_solver", moray_linear_solver_text(r->mesh[k].linear_solver));
-        moray_json_number(json, "iterations", r->mesh[k].iterations);
-        moray_json_number(json, "mesh_error", r->mesh[k].error);
+        moray_json_members(json,
+                           MORAY_MEMBERS({"intervals", r->mesh[k].intervals}, {"nodes", r->mesh[k].nodes},
+                                         {"iterations", r->mesh[k].iterations}, {"mesh_error", r->mesh[k].error}));
         moray_json_close(json);
     }
     moray_json_close(json);
@@ -148,10 +141,9 @@ static void line_to_json(moray_json *json, const struct line *line)
     moray_json_text(json, "title", line->classic->title);
     moray_json_text(json, "source", line->classic->source);
     moray_json_text(json, "scheme", line->settings.scheme);
-    moray_json_number(json, "intervals", line->settings.intervals);
-    moray_json_number(json, "optimum", r->value);
-    moray_json_number(json, "published", printed ? strtod(printed, NULL) : NAN);
-    moray_json_number(json, "difference", r->difference);
+    moray_json_members(json, MORAY_MEMBERS({"intervals", line->settings.intervals}, {"optimum", r->value},
+                                           {"published", printed ? strtod(printed, NULL) : NAN},
+                                           {"difference", r->difference}));
     moray_json_text(json, "verdict", classic_agreement(line->classic, r));
     moray_json_open(json, "solver");
     moray_json_text(json, "status", moray_nlp_outcome_text(r->outcome));

@@ -192,6 +192,16 @@ static moray_status free_further(free_gait *run, int harmonics, double taper)
     return status;
 }
 
+static moray_status climb(free_gait *run)
+{
+    stage *at[FREE_GAIT_MOTIONS];
+    for (int k = 0; k < run->n; k++) {
+        at[k] = &run->motion[k].at;
+        at[k]->found_on = last_stage(&run->job)->found_on;
+    }
+    return gait_job_climb(&run->job, at, run->n);
+}
+
 static moray_status work(gait_job *job)
 {
     free_gait *run = (free_gait *)job;
@@ -206,7 +216,7 @@ static moray_status work(gait_job *job)
         MORAY_TRY(free_further(run, 0, 1));
     for (int k = 1; k <= run->harmonics && run->vainly == 0; k++)
         MORAY_TRY(free_further(run, k, 0));
-    return moray_ok();
+    return climb(run);
 }
 
 static bool certified(const gait_job *job)

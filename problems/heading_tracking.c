@@ -6,11 +6,11 @@
 #include "steering/options.h"
 
 static const moray_option options[] = {
-    STEER_TEXT_OPTION(heading_job, reference_text, "reference",
-                      "steps:T=H,... or ramps:T=H,... (s, deg), sine:AMPLITUDE,PERIOD, a CSV file with the columns "
+    MORAY_ROW(TEXT, heading_job, reference_text, "problem", "reference", .flag = "reference", .argument = "TEXT",
+              .help = "steps:T=H,... or ramps:T=H,... (s, deg), sine:AMPLITUDE,PERIOD, a CSV file with the columns "
                       "t_s,heading_deg, or fig8: the manoeuvre and gait of Sec. V-C"),
-    STEER_FLAG(heading_job, horizon, "horizon_s", "horizon", 1, 1e5, "s",
-               "how long the reference is followed; by default 100, fig8 190"),
+    MORAY_ROW(REAL, heading_job, horizon, "problem", "horizon_s", .flag = "horizon", .min = 1, .max = 1e5, .unit = "s",
+              .help = "how long the reference is followed; by default 100, fig8 190"),
     STEER_GAIT_OPTIONS(heading_job),
     STEER_LIMIT(heading_job, max_error, "max_error_deg", "deg", "largest heading error allowed of the plan"),
     STEER_WEIGHT(heading_job, weight_power, "weight_power", 0,
@@ -18,21 +18,18 @@ static const moray_option options[] = {
     STEER_WEIGHT(heading_job, steer.weight_steering, "weight_steering", 1e-9,
                  "of the mean square of phi_0'' in units of its limit per s^2, likewise"),
     STEER_MESH_OPTIONS(heading_job),
-    STEER_INT(heading_job, gait_evaluations, "solver", "gait_evaluations", 0, 10000,
-              "gaits tried for the first-principles plan; 0: the paper's"),
+    STEER_NUMBER(INT, heading_job, gait_evaluations, "solver", "gait_evaluations", 0, 10000, NULL,
+                 "gaits tried for the first-principles plan; 0: the paper's"),
     STEER_RECEDING_OPTIONS(heading_job),
     STEER_TUNING_OPTION(heading_job, "simulations spent on tuning each gain, twice as many for a gain and a lead"),
 };
 
-static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(heading_job, steer.snake)}};
 static const moray_program program = {
     .name = "heading_tracking",
     .summary = "Optimises gait and joint offset of an underwater snake robot to follow a heading in a current, "
                "and proves them on the first-principles model against tuned feedback.",
     .options = options,
-    .n_options = sizeof options / sizeof *options,
-    .groups = groups,
-    .n_groups = 1};
+    .n_options = sizeof options / sizeof *options};
 
 int main(int argc, char **argv)
 {

@@ -1,12 +1,30 @@
 // SPDX-License-Identifier: MIT
 //
 // The fastest gait along a course in a current: optimised on the control-oriented model, from there on the
-// first-principles model, and proved by simulating both.
+// first-principles model, and from there for several models at once; each compared on the ladder of models.
+#include <string.h>
+
 #include "gait/job/job.h"
+
+static const char *const over_goals[] = {[MORAY_OVER_WORST] = "worst", [MORAY_OVER_MEAN] = "mean", NULL};
 
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
                "mean joint power; by default what the paper's gait uses in the same model and current"),
+    {.section = "problem",
+     .key = "over",
+     .flag = "over",
+     .argument = "MODELS",
+     .type = MORAY_OPTION_TEXT,
+     MORAY_AT(gait_job, over),
+     .help = "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of the paper's "
+             "gait on each; none: the first-principles optimum is recommended"},
+    {.section = "problem",
+     .key = "over_goal",
+     .type = MORAY_OPTION_CHOICE,
+     MORAY_AT(gait_job, over_goal),
+     .choices = over_goals,
+     .help = "what of the gains over these is maximised"},
 };
 
 static const gait_program program = {
@@ -22,5 +40,6 @@ static const gait_program program = {
 int main(int argc, char **argv)
 {
     gait_job job = gait_job_defaults(&program);
+    strcpy(job.over, "paper,strip,consistent");
     return gait_job_main(&program, &job, argc, argv);
 }

@@ -6,29 +6,27 @@
 #include "steering/turn/turn.h"
 
 static const moray_option options[] = {
-    STEER_FLAG(turn_job, angle, "angle_deg", "angle", -720, 720, "deg",
-               "by which the heading is to change, from 0; positive to the left"),
-    STEER_PAIR(turn_job, end, "end_m", "m", "where the turn is to end over ground, from 0,0; by default anywhere"),
+    MORAY_ROW(REAL, turn_job, angle, "problem", "angle_deg", .flag = "angle", .min = -720, .max = 720, .unit = "deg",
+              .help = "by which the heading is to change, from 0; positive to the left"),
+    MORAY_ROW(PAIR, turn_job, end, "problem", "end_m", .unit = "m",
+              .help = "where the turn is to end over ground, from 0,0; by default anywhere"),
     STEER_GAIT_OPTIONS(turn_job),
     STEER_WEIGHT(
         turn_job, steer.weight_steering, "weight_steering", 1e-9,
         "of the integral over s of the square of phi_0'' in units of its limit per s^2, against 1 for the time in s"),
-    STEER_REAL(turn_job, band, "problem", "band_deg", 1e-3, 90, "deg",
-               "around the heading wanted, within which the turn counts as done"),
+    STEER_NUMBER(REAL, turn_job, band, "problem", "band_deg", 1e-3, 90, "deg",
+                 "around the heading wanted, within which the turn counts as done"),
     STEER_MESH_OPTIONS(turn_job),
     STEER_TUNING_OPTION(turn_job, "simulations spent on tuning, for every number that is tuned"),
 };
 
-static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(turn_job, steer.snake)}};
 static const moray_program program = {
     .name = "min_time_turn",
     .summary = "Optimises the joint offset of an underwater snake robot for the fastest change of heading, or "
                "from pose to pose, and proves it on the first-principles model against tuned bang-bang "
                "steering.",
     .options = options,
-    .n_options = sizeof options / sizeof *options,
-    .groups = groups,
-    .n_groups = 1};
+    .n_options = sizeof options / sizeof *options};
 
 // The paper's gait.
 int main(int argc, char **argv)

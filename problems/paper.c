@@ -21,35 +21,26 @@ static const paper_study studies[] = {
 enum { N_STUDIES = sizeof studies / sizeof *studies };
 _Static_assert((int)N_STUDIES <= (int)PAPER_STUDIES, "paper_settings has room for every study");
 
-#define ANGLE(name, field, low, high, in, text)                                                                        \
-    {                                                                                                                  \
-        .section = "problem", .key = name, .type = MORAY_OPTION_REAL, MORAY_AT(paper_settings, field), .min = low,     \
-        .max = high, .open = true, .unit = in, .help = text                                                            \
-    }
-
 _Static_assert(sizeof(paper_reading) == sizeof(int), "choices are stored as int");
 
 static const moray_option options[] = {
-    {.section = "problem",
-     .key = "reading",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(paper_settings, reading),
-     .choices = paper_reading_names,
-     .help = "equations of the control-oriented model: corrected; with (23h) as printed (erratum E1); with l of (8), "
-             "(12), (13) as printed (E2); with both"},
+    MORAY_ROW(
+        CHOICE, paper_settings, reading, "problem", "reading", .choices = paper_reading_names,
+        .help =
+            "equations of the control-oriented model: corrected; with (23h) as printed (erratum E1); with l of (8), "
+            "(12), (13) as printed (E2); with both"),
     {.flag = "as-printed",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(paper_settings, as_printed),
      .help = "as --set reading=printed"},
-    ANGLE("theta_max_deg", theta_max, 0, 90, "deg", "link-angle amplitude of (24), where a study does not vary it"),
-    ANGLE("omega_deg_s", omega, 0, 3600, "deg/s", "gait frequency, where a study does not vary it"),
-    ANGLE("delta_deg", delta, 0, 180, "deg", "phase shift between joints; 360/(N-1) unless given"),
-    {.section = "problem",
-     .key = "write_ini",
-     .argument = "FILE",
-     .type = MORAY_OPTION_TEXT,
-     MORAY_AT(paper_settings, write_ini),
-     .help = "study fit: the robot's INI file, to write the fitted constants into"},
+    MORAY_ROW(REAL, paper_settings, theta_max, "problem", "theta_max_deg", .min = 0, .max = 90, .open = true,
+              .unit = "deg", .help = "link-angle amplitude of (24), where a study does not vary it"),
+    MORAY_ROW(REAL, paper_settings, omega, "problem", "omega_deg_s", .min = 0, .max = 3600, .open = true,
+              .unit = "deg/s", .help = "gait frequency, where a study does not vary it"),
+    MORAY_ROW(REAL, paper_settings, delta, "problem", "delta_deg", .min = 0, .max = 180, .open = true, .unit = "deg",
+              .help = "phase shift between joints; 360/(N-1) unless given"),
+    MORAY_ROW(TEXT, paper_settings, write_ini, "problem", "write_ini", .argument = "FILE",
+              .help = "study fit: the robot's INI file, to write the fitted constants into"),
 };
 
 static paper_settings defaults(void)

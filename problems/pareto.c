@@ -75,6 +75,17 @@ static moray_status follow(pareto *run, pareto_front *front, const pareto_front 
                                : moray_ok();
 }
 
+// Swims all gaits of a front on the ladder.
+static moray_status climb(const pareto *run, pareto_front *front)
+{
+    stage *at[PARETO_POINTS];
+    for (int k = 0; k < front->n; k++) {
+        at[k] = &front->at[k];
+        at[k]->found_on = gait_job_found_on(&run->job, front->model);
+    }
+    return gait_job_climb(&run->job, at, front->n);
+}
+
 // Keeps the gaits that are worth it, certified and swum on both models.
 static moray_status prove(pareto *run, pareto_front *front)
 {
@@ -96,7 +107,7 @@ static moray_status prove(pareto *run, pareto_front *front)
         *at = (stage){0};
         front->at[front->n++] = kept;
     }
-    return moray_ok();
+    return climb(run, front);
 }
 
 static moray_status make_front(pareto *run, moray_model model, int kind)

@@ -7,12 +7,13 @@
 #include "steering/path/path.h"
 
 static const moray_option options[] = {
-    STEER_TEXT_OPTION(path_job, path_text, "path",
-                      "waypoints X,Y X,Y ... in m, or a CSV file with the columns x_m,y_m"),
-    STEER_REAL(path_job, radius, "problem", "radius_m", 1e-3, 1e4, "m", "of the arcs that join the legs"),
-    STEER_PAIR(path_job, start, "start_m", "m", "position at the start, near the first leg"),
-    STEER_REAL(path_job, heading, "problem", "start_heading_deg", -360, 360, "deg",
-               "mean heading there; by default the course of the first leg"),
+    MORAY_ROW(TEXT, path_job, path_text, "problem", "path", .flag = "path", .argument = "TEXT",
+              .help = "waypoints X,Y X,Y ... in m, or a CSV file with the columns x_m,y_m"),
+    STEER_NUMBER(REAL, path_job, radius, "problem", "radius_m", 1e-3, 1e4, "m", "of the arcs that join the legs"),
+    MORAY_ROW(PAIR, path_job, start, "problem", "start_m", .unit = "m",
+              .help = "position at the start, near the first leg"),
+    STEER_NUMBER(REAL, path_job, heading, "problem", "start_heading_deg", -360, 360, "deg",
+                 "mean heading there; by default the course of the first leg"),
     STEER_GAIT_OPTIONS(path_job),
     STEER_WEIGHT(
         path_job, weight_time, "weight_time", 0,
@@ -20,24 +21,22 @@ static const moray_option options[] = {
     STEER_WEIGHT(path_job, steer.weight_steering, "weight_steering", 1e-9,
                  "of the integral over s of the square of phi_0'' in units of its limit per s^2, likewise"),
     STEER_LIMIT(path_job, tube, "tube_m", "m", "largest cross-track error allowed of the plan"),
-    STEER_REAL(path_job, reach, "problem", "reach_m", 1e-3, 1e4, "m",
-               "way made within which a start off the path is to come to it"),
+    STEER_NUMBER(REAL, path_job, reach, "problem", "reach_m", 1e-3, 1e4, "m",
+                 "way made within which a start off the path is to come to it"),
     STEER_MESH_OPTIONS(path_job),
-    STEER_BOOL(path_job, find_gait, "solver", "find_gait",
-               "first-principles plan on the gait fastest straight ahead within the limits; no: on the first gait"),
+    MORAY_ROW(BOOL, path_job, find_gait, "solver", "find_gait",
+              .help =
+                  "first-principles plan on the gait fastest straight ahead within the limits; no: on the first gait"),
     STEER_RECEDING_OPTIONS(path_job),
     STEER_TUNING_OPTION(path_job, "simulations spent on tuning, for every number that is tuned"),
 };
 
-static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(path_job, steer.snake)}};
 static const moray_program program = {
     .name = "path_following",
     .summary = "Optimises gait and joint offset of an underwater snake robot to follow a path in a current, "
                "and proves them on the first-principles model against tuned line-of-sight guidance.",
     .options = options,
-    .n_options = sizeof options / sizeof *options,
-    .groups = groups,
-    .n_groups = 1};
+    .n_options = sizeof options / sizeof *options};
 
 int main(int argc, char **argv)
 {

@@ -19,8 +19,9 @@ quietly() {
     return 1
 }
 
+# Of packages.txt, and of `more_packages`, a list of the same form.
 wanted_packages() {
-    sed 's/#.*//' "$root/packages.txt"
+    sed 's/#.*//' "$root/packages.txt" ${more_packages:+"$more_packages"}
 }
 
 missing_packages() {

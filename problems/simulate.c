@@ -10,76 +10,31 @@ const char *const simulate_integrators[] = {
 _Static_assert(sizeof(simulate_integrator) == sizeof(int), "choices are stored as int");
 
 static const moray_option options[] = {
-    {.section = "simulation",
-     .key = "schedule",
-     .flag = "schedule",
-     .argument = "FILE",
-     .type = MORAY_OPTION_TEXT,
-     MORAY_AT(simulate, schedule_file),
-     .help = "comma-separated values: a line of names, t_s and any keys of [gait], then a line for each gait, which "
-             "keeps from the one before what its line leaves out; omega t of (25) counts from t = 0 in all of them, so "
-             "that a change of omega jumps in phase"},
-    {.section = "simulation",
-     .key = "duration_s",
-     .flag = "duration",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(simulate, duration),
-     .max = 1e6,
-     .open = true,
-     .unit = "s",
-     .help = "length of the simulation; 60 after the last change of gait unless given"},
-    {.section = "simulation",
-     .key = "output_step_s",
-     .flag = "output-step",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(simulate, output_step),
-     .max = 1e6,
-     .open = true,
-     .unit = "s",
-     .help = "time between two lines of trajectory.csv"},
-    {.section = "simulation",
-     .key = "start_heading_deg",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(simulate, heading),
-     .min = -360,
-     .max = 360,
-     .unit = "deg",
-     .help = "heading of the straight body at rest over ground, from which it starts"},
-    {.section = "simulation",
-     .key = "start_position_m",
-     .type = MORAY_OPTION_PAIR,
-     MORAY_AT(simulate, position),
-     .unit = "m",
-     .help = "position at the start"},
-    {.section = "simulation",
-     .key = "periods",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(simulate, periods),
-     .min = 1,
-     .max = 100000,
-     .help = "whole periods of the last gait at the end of the simulation that means and peaks are taken over; fewer "
-             "where it has fewer"},
-    {.section = "simulation",
-     .key = "integrator",
-     .flag = "integrator",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(simulate, integrator),
-     .choices = simulate_integrators,
-     .help = "Runge-Kutta of order 8 to 1e-10, TR-BDF2 to 1e-9, or as in the paper TR-BDF2 to 1e-4"},
-    {.section = "simulation",
-     .key = "rtol",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(simulate, rtol),
-     .min = 1e-14,
-     .max = 0.1,
-     .help = "relative tolerance, instead of the integrator's own"},
-    {.section = "simulation",
-     .key = "atol",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(simulate, atol),
-     .max = INFINITY,
-     .open = true,
-     .help = "absolute tolerance, instead of the integrator's own"},
+    MORAY_ROW(
+        TEXT, simulate, schedule_file, "simulation", "schedule", .flag = "schedule", .argument = "FILE",
+        .help =
+            "comma-separated values: a line of names, t_s and any keys of [gait], then a line for each gait, which "
+            "keeps from the one before what its line leaves out; omega t of (25) counts from t = 0 in all of them, so "
+            "that a change of omega jumps in phase"),
+    MORAY_ROW(REAL, simulate, duration, "simulation", "duration_s", .flag = "duration", .max = 1e6, .open = true,
+              .unit = "s", .help = "length of the simulation; 60 after the last change of gait unless given"),
+    MORAY_ROW(REAL, simulate, output_step, "simulation", "output_step_s", .flag = "output-step", .max = 1e6,
+              .open = true, .unit = "s", .help = "time between two lines of trajectory.csv"),
+    MORAY_ROW(REAL, simulate, heading, "simulation", "start_heading_deg", .min = -360, .max = 360, .unit = "deg",
+              .help = "heading of the straight body at rest over ground, from which it starts"),
+    MORAY_ROW(PAIR, simulate, position, "simulation", "start_position_m", .unit = "m", .help = "position at the start"),
+    MORAY_ROW(
+        INT, simulate, periods, "simulation", "periods", .min = 1, .max = 100000,
+        .help =
+            "whole periods of the last gait at the end of the simulation that means and peaks are taken over; fewer "
+            "where it has fewer"),
+    MORAY_ROW(CHOICE, simulate, integrator, "simulation", "integrator", .flag = "integrator",
+              .choices = simulate_integrators,
+              .help = "Runge-Kutta of order 8 to 1e-10, TR-BDF2 to 1e-9, or as in the paper TR-BDF2 to 1e-4"),
+    MORAY_ROW(REAL, simulate, rtol, "simulation", "rtol", .min = 1e-14, .max = 0.1,
+              .help = "relative tolerance, instead of the integrator's own"),
+    MORAY_ROW(REAL, simulate, atol, "simulation", "atol", .max = INFINITY, .open = true,
+              .help = "absolute tolerance, instead of the integrator's own"),
     MORAY_GAIT_OPTIONS(simulate, gait),
 };
 
@@ -111,7 +66,7 @@ int main(int argc, char **argv)
         return exit_code;
     moray_status status = simulate_run(&run, &results);
     if (!moray_failed(status))
-        status = simulate_report(&run, &results);
+        status = simulate_report(&results);
     simulate_release(&results);
     return moray_app_end(&program, &run, status);
 }

@@ -45,11 +45,11 @@ static inline dense dense_product(dense a, bool a_transposed, dense b, bool b_tr
 // y = A x, or A^T x.
 static inline void dense_apply(dense a, bool transposed, const double *x, double *y)
 {
-    dense column = {transposed ? a.rows : a.cols, 1, (double *)x};
-    dense result = dense_product(a, transposed, column, false);
-    for (int i = 0; i < result.rows; i++)
-        y[i] = result.at[i];
-    dense_free(&result);
+    for (int i = 0; i < (transposed ? a.cols : a.rows); i++) {
+        y[i] = 0;
+        for (int k = 0; k < (transposed ? a.rows : a.cols); k++)
+            y[i] += (transposed ? DENSE(a, k, i) : DENSE(a, i, k)) * x[k];
+    }
 }
 
 static inline void dense_swap_rows(dense m, int i, int j)

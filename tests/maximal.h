@@ -107,16 +107,17 @@ static inline void maximal_place(const moray_robot *robot, const maximal_state *
 }
 
 // Rows of link i: m [x''; y''] and J theta'' and what the fluid does at every place; the torque (4) by lambda_1..3 of
-// the pieces, of lengths l/k.
+// the pieces, of lengths l/k; none of strips, which have no length.
 static inline void maximal_link(const moray_robot *robot, const maximal_state *state, int i, dense M, dense h)
 {
     const double w = state->dtheta[i], k = robot->hydro.pieces > 1 ? robot->hydro.pieces : 1;
+    const double torque = robot->hydro.rotation == MORAY_ROTATION_STRIP ? 0 : k;
     const double rel_n =
         -sin(state->theta[i]) * (state->v_x[i] - state->V[0]) + cos(state->theta[i]) * (state->v_y[i] - state->V[1]);
     maximal_spot spots[MAXIMAL_SPOTS];
     DENSE(M, 3 * i, 3 * i) = DENSE(M, 3 * i + 1, 3 * i + 1) = robot->m;
-    DENSE(M, 3 * i + 2, 3 * i + 2) = robot->J + k * robot->lambda_1 / pow(k, 3);
-    h.at[3 * i + 2] = -k * robot->lambda_2 / pow(k, 3) * w - k * robot->lambda_3 / pow(k, 4) * w * fabs(w);
+    DENSE(M, 3 * i + 2, 3 * i + 2) = robot->J + torque * robot->lambda_1 / pow(k, 3);
+    h.at[3 * i + 2] = -torque * (robot->lambda_2 / pow(k, 3) + robot->lambda_3 / pow(k, 4) * fabs(w)) * w;
     const int n = maximal_spots(robot, rel_n, w, spots);
     for (int j = 0; j < n; j++)
         maximal_place(robot, state, i, spots[j], M, h);

@@ -60,7 +60,7 @@ static inline void check_sound_table(const moray_program *program, const void *s
                                                : row->type == MORAY_OPTION_RANGE || memcmp(was, is, row->size) == 0,
               "%s: the default shown as %s reads back", name, shown);
     }
-    free(options.row);
+    free(options.own);
     free(again);
 }
 

@@ -40,10 +40,10 @@ MORAY_API void moray_map_release(moray_map *map);
 typedef void moray_complex_fn(void *self, const moray_num *in, moray_num *out);
 
 // Makes a map of a complex-valued function: exact Jacobians by complex step, Hessians by central differences of them,
-// both along groups of inputs that no output feels together. Patterns are what is felt, to the last bit, at `probe`[n_in]
-// and at points around it, up to half of 1 + |probe| away; no input is ever a NaN.
-// `release`, unless NULL, frees `self` with the map (or on error). Error: MORAY_MEMORY; MORAY_INPUT when the function
-// is not finite at the probe.
+// both along groups of inputs that no output feels together. Patterns are what is felt, to the last bit, at
+// `probe`[n_in] and at points around it, up to half of 1 + |probe| away; no input is ever a NaN. `release`, unless
+// NULL, frees `self` with the map (or on error). Error: MORAY_MEMORY; MORAY_INPUT when the function is not finite at
+// the probe.
 MORAY_API moray_status moray_map_from_complex(moray_map *map, int n_in, int n_out, moray_complex_fn *function,
                                               void *self, void (*release)(void *self), const double *probe);
 

@@ -5,6 +5,7 @@
 #define MORAY_NLP_H
 
 #include "moray/export.h"
+#include "moray/key_value.h"
 #include "moray/status.h"
 
 MORAY_BEGIN
@@ -48,12 +49,6 @@ typedef bool moray_progress_fn(void *observer, const moray_progress *progress);
 typedef enum { MORAY_LINEAR_MORAY, MORAY_LINEAR_MUMPS, MORAY_LINEAR_MA57 } moray_linear_solver;
 MORAY_API const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
 
-// An option of Ipopt by its name, after all that moray sets; not option_file_name, output_file, sb and linear_solver:
-// no option file is ever read, and Ipopt never writes on standard output.
-typedef struct moray_ipopt_option {
-    const char *key, *value; // "mu_strategy", "adaptive"; numbers as texts
-} moray_ipopt_option;
-
 typedef struct moray_nlp_settings {
     double tolerance;   // 1e-8: scaled KKT error at which the solver stops
     int max_iterations; // 1000
@@ -62,8 +57,10 @@ typedef struct moray_nlp_settings {
     int print_level;    // 0: Ipopt's own log on standard error, 0..12
     moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false: true has MUMPS or MA57 timed
-    const moray_ipopt_option *ipopt;   // [n_ipopt], borrowed
-    int n_ipopt;                       // 0
+    // Options of Ipopt by their names, {"mu_strategy", "adaptive"}, after all that moray sets; not option_file_name,
+    // output_file, sb and linear_solver: no option file is ever read, and Ipopt never writes on standard output.
+    const moray_key_value *ipopt; // [n_ipopt], borrowed
+    int n_ipopt;                  // 0
     moray_progress_fn *progress;
     void *observer;
 } moray_nlp_settings;

@@ -235,7 +235,7 @@ typedef struct moray_settings {
     int print_level;       // 0: Ipopt's log on standard error
     moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
-    const moray_ipopt_option *ipopt;   // [n_ipopt] further options of Ipopt, which must outlive the solution
+    const moray_key_value *ipopt;      // [n_ipopt] further options of Ipopt, which must outlive the solution
     int n_ipopt;                       // 0
     moray_progress_fn *progress;
     void *observer;
@@ -319,25 +319,46 @@ MORAY_API const char *moray_solution_diagnosis(const moray_solution *solution);
 
 // ---- Certificate ---------------------------------------------------------------------------------------------------
 
-#define MORAY_WORST_DERIVATIVES 1e-4
+// Of the numbers that no setting bounds; none of them has a unit.
+#define MORAY_LIMIT_KKT 1e-5
+#define MORAY_LIMIT_GAP 1e-4
+#define MORAY_LIMIT_CURVATURE 1e-4
+#define MORAY_LIMIT_DERIVATIVES 1e-5
+#define MORAY_LIMIT_DIRECTIONS 1e-4
+#define MORAY_LIMIT_HAMILTONIAN 1e-2
 
-// Computed apart from the solver. Passes when every number is within its limit.
+// Computed apart from the solver: with derivatives of the user's functions differenced at the solution, and sizes of
+// all that is measured taken from the trajectory, so that neither the derivatives, patterns and scales in use nor the
+// units matter. Passes when every number is within its limit.
 typedef struct moray_certificate {
     bool pass;
-    double kkt;           // optimality and feasibility in user units; limit 100 x tolerance
+    double kkt;           // larger of: what the first-order conditions leave of the objective to gain, relative to what
+                          // it moves by where all that it depends on moves by its size; and the largest violation of a
+                          // row or bound relative to its size. Limit MORAY_LIMIT_KKT
     double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|), and of the same of
                           // integrands g and integrals q; limit mesh_tolerance
     double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
                           // x mesh_tolerance
-    double resimulation;  // largest |x - x_simulated| / (1 + max |x|) at the nodes, and |q - q_simulated| / (1 + |q|),
-                          // when each phase is integrated again from its start with the found controls; limit 100 x
-                          // mesh_tolerance
-    double derivatives;   // largest disagreement between the derivatives in use at the solution, patterns included, and
-                          // differences of constraints, objective and gradient of the Lagrangian along dense
-                          // directions, as in moray_derivative_report with scaled rows; limit
-                          // MORAY_WORST_DERIVATIVES
-    double hamiltonian;   // for information, without limit: (max - min) / (1 + max |H|) over the nodes of a phase whose
-                          // functions do not depend on time, where theory has it constant; NaN without such a phase
+    double resimulation; // largest |x - x_simulated| / (1 + max |x|) at the end of an interval that is integrated again
+                         // from its start with the found controls, and |q - q_simulated| / (1 + |q|); limit 100 x
+                         // mesh_tolerance
+    double derivatives;  // largest disagreement of a derivative of a phase or the endpoint, patterns included, with
+                         // differences at a node, relative to what its function moves by; limit
+                         // MORAY_LIMIT_DERIVATIVES
+    double directions;   // of the programme's first and second derivatives along dense directions, as in
+                         // moray_derivative_report with scaled rows; limit MORAY_LIMIT_DIRECTIONS
+    double hamiltonian;  // mean departure of the Hamiltonian from H' = dH/dt over a phase, relative to the largest of
+                         // the sums of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN of phases
+                         // that do not depend on time, with radau, gauss, and lobatto of 4 stages and more; told only
+                         // where costates are of low order or functions may jump with time
+    double gap;          // what the slacks of active bounds and rows, times their multipliers, hold the objective from
+                         // its optimum, relative as kkt. Limit MORAY_LIMIT_GAP
+    double curvature;    // how far the Lagrangian bends down along what the active constraints leave free: relative,
+                         // per square of sizes; 0 at a minimum, strict or not; NAN where no factorisation tells. Limit
+                         // MORAY_LIMIT_CURVATURE
+    double composed;     // as resimulation, each phase in one go from its start: for information, as unstable
+                         // equations make it as large as they like
+    char why[400];       // one sentence on the first number that fails, with its limit and where; empty if none does
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.

@@ -24,7 +24,7 @@ typedef bool moray_ode_observer(double t, const double *x, void *self);
 typedef struct moray_integrator {
     moray_status (*run)(const struct moray_integrator *self, const moray_ode *ode, double t0, double t1, double *x,
                         const double *times, int n_times, moray_ode_observer *observe, void *observer);
-    void *self;
+    const void *self;
 } moray_integrator;
 
 MORAY_END

@@ -43,14 +43,16 @@ enum { FLOOR_FACTORS, FLOOR_STREAM, FLOOR_CALLS, FLOOR_TERMS };
 double cost_floor(const machine *rates, const cost *c, double term[FLOOR_TERMS]);
 const char *floor_term_text(const double term[FLOOR_TERMS]); // the largest
 
-// What is measured. `solve` builds the problem and solves it; `forget` frees what it built, the solution apart.
+// What is measured. `solve` builds the problem and solves it; `forget` frees what it built, the solution apart. `begin`
+// prepares what does not count as part of a solve, `end` frees that; NULL: nothing.
 typedef struct subject {
+    moray_status (*begin)(void *self);
     moray_status (*solve)(void *self, moray_linear_solver linear, moray_solution **solution);
-    void (*forget)(void *self);
+    void (*forget)(void *self), (*end)(void *self);
     void *self;
 } subject;
 
-// Medians of `repeats` measurements, piece by piece. Error: that of solve.
+// Medians of `repeats` measurements, piece by piece. Error: those of begin and solve.
 moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found);
 
 double median(double *values, int n); // sorts them
@@ -80,9 +82,7 @@ typedef struct gait_case {
     moray_gait_problem *problem;
 } gait_case;
 
-// Simulates the orbit, which does not count as part of the solve. Free with gait_case_end. Error: moray_swim_steady's.
-moray_status gait_case_begin(gait_case *c);
-void gait_case_end(gait_case *c);
+// Begins with the orbit. Error: moray_swim_steady's.
 subject gait_case_subject(gait_case *c);
 
 // S1, on which other tools can solve the same programme (benchmark_s1.c states it). Error: that of moray_swim_steady.
@@ -94,8 +94,6 @@ typedef struct s1_case {
     moray_map plant;
     moray_ocp *ocp;
 } s1_case;
-moray_status s1_begin(s1_case *c);
-void s1_end(s1_case *c);
 subject s1_subject(s1_case *c);
 
 // Heading tracking with the paper's gait: 30 deg there and back every 40 s, in the current (0.1, 0.1) m/s.
@@ -108,10 +106,10 @@ typedef struct horizon_case {
     moray_gait gait;
     double time[HORIZON_POINTS], heading[HORIZON_POINTS];
     moray_reference reference; // points into these
-    moray_heading_plan plan;
+    moray_steering_plan plan;
 } horizon_case;
-moray_status horizon_begin(horizon_case *c); // the case must stay where it is. Error: MORAY_INPUT when it is too long
-subject horizon_subject(horizon_case *c);
+subject horizon_subject(horizon_case *c); // the case must stay where it is. Error: MORAY_INPUT when it is too long
+
 // A textbook problem on the mesh it begins with.
 typedef struct classic_case {
     const struct classic *classic;

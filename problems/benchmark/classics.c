@@ -20,5 +20,5 @@ static void forget(void *self)
 
 subject classic_subject(classic_case *c)
 {
-    return (subject){solve, forget, c};
+    return (subject){NULL, solve, forget, NULL, c};
 }

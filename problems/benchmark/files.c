@@ -10,29 +10,24 @@ static void json_floor(moray_json *json, const machine *rates, const cost *c)
 {
     double term[FLOOR_TERMS];
     const double floor = cost_floor(rates, c, term);
-    moray_json_number(json, "floor_s", floor);
-    moray_json_number(json, "floor_factorisation_s", term[FLOOR_FACTORS]);
-    moray_json_number(json, "floor_streaming_s", term[FLOOR_STREAM]);
-    moray_json_number(json, "floor_functions_s", term[FLOOR_CALLS]);
+    moray_json_members(json,
+                       MORAY_MEMBERS({"floor_s", floor}, {"floor_factorisation_s", term[FLOOR_FACTORS]},
+                                     {"floor_streaming_s", term[FLOOR_STREAM]},
+                                     {"floor_functions_s", term[FLOOR_CALLS]}, {"total_over_floor", c->total / floor}));
     moray_json_text(json, "floor_is_mostly", floor_term_text(term));
-    moray_json_number(json, "total_over_floor", c->total / floor);
 }
 
 static void json_cost(moray_json *json, const machine *rates, const cost *c)
 {
     moray_json_bool(json, "solved", c->solved);
-    moray_json_number(json, "objective", c->objective);
     moray_json_text(json, "linear_solver", moray_linear_solver_text(c->linear_solver));
-    moray_json_number(json, "iterations", c->iterations);
-    moray_json_number(json, "nvar", c->size.variables);
-    moray_json_number(json, "ncon", c->size.constraints);
-    moray_json_number(json, "nnz_jac", c->size.nnz_jac);
-    moray_json_number(json, "nnz_hess", c->size.nnz_hess);
+    moray_json_members(json, MORAY_MEMBERS({"objective", c->objective}, {"iterations", c->iterations},
+                                           {"nvar", c->size.variables}, {"ncon", c->size.constraints},
+                                           {"nnz_jac", c->size.nnz_jac}, {"nnz_hess", c->size.nnz_hess}));
     for (int k = 0; k < PIECES; k++)
         moray_json_number(json, piece_keys[k], c->piece[k]);
-    moray_json_number(json, "evaluation_s", cost_evaluation(c));
-    moray_json_number(json, "total_s", c->total);
-    moray_json_number(json, "wall_s", c->wall);
+    moray_json_members(json,
+                       MORAY_MEMBERS({"evaluation_s", cost_evaluation(c)}, {"total_s", c->total}, {"wall_s", c->wall}));
     json_floor(json, rates, c);
 }
 
@@ -41,12 +36,10 @@ static void json_mumps(moray_json *json, const named_cost *c)
 {
     moray_json_open(json, "with_mumps");
     moray_json_bool(json, "solved", c->mumps.solved);
-    moray_json_number(json, "objective", c->mumps.objective);
-    moray_json_number(json, "iterations", c->mumps.iterations);
-    moray_json_number(json, "linear_solver_s", c->mumps.piece[LINEAR]);
-    moray_json_number(json, "total_s", c->mumps.total);
-    moray_json_number(json, "total_over_ours", total_over_ours(c));
-    moray_json_number(json, "linear_solver_over_ours", linear_over_ours(c));
+    moray_json_members(json, MORAY_MEMBERS({"objective", c->mumps.objective}, {"iterations", c->mumps.iterations},
+                                           {"linear_solver_s", c->mumps.piece[LINEAR]}, {"total_s", c->mumps.total},
+                                           {"total_over_ours", total_over_ours(c)},
+                                           {"linear_solver_over_ours", linear_over_ours(c)}));
     moray_json_close(json);
 }
 

@@ -3,8 +3,9 @@
 
 static const double still_water[2] = {0, 0};
 
-moray_status gait_case_begin(gait_case *c)
+static moray_status begin(void *self)
 {
+    gait_case *c = self;
     moray_test_rig rig;
     moray_steady steady;
     c->robot = moray_robot_paper();
@@ -20,8 +21,9 @@ moray_status gait_case_begin(gait_case *c)
     return status;
 }
 
-void gait_case_end(gait_case *c)
+static void end(void *self)
 {
+    gait_case *c = self;
     moray_swim_track_free(&c->orbit);
 }
 
@@ -62,5 +64,5 @@ static void forget(void *self)
 
 subject gait_case_subject(gait_case *c)
 {
-    return (subject){solve, forget, c};
+    return (subject){begin, solve, forget, end, c};
 }

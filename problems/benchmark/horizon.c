@@ -7,8 +7,9 @@ static const double step = 30 * DEG, between = 40; // the reference goes there a
 static const double unit = 10 * DEG;               // of the heading error
 static const int per_period = 5;                   // intervals
 
-moray_status horizon_begin(horizon_case *c)
+static moray_status begin(void *self)
 {
+    horizon_case *c = self;
     c->robot = moray_robot_paper();
     const moray_gait paper = moray_gait_paper(&c->robot);
     c->gait = moray_gait_map(&c->robot, &paper, MORAY_CONTROL_ORIENTED, c->model);
@@ -56,10 +57,10 @@ static moray_status solve(void *self, moray_linear_solver linear, moray_solution
 static void forget(void *self)
 {
     horizon_case *c = self;
-    moray_heading_plan_free(&c->plan);
+    moray_steering_plan_free(&c->plan);
 }
 
 subject horizon_subject(horizon_case *c)
 {
-    return (subject){solve, forget, c};
+    return (subject){begin, solve, forget, NULL, c};
 }

@@ -100,21 +100,31 @@ static double median_cost(const cost *costs, size_t offset, int n, double *work)
     return median(work, n);
 }
 
+static moray_status measure_all(const subject *of, moray_linear_solver linear, int repeats, cost *costs, double *work,
+                                cost *found)
+{
+    for (int k = 0; k < repeats; k++)
+        MORAY_TRY(measure_once(of, linear, &costs[k]));
+    *found = costs[0];
+    for (size_t k = 0; k < PIECES; k++)
+        found->piece[k] = median_cost(costs, offsetof(cost, piece) + k * sizeof(double), repeats, work);
+    found->total = median_cost(costs, offsetof(cost, total), repeats, work);
+    found->sweep = median_cost(costs, offsetof(cost, sweep), repeats, work);
+    found->wall = median_cost(costs, offsetof(cost, wall), repeats, work);
+    return moray_ok();
+}
+
 moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found)
 {
     cost *costs = calloc((size_t)repeats, sizeof *costs);
     double *work = calloc((size_t)repeats, sizeof *work);
     moray_status status = costs && work ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d costs", repeats);
-    for (int k = 0; k < repeats && !moray_failed(status); k++)
-        status = measure_once(of, linear, &costs[k]);
-    if (!moray_failed(status)) {
-        *found = costs[0];
-        for (size_t k = 0; k < PIECES; k++)
-            found->piece[k] = median_cost(costs, offsetof(cost, piece) + k * sizeof(double), repeats, work);
-        found->total = median_cost(costs, offsetof(cost, total), repeats, work);
-        found->sweep = median_cost(costs, offsetof(cost, sweep), repeats, work);
-        found->wall = median_cost(costs, offsetof(cost, wall), repeats, work);
-    }
+    if (!moray_failed(status) && of->begin)
+        status = of->begin(of->self);
+    if (!moray_failed(status))
+        status = measure_all(of, linear, repeats, costs, work, found);
+    if (of->end)
+        of->end(of->self);
     free(costs);
     free(work);
     return status;

@@ -33,8 +33,9 @@ static void ends(const moray_ends *at, moray_end_values *out, const void *data)
     *e++ = a / (c->L * ccos(delta / 2));
 }
 
-moray_status s1_begin(s1_case *c)
+static moray_status begin(void *self)
 {
+    s1_case *c = self;
     const moray_robot robot = moray_robot_paper();
     moray_test_rig rig;
     moray_steady steady;
@@ -48,8 +49,9 @@ moray_status s1_begin(s1_case *c)
     return status;
 }
 
-void s1_end(s1_case *c)
+static void end(void *self)
 {
+    s1_case *c = self;
     moray_swim_track_free(&c->orbit);
 }
 
@@ -105,5 +107,5 @@ static void forget(void *self)
 
 subject s1_subject(s1_case *c)
 {
-    return (subject){solve, forget, c};
+    return (subject){begin, solve, forget, end, c};
 }

@@ -27,12 +27,6 @@ static void slide(const moray_node *at, moray_rates *out, const void *data)
     out->f[2] = wire->g * cos(u);
 }
 
-static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].tf;
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
     const struct wire *wire = data;
@@ -40,14 +34,11 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nx = 3,
                                     .nu = 1,
                                     .continuous = slide,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_between(0, 10),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0)),
                                     .xf = MORAY_BOUNDS(moray_fixed(wire->x), moray_fixed(wire->y), moray_free()),
                                     .u = MORAY_BOUNDS(moray_between(0, M_PI))};
-    return moray_ocp_new(
-        ocp,
-        &(moray_ocp_spec){.name = "brachistochrone", .phases = 1, .phase = &phase, .endpoint = arrival, .data = data});
+    return classic_new(ocp, "brachistochrone", &phase, classic_final_time, data);
 }
 
 // Along the straight wire, whose speed follows from energy.
@@ -68,21 +59,15 @@ const struct classic classic_brachistochrone = {.name = "brachistochrone",
                                                 .source = "Bryson and Ho 1975, 2.7; dymos",
                                                 .published = "1.80160312",
                                                 .closed_form = 1.8016031225,
-                                                .sign = 1,
                                                 .build = build,
                                                 .start = start,
-                                                .data = &(const struct wire){10, 5, 9.80665},
-                                                .scheme = "gauss3",
-                                                .intervals = 20};
+                                                .data = &(const struct wire){10, 5, 9.80665}};
 
 const struct classic classic_brachistochrone_near = {.name = "brachistochrone-near",
                                                      .title = "Brachistochrone to (2, 2)",
                                                      .source = "Bryson and Ho 1975, 2.7; PSOPT",
                                                      .published = "0.82475914",
                                                      .closed_form = 0.8247591432,
-                                                     .sign = 1,
                                                      .build = build,
                                                      .start = start,
-                                                     .data = &(const struct wire){2, 2, 9.8},
-                                                     .scheme = "gauss3",
-                                                     .intervals = 20};
+                                                     .data = &(const struct wire){2, 2, 9.8}};

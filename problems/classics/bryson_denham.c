@@ -24,12 +24,6 @@ static void push(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = wall->w * at->u[0] * at->u[0];
 }
 
-static void effort(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
     const struct wall *wall = data;
@@ -38,14 +32,11 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .nu = 1,
                                     .nq = 1,
                                     .continuous = push,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x = MORAY_BOUNDS(moray_at_most(wall->l), moray_free()),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(1)),
                                     .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(-1))};
-    return moray_ocp_new(
-        ocp,
-        &(moray_ocp_spec){.name = "bryson-denham", .phases = 1, .phase = &phase, .endpoint = effort, .data = data});
+    return classic_new(ocp, "bryson-denham", &phase, classic_first_integral, data);
 }
 
 const struct classic classic_bryson_denham = {.name = "bryson-denham",
@@ -53,7 +44,6 @@ const struct classic classic_bryson_denham = {.name = "bryson-denham",
                                               .source = "Bryson and Ho 1975, 3.11",
                                               .published = "4",
                                               .closed_form = 4,
-                                              .sign = 1,
                                               .build = build,
                                               .data = &(const struct wall){1. / 9, 0.5},
                                               .scheme = "hermite-simpson",
@@ -64,7 +54,6 @@ const struct classic classic_bryson_denham_energy = {.name = "bryson-denham-ener
                                                      .source = "Bryson and Ho 1975, 3.11; dymos",
                                                      .published = "8",
                                                      .closed_form = 8,
-                                                     .sign = 1,
                                                      .build = build,
                                                      .data = &(const struct wall){1. / 9, 1},
                                                      .scheme = "hermite-simpson",
@@ -75,7 +64,6 @@ const struct classic classic_breakwell = {.name = "breakwell",
                                           .source = "Bryson and Ho 1975, 3.11; PSOPT",
                                           .published = "4.444444",
                                           .closed_form = 4.4444444444,
-                                          .sign = 1,
                                           .build = build,
                                           .data = &(const struct wall){0.1, 0.5},
                                           .scheme = "hermite-simpson",

@@ -24,36 +24,23 @@ static void yield(const moray_ends *at, moray_end_values *out, const void *data)
 
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {.name = "tube",
                                     .nx = 2,
                                     .nu = 1,
                                     .continuous = react,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0)),
                                     .u = MORAY_BOUNDS(moray_between(0, 1))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "catalyst mixing", .phases = 1, .phase = &phase, .endpoint = yield});
+    return classic_new(ocp, "catalyst mixing", &phase, yield, data);
 }
 
 // COPS: nothing reacts.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    x[0] = 1;
-    x[1] = 0;
-    u[0] = 0;
-    return tau;
-}
+static const moray_samples start = {2, (const double[]){0, 1}, (const double[]){1, 0, 1, 0}, (const double[]){0, 0}};
 
 const struct classic classic_catalyst_mixing = {.name = "catalyst-mixing",
                                                 .title = "Catalyst mixing",
                                                 .source = "COPS 3.0; Vassiliadis 1999; PSOPT",
                                                 .published = "-0.04805",
-                                                .sign = 1,
                                                 .build = build,
-                                                .start = start,
-                                                .scheme = "radau3",
-                                                .intervals = 20};
+                                                .straight = &start,
+                                                .scheme = "radau3"};

@@ -14,15 +14,23 @@ struct classic {
     const char *published; // optimum as it was printed; NULL where none is for this mesh
     const char *computed;  // what the stated data give where that is not what was printed (the file says why); or NULL
     double closed_form;    // to 1e-10; 0 where there is none
-    double sign;           // of the objective in the published value: -1 where the textbook maximises
+    bool maximised;        // what is published, so that it is minus the objective
     const void *data;      // of the variant; handed to build and start
     moray_status (*build)(moray_ocp **ocp, const void *data);
-    classic_start_fn *start; // NULL: straight between the bounds
-    const char *scheme;      // recommended, with this many intervals to begin with
-    int intervals;
+    classic_start_fn *start;          // NULL: the samples of `straight`
+    const moray_samples *straight;    // two, from time 0 on; NULL: straight between the bounds
+    const char *scheme;               // recommended; NULL: gauss3
+    int intervals;                    // to begin with; 0: 20
     bool fixed_mesh;                  // the published value belongs to that mesh: not to be refined
     double tolerance, mesh_tolerance; // 0: 1e-10 and 1e-6
 };
+
+// For `build` of a problem with no events and one phase, which begins at time 0 where it does not say otherwise.
+moray_status classic_new(moray_ocp **ocp, const char *name, const moray_phase_spec *phase, moray_endpoint_fn *endpoint,
+                         const void *data);
+
+// Objectives of one phase: its end in time; its first integral; minus the end of its first state.
+moray_endpoint_fn classic_final_time, classic_first_integral, classic_first_state;
 
 extern const struct classic *const classics[]; // ends with NULL
 const struct classic *classic_find(const char *name);

@@ -87,12 +87,6 @@ static void fly(const moray_node *at, moray_rates *out, const void *data)
     out->f[3] = -T / Isp;
 }
 
-static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].tf;
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
     (void)data;
@@ -105,36 +99,24 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 4,
         .nu = 1,
         .continuous = fly,
-        .t0 = moray_fixed(0),
         .tf = moray_between(200, 500),
         .x = MORAY_BOUNDS(moray_between(0, 69000), moray_between(1, 2000), moray_between(-89 * DEG, 89 * DEG),
                           moray_between(10000, 45000)),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(424.26), moray_fixed(0), moray_fixed(42000)),
         .xf = MORAY_BOUNDS(moray_fixed(65600), moray_fixed(968.148), moray_fixed(0), moray_free()),
         .u = MORAY_BOUNDS(moray_between(-20 * DEG, 20 * DEG))};
-    return moray_ocp_new(
-        ocp, &(moray_ocp_spec){.name = "climb", .phases = 1, .phase = &phase, .endpoint = arrival, .data = tables});
+    return classic_new(ocp, "climb", &phase, classic_final_time, tables);
 }
 
 // PSOPT: straight, a fifth of the weight burnt, 500 s.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    x[0] = 65600 * tau;
-    x[1] = 424.26 + (968.148 - 424.26) * tau;
-    x[2] = 0;
-    x[3] = 42000 * (1 - 0.2 * tau);
-    u[0] = 0;
-    return 500 * tau;
-}
+static const moray_samples start = {2, (const double[]){0, 500},
+                                    (const double[]){0, 424.26, 0, 42000, 65600, 968.148, 0, 0.8 * 42000},
+                                    (const double[]){0, 0}};
 
 const struct classic classic_climb = {.name = "climb",
                                       .title = "Minimum time to climb",
                                       .source = "Bryson, Desai and Hoffman 1969; PSOPT",
                                       .published = "321.1",
-                                      .sign = 1,
                                       .build = build,
-                                      .start = start,
-                                      .scheme = "gauss3",
+                                      .straight = &start,
                                       .intervals = 30};

@@ -25,12 +25,6 @@ static void climb(const moray_node *at, moray_rates *out, const void *data)
     out->f[2] = -2 * T;
 }
 
-static void altitude(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = -at->phase[0].xf[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
     const double *v_max = data;
@@ -39,13 +33,12 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nx = 3,
         .nu = 1,
         .continuous = climb,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_at_least(1), moray_between(0, *v_max), moray_between(0.6, 1)),
         .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0), moray_fixed(1)),
         .xf = MORAY_BOUNDS(moray_free(), moray_free(), moray_fixed(0.6)),
         .u = MORAY_BOUNDS(moray_between(0, 3.5))};
-    return moray_ocp_new(ocp, &(moray_ocp_spec){.name = "goddard", .phases = 1, .phase = &phase, .endpoint = altitude});
+    return classic_new(ocp, "goddard", &phase, classic_first_state, data);
 }
 
 // COPS: at the ground, tf = 1.
@@ -64,20 +57,16 @@ const struct classic classic_goddard = {.name = "goddard",
                                         .title = "Goddard rocket",
                                         .source = "COPS 3.0",
                                         .published = "1.01283",
-                                        .sign = -1,
+                                        .maximised = true,
                                         .build = build,
                                         .data = &(const double){MORAY_INFINITY},
-                                        .start = start,
-                                        .scheme = "gauss3",
-                                        .intervals = 20};
+                                        .start = start};
 
 const struct classic classic_goddard_slow = {.name = "goddard-slow",
                                              .title = "Goddard rocket, v <= 0.1",
                                              .source = "BOCOP; CTDirect",
                                              .published = "1.01257",
-                                             .sign = -1,
+                                             .maximised = true,
                                              .build = build,
                                              .data = &(const double){0.1},
-                                             .start = start,
-                                             .scheme = "gauss3",
-                                             .intervals = 20};
+                                             .start = start};

@@ -28,49 +28,32 @@ static void glide(const moray_node *at, moray_rates *out, const void *data)
     out->f[3] = (L * vx - D * w) / v / m - g;
 }
 
-static void range(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = -at->phase[0].xf[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {
         .name = "flight",
         .nx = 4,
         .nu = 1,
         .continuous = glide,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_at_least(0), moray_free(), moray_at_least(0), moray_free()),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(1000), moray_fixed(13.23), moray_fixed(-1.288)),
         .xf = MORAY_BOUNDS(moray_free(), moray_fixed(900), moray_fixed(13.23), moray_fixed(-1.288)),
         .u = MORAY_BOUNDS(moray_between(0, 1.4))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "hang glider", .phases = 1, .phase = &phase, .endpoint = range});
+    return classic_new(ocp, "hang glider", &phase, classic_first_state, data);
 }
 
 // COPS: straight flight for one second.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    x[0] = 13.23 * tau;
-    x[1] = 1000 - 100 * tau;
-    x[2] = 13.23;
-    x[3] = -1.288;
-    u[0] = 0.7;
-    return tau;
-}
+static const moray_samples start = {2, (const double[]){0, 1},
+                                    (const double[]){0, 1000, 13.23, -1.288, 13.23, 900, 13.23, -1.288},
+                                    (const double[]){0.7, 0.7}};
 
 #define GLIDER(id, n, ...)                                                                                             \
     const struct classic classic_##id = {.title = "Hang glider, " #n " intervals",                                     \
                                          .source = "COPS 3.0",                                                         \
-                                         .sign = -1,                                                                   \
+                                         .maximised = true,                                                            \
                                          .build = build,                                                               \
-                                         .start = start,                                                               \
+                                         .straight = &start,                                                           \
                                          .scheme = "trapezoid",                                                        \
                                          .intervals = n,                                                               \
                                          .fixed_mesh = true,                                                           \

@@ -20,27 +20,18 @@ static void hang(const moray_node *at, moray_rates *out, const void *data)
     out->g[1] = ds;
 }
 
-static void energy(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {.name = "chain",
                                     .nx = 1,
                                     .nu = 1,
                                     .nq = 2,
                                     .continuous = hang,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1)),
                                     .xf = MORAY_BOUNDS(moray_fixed(3)),
                                     .q = MORAY_BOUNDS(moray_free(), moray_fixed(4))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "hanging chain", .phases = 1, .phase = &phase, .endpoint = energy});
+    return classic_new(ocp, "hanging chain", &phase, classic_first_integral, data);
 }
 
 // COPS: a parabola through both ends with its lowest point at t = 1/4.
@@ -58,8 +49,5 @@ const struct classic classic_hanging_chain = {.name = "hanging-chain",
                                               .source = "COPS 3.0; PSOPT",
                                               .published = "5.06848",
                                               .closed_form = 5.0684801110,
-                                              .sign = 1,
                                               .build = build,
-                                              .start = start,
-                                              .scheme = "gauss3",
-                                              .intervals = 20};
+                                              .start = start};

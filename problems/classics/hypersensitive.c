@@ -17,26 +17,17 @@ static void drift(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = (x * x + u * u) / 2;
 }
 
-static void effort(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {.name = "drift",
                                     .nx = 1,
                                     .nu = 1,
                                     .nq = 1,
                                     .continuous = drift,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(50),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1.5)),
                                     .xf = MORAY_BOUNDS(moray_fixed(1))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "hypersensitive", .phases = 1, .phase = &phase, .endpoint = effort});
+    return classic_new(ocp, "hypersensitive", &phase, classic_first_integral, data);
 }
 
 const struct classic classic_hypersensitive = {.name = "hypersensitive",
@@ -45,7 +36,4 @@ const struct classic classic_hypersensitive = {.name = "hypersensitive",
                                                .published = "1.330826",
                                                .computed = "1.330807",
                                                .closed_form = 1.3308069049,
-                                               .sign = 1,
-                                               .build = build,
-                                               .scheme = "gauss3",
-                                               .intervals = 20};
+                                               .build = build};

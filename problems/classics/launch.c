@@ -79,26 +79,16 @@ static void ascend(const moray_node *at, moray_rates *out, int phase)
     out->c[0] = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
 }
 
-static void six_boosters(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    ascend(at, out, 0);
-}
-static void three_boosters(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    ascend(at, out, 1);
-}
-static void first_stage(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    ascend(at, out, 2);
-}
-static void second_stage(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    ascend(at, out, 3);
-}
+#define STAGE(name, phase)                                                                                             \
+    static void name(const moray_node *at, moray_rates *out, const void *data)                                         \
+    {                                                                                                                  \
+        (void)data;                                                                                                    \
+        ascend(at, out, phase);                                                                                        \
+    }
+STAGE(six_boosters, 0)
+STAGE(three_boosters, 1)
+STAGE(first_stage, 2)
+STAGE(second_stage, 3)
 
 // Angle whose cosine is c, in the upper half of the circle or the lower as `side` tells.
 static moray_num angle(moray_num c, moray_num side)
@@ -216,8 +206,7 @@ const struct classic classic_launch = {.name = "launch",
                                        .source = "Benson 2004; GPOPS; PSOPT",
                                        .published = "7529.66",
                                        .computed = "7529.712",
-                                       .sign = -1,
+                                       .maximised = true,
                                        .build = build,
                                        .start = start,
-                                       .scheme = "gauss3",
                                        .intervals = 5};

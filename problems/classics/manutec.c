@@ -54,15 +54,8 @@ static void move(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
 }
 
-static void energy(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_bounds rest = moray_fixed(0), voltage = moray_between(-7.5, 7.5);
     const moray_phase_spec phase = {
         .name = "motion",
@@ -70,22 +63,17 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .nu = 3,
         .nq = 1,
         .continuous = move,
-        .t0 = moray_fixed(0),
         .tf = moray_fixed(0.53),
         .x = MORAY_BOUNDS(moray_between(-2.97, 2.97), moray_between(-2.01, 2.01), moray_between(-2.86, 2.86),
                           moray_between(-3, 3), moray_between(-1.5, 1.5), moray_between(-5.2, 5.2)),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(-1.5), moray_fixed(0), rest, rest, rest),
         .xf = MORAY_BOUNDS(moray_fixed(1), moray_fixed(-1.95), moray_fixed(1), rest, rest, rest),
         .u = MORAY_BOUNDS(voltage, voltage, voltage)};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "manutec r3", .phases = 1, .phase = &phase, .endpoint = energy});
+    return classic_new(ocp, "manutec r3", &phase, classic_first_integral, data);
 }
 
 const struct classic classic_manutec = {.name = "manutec",
                                         .title = "Manutec r3 robot, least energy",
                                         .source = "von Stryk and Schlemmer 1994; PSOPT",
                                         .published = "20.4042",
-                                        .sign = 1,
-                                        .build = build,
-                                        .scheme = "gauss3",
-                                        .intervals = 20};
+                                        .build = build};

@@ -20,42 +20,25 @@ static void descend(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = T;
 }
 
-static void effort(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {
         .name = "descent",
         .nx = 3,
         .nu = 1,
         .nq = 1,
         .continuous = descend,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_between(-20, 20), moray_between(-20, 20), moray_between(0.01, 1)),
         .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(-0.783), moray_fixed(1)),
         .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_free()),
         .u = MORAY_BOUNDS(moray_between(0, 1.227))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "moon lander", .phases = 1, .phase = &phase, .endpoint = effort});
+    return classic_new(ocp, "moon lander", &phase, classic_first_integral, data);
 }
 
 // PSOPT: straight, half thrust, tf = 1.5.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    x[0] = 1 - tau;
-    x[1] = -0.783 * (1 - tau);
-    x[2] = 1 - 0.99 * tau;
-    u[0] = 1.227 / 2;
-    return 1.5 * tau;
-}
+static const moray_samples start = {2, (const double[]){0, 1.5}, (const double[]){1, -0.783, 1, 0, 0, 0.01},
+                                    (const double[]){1.227 / 2, 1.227 / 2}};
 
 const struct classic classic_moon_lander = {.name = "moon-lander",
                                             .title = "Moon lander",
@@ -63,8 +46,5 @@ const struct classic classic_moon_lander = {.name = "moon-lander",
                                             .published = "1.4204",
                                             .computed = "1.42031",
                                             .closed_form = 1.4203125990,
-                                            .sign = 1,
                                             .build = build,
-                                            .start = start,
-                                            .scheme = "gauss3",
-                                            .intervals = 20};
+                                            .straight = &start};

@@ -30,29 +30,21 @@ static void sail(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = square(out->f[0]) + square(out->f[1]);
 }
 
-static void effort(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {.name = "leg",
                                     .nx = 2,
                                     .nu = 1,
                                     .nc = 2,
                                     .nq = 1,
                                     .continuous = sail,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x = MORAY_BOUNDS(moray_between(0, 2), moray_between(0, 2)),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
                                     .xf = MORAY_BOUNDS(moray_fixed(1.2), moray_fixed(1.6)),
                                     .u = MORAY_BOUNDS(moray_between(-10, 10)),
                                     .c = MORAY_BOUNDS(moray_at_least(0.1), moray_at_least(0.1))};
-    return moray_ocp_new(ocp, &(moray_ocp_spec){.name = "obstacle", .phases = 1, .phase = &phase, .endpoint = effort});
+    return classic_new(ocp, "obstacle", &phase, classic_first_integral, data);
 }
 
 const struct classic classic_obstacle = {.name = "obstacle",
@@ -60,7 +52,4 @@ const struct classic classic_obstacle = {.name = "obstacle",
                                          .source = "PROPT; PSOPT",
                                          .published = "4.571044",
                                          .closed_form = 4.571044,
-                                         .sign = 1,
-                                         .build = build,
-                                         .scheme = "gauss3",
-                                         .intervals = 20};
+                                         .build = build};

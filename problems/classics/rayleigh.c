@@ -21,45 +21,28 @@ static void circuit(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = u * u + x1 * x1;
 }
 
-static void effort(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {.name = "circuit",
                                     .nx = 2,
                                     .nu = 1,
                                     .nc = 1,
                                     .nq = 1,
                                     .continuous = circuit,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(4.5),
                                     .x0 = MORAY_BOUNDS(moray_fixed(-5), moray_fixed(-5)),
                                     .c = MORAY_BOUNDS(moray_at_most(0))};
-    return moray_ocp_new(ocp, &(moray_ocp_spec){.name = "rayleigh", .phases = 1, .phase = &phase, .endpoint = effort});
+    return classic_new(ocp, "rayleigh", &phase, classic_first_integral, data);
 }
 
 // PSOPT: the states stay where they begin.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    x[0] = x[1] = -5;
-    u[0] = 0;
-    return 4.5 * tau;
-}
+static const moray_samples start = {2, (const double[]){0, 4.5}, (const double[]){-5, -5, -5, -5},
+                                    (const double[]){0, 0}};
 
 const struct classic classic_rayleigh = {.name = "rayleigh",
                                          .title = "Rayleigh, mixed constraint",
                                          .source = "Betts 2010; PSOPT",
                                          .published = "44.77625",
                                          .computed = "44.8044",
-                                         .sign = 1,
                                          .build = build,
-                                         .start = start,
-                                         .scheme = "gauss3",
-                                         .intervals = 20};
+                                         .straight = &start};

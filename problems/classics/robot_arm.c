@@ -35,30 +35,21 @@ static void turn(const moray_node *at, moray_rates *out, const void *data)
     out->f[5] = at->u[2] / I_phi;
 }
 
-static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].tf;
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_bounds rest = moray_fixed(0), torque = moray_between(-1, 1);
     const moray_phase_spec phase = {
         .name = "turn",
         .nx = 6,
         .nu = 3,
         .continuous = turn,
-        .t0 = moray_fixed(0),
         .tf = moray_at_least(0),
         .x = MORAY_BOUNDS(moray_between(0, L), moray_between(-M_PI, M_PI), moray_between(0, M_PI), moray_free(),
                           moray_free(), moray_free()),
         .x0 = MORAY_BOUNDS(moray_fixed(4.5), moray_fixed(0), moray_fixed(M_PI / 4), rest, rest, rest),
         .xf = MORAY_BOUNDS(moray_fixed(4.5), moray_fixed(2 * M_PI / 3), moray_fixed(M_PI / 4), rest, rest, rest),
         .u = MORAY_BOUNDS(torque, torque, torque)};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "robot arm", .phases = 1, .phase = &phase, .endpoint = arrival});
+    return classic_new(ocp, "robot arm", &phase, classic_final_time, data);
 }
 
 // COPS: theta = 2 pi/3 tau^2, tf = 1, everything else stays.
@@ -80,7 +71,6 @@ const struct classic classic_robot_arm = {.name = "robot-arm",
                                           .source = "COPS 3.0",
                                           .published = "9.14138",
                                           .computed = "9.14140",
-                                          .sign = 1,
                                           .build = build,
                                           .start = start,
                                           .scheme = "trapezoid",

@@ -43,14 +43,12 @@ static void cross_range(const moray_ends *at, moray_end_values *out, const void 
 
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_bounds upright = moray_between(-89 * DEG, 89 * DEG);
     const moray_phase_spec phase = {
         .name = "entry",
         .nx = 6,
         .nu = 2,
         .continuous = reenter,
-        .t0 = moray_fixed(0),
         .tf = moray_between(100, 4000),
         .x = MORAY_BOUNDS(moray_between(0, 300000), moray_free(), upright, moray_between(1, 40000), upright,
                           moray_between(-M_PI, M_PI)),
@@ -59,30 +57,20 @@ static moray_status build(moray_ocp **ocp, const void *data)
         .xf = MORAY_BOUNDS(moray_fixed(80000), moray_free(), moray_free(), moray_fixed(2500), moray_fixed(-5 * DEG),
                            moray_free()),
         .u = MORAY_BOUNDS(moray_between(-90 * DEG, 90 * DEG), moray_between(-90 * DEG, 1 * DEG))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "shuttle", .phases = 1, .phase = &phase, .endpoint = cross_range});
+    return classic_new(ocp, "shuttle", &phase, cross_range, data);
 }
 
 // Straight where both ends are given, else as at the beginning; no lift control; 2000 s.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    x[0] = 260000 - 180000 * tau;
-    x[1] = x[2] = 0;
-    x[3] = 25600 - 23100 * tau;
-    x[4] = (-1 - 4 * tau) * DEG;
-    x[5] = 90 * DEG;
-    u[0] = u[1] = 0;
-    return 2000 * tau;
-}
+static const moray_samples start = {
+    2, (const double[]){0, 2000},
+    (const double[]){260000, 0, 0, 25600, -1 * DEG, 90 * DEG, 80000, 0, 0, 2500, -5 * DEG, 90 * DEG},
+    (const double[]){0, 0, 0, 0}};
 
 const struct classic classic_shuttle = {.name = "shuttle",
                                         .title = "Space shuttle re-entry",
                                         .source = "Betts 2001",
                                         .published = "34.1412",
-                                        .sign = -1,
+                                        .maximised = true,
                                         .build = build,
-                                        .start = start,
-                                        .scheme = "gauss3",
+                                        .straight = &start,
                                         .intervals = 40};

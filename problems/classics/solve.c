@@ -9,20 +9,61 @@
 
 enum { samples = 129, max_phases = 4, max_states = 8, max_controls = 4 };
 
+// ---- Problems of one phase -----------------------------------------------------------------------------------------
+
+moray_status classic_new(moray_ocp **ocp, const char *name, const moray_phase_spec *phase, moray_endpoint_fn *endpoint,
+                         const void *data)
+{
+    const moray_ocp_spec spec = {.name = name, .phases = 1, .phase = phase, .endpoint = endpoint, .data = data};
+    return moray_ocp_new(ocp, &spec);
+}
+
+void classic_final_time(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].tf;
+}
+
+void classic_first_integral(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+void classic_first_state(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = -at->phase[0].xf[0];
+}
+
+// ---- Solving -------------------------------------------------------------------------------------------------------
+
 struct start {
     moray_samples phase[max_phases];
     double time[max_phases][samples];
     double x[max_phases][samples * max_states], u[max_phases][samples * max_controls];
 };
 
+static double straight_start(const moray_samples *between, int nx, int nu, double tau, double *x, double *u)
+{
+    for (int i = 0; i < nx; i++)
+        x[i] = between->x[i] + tau * (between->x[nx + i] - between->x[i]);
+    for (int i = 0; i < nu; i++)
+        u[i] = between->u[i] + tau * (between->u[nu + i] - between->u[i]);
+    return between->time[1] * tau;
+}
+
 static void sample_start(const struct classic *classic, const moray_ocp *ocp, struct start *start)
 {
     for (int p = 0; p < moray_ocp_phases(ocp); p++) {
         int nx, nu;
         moray_ocp_widths(ocp, p, &nx, &nu);
-        for (int k = 0; k < samples; k++)
-            start->time[p][k] =
-                classic->start(p, (double)k / (samples - 1), start->x[p] + k * nx, start->u[p] + k * nu, classic->data);
+        for (int k = 0; k < samples; k++) {
+            const double tau = (double)k / (samples - 1);
+            double *x = start->x[p] + k * nx, *u = start->u[p] + k * nu;
+            start->time[p][k] = classic->start ? classic->start(p, tau, x, u, classic->data)
+                                               : straight_start(classic->straight, nx, nu, tau, x, u);
+        }
         start->phase[p] = (moray_samples){samples, start->time[p], start->x[p], start->u[p]};
     }
 }
@@ -43,7 +84,7 @@ const char *classic_agreement(const struct classic *classic, const struct classi
 static moray_status solve_from_start(const struct classic *classic, const moray_ocp *ocp,
                                      const moray_settings *settings, moray_solution **solution)
 {
-    if (!classic->start)
+    if (!classic->start && !classic->straight)
         return moray_solve(ocp, settings, NULL, solution);
     struct start *start = calloc(1, sizeof *start);
     if (!start)
@@ -86,8 +127,8 @@ static void judge(const struct classic *classic, struct classic_result *result)
 moray_settings classic_settings(const struct classic *classic)
 {
     moray_settings settings = moray_settings_default();
-    settings.scheme = classic->scheme;
-    settings.intervals = classic->intervals;
+    settings.scheme = classic->scheme ? classic->scheme : "gauss3";
+    settings.intervals = classic->intervals > 0 ? classic->intervals : 20;
     settings.tolerance = classic->tolerance > 0 ? classic->tolerance : 1e-10;
     settings.mesh_tolerance = classic->mesh_tolerance > 0 ? classic->mesh_tolerance : 1e-6;
     settings.max_refinements = classic->fixed_mesh ? 0 : 20;
@@ -104,7 +145,7 @@ static void read_solution(const struct classic *classic, const moray_solution *s
         result->mesh[k] = mesh[k];
         result->iterations += mesh[k].iterations;
     }
-    result->value = classic->sign * moray_solution_objective(solution);
+    result->value = classic->maximised ? -moray_solution_objective(solution) : moray_solution_objective(solution);
     judge(classic, result);
 }
 
@@ -134,7 +175,8 @@ moray_status classic_solve(const struct classic *classic, const moray_settings *
             result->certificate.pass = false;
             status = moray_ok();
         }
-        result->better = result->certificate.pass && classic->sign * result->difference < 0;
+        result->better =
+            result->certificate.pass && (classic->maximised ? result->difference > 0 : result->difference < 0);
     }
     moray_solution_free(solution);
     moray_ocp_free(ocp);

@@ -67,48 +67,33 @@ static void swim(const moray_node *at, moray_rates *out, const void *data)
     out->f[4] = at->u[1];
 }
 
-static void distance(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = -at->phase[0].xf[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_bounds any = moray_free(), turn = moray_between(-3.15, 3.15), bend = moray_between(-1.5, 1.5);
     const moray_phase_spec phase = {
         .name = "swim",
         .nx = 5,
         .nu = 2,
         .continuous = swim,
-        .t0 = moray_fixed(0),
         .tf = moray_fixed(25),
         .x = MORAY_BOUNDS(any, any, turn, bend, bend),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_at_most(0), moray_at_least(0), any),
         .xf = MORAY_BOUNDS(any, moray_fixed(0), any, any, any),
         .u = MORAY_BOUNDS(moray_between(-1, 1), moray_between(-1, 1))};
-    return moray_ocp_new(ocp, &(moray_ocp_spec){.name = "swimmer", .phases = 1, .phase = &phase, .endpoint = distance});
+    return classic_new(ocp, "swimmer", &phase, classic_first_state, data);
 }
 
 // BOCOP and CTDirect: 0.1 everywhere.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    for (int i = 0; i < 5; i++)
-        x[i] = 0.1;
-    u[0] = u[1] = 0.1;
-    return 25 * tau;
-}
+static const moray_samples start = {2, (const double[]){0, 25},
+                                    (const double[]){0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1},
+                                    (const double[]){0.1, 0.1, 0.1, 0.1}};
 
 const struct classic classic_swimmer = {.name = "swimmer",
                                         .title = "Three-link swimmer, 25 s",
                                         .source = "Giraldi, Martinon and Zoppello 2013; BOCOP",
                                         .published = "0.984273",
-                                        .sign = -1,
+                                        .maximised = true,
                                         .build = build,
-                                        .start = start,
-                                        .scheme = "gauss3",
+                                        .straight = &start,
                                         .intervals = 60,
                                         .tolerance = 1e-8};

@@ -23,48 +23,27 @@ static void steer(const moray_node *at, moray_rates *out, const void *data)
     out->f[3] = a * sin(at->u[0]);
 }
 
-static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].tf;
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {.name = "burn",
                                     .nx = 4,
                                     .nu = 1,
                                     .continuous = steer,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_at_least(0),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0), moray_fixed(0)),
                                     .xf = MORAY_BOUNDS(moray_free(), moray_fixed(45), moray_fixed(5), moray_fixed(0)),
                                     .u = MORAY_BOUNDS(moray_between(-M_PI_2, M_PI_2))};
-    return moray_ocp_new(
-        ocp, &(moray_ocp_spec){.name = "tangent steering", .phases = 1, .phase = &phase, .endpoint = arrival});
+    return classic_new(ocp, "tangent steering", &phase, classic_final_time, data);
 }
 
 // COPS: u = 0, tf = 1, states straight.
-static double start(int phase, double tau, double *x, double *u, const void *data)
-{
-    (void)phase;
-    (void)data;
-    x[0] = 0;
-    x[1] = 45 * tau;
-    x[2] = 5 * tau;
-    x[3] = 0;
-    u[0] = 0;
-    return tau;
-}
+static const moray_samples start = {2, (const double[]){0, 1}, (const double[]){0, 0, 0, 0, 0, 45, 5, 0},
+                                    (const double[]){0, 0}};
 
 const struct classic classic_tangent_steering = {.name = "tangent-steering",
                                                  .title = "Linear tangent steering",
                                                  .source = "Bryson and Ho 1975, 2.4; Betts 2001",
                                                  .published = "0.55457088",
                                                  .closed_form = 0.5545708783,
-                                                 .sign = 1,
                                                  .build = build,
-                                                 .start = start,
-                                                 .scheme = "gauss3",
-                                                 .intervals = 20};
+                                                 .straight = &start};

@@ -126,8 +126,6 @@ const struct classic classic_two_burn = {.name = "two-burn",
                                          .title = "Two-burn orbit transfer",
                                          .source = "Betts 2001; PSOPT",
                                          .published = "0.2367249",
-                                         .sign = -1,
+                                         .maximised = true,
                                          .build = build,
-                                         .start = start,
-                                         .scheme = "gauss3",
-                                         .intervals = 20};
+                                         .start = start};

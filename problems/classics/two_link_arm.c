@@ -26,27 +26,18 @@ static void swing(const moray_node *at, moray_rates *out, const void *data)
     out->f[3] = x1;
 }
 
-static void arrival(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].tf;
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {
         .name = "swing",
         .nx = 4,
         .nu = 2,
         .continuous = swing,
-        .t0 = moray_fixed(0),
         .tf = moray_between(1, 10),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0.5), moray_fixed(0)),
         .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0.5), moray_fixed(0.522)),
         .u = MORAY_BOUNDS(moray_between(-1, 1), moray_between(-1, 1))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "two-link arm", .phases = 1, .phase = &phase, .endpoint = arrival});
+    return classic_new(ocp, "two-link arm", &phase, classic_final_time, data);
 }
 
 const struct classic classic_two_link_arm = {.name = "two-link-arm",
@@ -54,7 +45,4 @@ const struct classic classic_two_link_arm = {.name = "two-link-arm",
                                              .source = "Luus 2000; PROPT; PSOPT",
                                              .published = "2.988662",
                                              .computed = "2.98228",
-                                             .sign = 1,
-                                             .build = build,
-                                             .scheme = "gauss3",
-                                             .intervals = 20};
+                                             .build = build};

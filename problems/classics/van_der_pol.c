@@ -19,32 +19,22 @@ static void oscillate(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = (x1 * x1 + x2 * x2 + u * u) / 2;
 }
 
-static void effort(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = at->phase[0].q[0];
-}
-
 static moray_status build(moray_ocp **ocp, const void *data)
 {
-    (void)data;
     const moray_phase_spec phase = {.name = "oscillator",
                                     .nx = 2,
                                     .nu = 1,
                                     .nq = 1,
                                     .continuous = oscillate,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(2),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0))};
-    return moray_ocp_new(ocp,
-                         &(moray_ocp_spec){.name = "van der pol", .phases = 1, .phase = &phase, .endpoint = effort});
+    return classic_new(ocp, "van der pol", &phase, classic_first_integral, data);
 }
 
 const struct classic classic_van_der_pol = {.name = "van-der-pol",
                                             .title = "Van der Pol oscillator, tf = 2",
                                             .source = "BOCOP; CTDirect",
                                             .published = "1.047921",
-                                            .sign = 1,
                                             .build = build,
                                             .scheme = "trapezoid",
                                             .intervals = 100,

@@ -77,29 +77,19 @@ static moray_status swim_23h(paper *p, paper_reading reading, sway *s)
 
 static moray_status draw_23h(paper *p, const sway *printed, const sway *corrected)
 {
-    const moray_curve curves[] = {
-        {.label = "(16c)", .x = corrected->t, .y = corrected->v_n, .n = SAMPLES},
-        {.label = "(23h) as printed", .x = printed->t, .y = printed->v_n, .n = SAMPLES},
-    };
+    static const char *const labels[] = {"(16c)", "(23h) as printed"};
     const moray_column columns[] = {{.name = "t", .unit = "s", .values = printed->t},
                                     {.name = "v_n by (16c)", .unit = "m/s", .values = corrected->v_n},
                                     {.name = "v_n by (23h)", .unit = "m/s", .values = printed->v_n}};
-    MORAY_TRY(paper_csv(p, "e1", columns, 3, SAMPLES));
-    return paper_figure(p, &(moray_figure){.name = "e1",
-                                           .title = "E1: lateral velocity from rest, control-oriented model",
-                                           .x_label = "time [s]",
-                                           .y_label = "v_n [m/s]",
-                                           .curves = curves,
-                                           .n_curves = 2});
+    return paper_draw(p, &(paper_graph){"e1", "E1: lateral velocity from rest, control-oriented model", "time [s]",
+                                        "v_n [m/s]", columns, 3, SAMPLES, .labels = labels});
 }
 
 static void json_23h(moray_json *json, const char *key, const sway *s)
 {
-    moray_json_open(json, key);
-    moray_json_number(json, "dv_n_rms_m_s2", s->dv_n_rms);
-    moray_json_number(json, "v_n_m_s", s->v_n[SAMPLES - 1]);
-    moray_json_number(json, "v_x_m_s", s->v_x);
-    moray_json_close(json);
+    moray_json_object(
+        json, key,
+        MORAY_MEMBERS({"dv_n_rms_m_s2", s->dv_n_rms}, {"v_n_m_s", s->v_n[SAMPLES - 1]}, {"v_x_m_s", s->v_x}));
 }
 
 moray_status erratum_23h(paper *p)
@@ -127,11 +117,8 @@ moray_status erratum_23h(paper *p)
     json_23h(p->json, "as_printed", &s[0]);
     json_23h(p->json, "corrected", &s[1]);
     moray_json_close(p->json);
-    MORAY_TRY(paper_table(p, &(moray_table){.title = "E1: (23h) has h_4 and h_5 the other way round than (16c)",
-                                            .columns = {"as printed", "corrected"},
-                                            .n_columns = 2,
-                                            .rows = rows,
-                                            .n_rows = 3}));
+    MORAY_TRY(paper_rows(p, "E1: (23h) has h_4 and h_5 the other way round than (16c)",
+                         PAPER_HEADS("as printed", "corrected"), rows, 3));
     return draw_23h(p, &s[0], &s[1]);
 }
 
@@ -157,22 +144,13 @@ static double estimate_of_link_angle(const paper *p, double L)
 
 static moray_status draw_half_link(paper *p, const double *theta_max, double v_x[WAYS][AMPLITUDES])
 {
-    static const char *const labels[WAYS] = {"first-principles", "control-oriented, L = 2l",
-                                             "control-oriented, l as printed"};
-    moray_curve curves[WAYS];
-    moray_column columns[1 + WAYS] = {{.name = "theta_max", .unit = "deg", .values = theta_max}};
-    for (int c = 0; c < WAYS; c++) {
-        curves[c] = (moray_curve){
-            .label = labels[c], .x = theta_max, .y = v_x[c], .n = AMPLITUDES, .style = MORAY_CURVE_MARKED};
-        columns[1 + c] = (moray_column){.name = labels[c], .unit = "m/s", .values = v_x[c]};
-    }
-    MORAY_TRY(paper_csv(p, "e2", columns, 1 + WAYS, AMPLITUDES));
-    return paper_figure(p, &(moray_figure){.name = "e2",
-                                           .title = "E2: straight motion, l of (8), (12), (13) as 2l and as printed",
-                                           .x_label = "theta_max [deg]",
-                                           .y_label = "mean v_x [m/s]",
-                                           .curves = curves,
-                                           .n_curves = WAYS});
+    const moray_column columns[] = {{.name = "theta_max", .unit = "deg", .values = theta_max},
+                                    {.name = "first-principles", .unit = "m/s", .values = v_x[0]},
+                                    {.name = "control-oriented, L = 2l", .unit = "m/s", .values = v_x[1]},
+                                    {.name = "control-oriented, l as printed", .unit = "m/s", .values = v_x[2]}};
+    return paper_draw(p, &(paper_graph){"e2", "E2: straight motion, l of (8), (12), (13) as 2l and as printed",
+                                        "theta_max [deg]", "mean v_x [m/s]", columns, 1 + WAYS, AMPLITUDES,
+                                        .style = MORAY_CURVE_MARKED});
 }
 
 moray_status erratum_half_link(paper *p)
@@ -197,11 +175,8 @@ moray_status erratum_half_link(paper *p)
     moray_json_numbers(p->json, "v_x_corrected_m_s", v_x[1], AMPLITUDES);
     moray_json_numbers(p->json, "v_x_fp_m_s", v_x[0], AMPLITUDES);
     moray_json_close(p->json);
-    MORAY_TRY(paper_table(p, &(moray_table){.title = "E2: l of (8), (12), (13) is a whole link, elsewhere half a link",
-                                            .columns = {"as printed", "L = 2l", "first-principles"},
-                                            .n_columns = 3,
-                                            .rows = rows,
-                                            .n_rows = AMPLITUDES + 1}));
+    MORAY_TRY(paper_rows(p, "E2: l of (8), (12), (13) is a whole link, elsewhere half a link",
+                         PAPER_HEADS("as printed", "L = 2l", "first-principles"), rows, AMPLITUDES + 1));
     MORAY_TRY(
         paper_say(p,
                   "E2: Sec. V-B finds good accordance at 10 and 15 deg and too much speed of the simplified model "

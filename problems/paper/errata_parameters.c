@@ -22,21 +22,13 @@ static moray_status turn(paper *p, const moray_robot *robot, moray_model model, 
 
 static moray_status draw_turns(paper *p, const moray_swim_track *track, double *const heading[3])
 {
-    static const char *const labels[3] = {"first-principles, phi_0 = alpha/6", "control-oriented, phi_0 = a/6",
-                                          "first-principles, phi_0 = -alpha/6"};
-    moray_curve curves[3];
-    moray_column columns[4] = {{.name = "t", .unit = "s", .values = track->t}};
-    for (int c = 0; c < 3; c++) {
-        curves[c] = (moray_curve){.label = labels[c], .x = track->t, .y = heading[c], .n = track->n};
-        columns[1 + c] = (moray_column){.name = labels[c], .unit = "deg", .values = heading[c]};
-    }
-    MORAY_TRY(paper_csv(p, "e3", columns, 4, track->n));
-    return paper_figure(p, &(moray_figure){.name = "e3",
-                                           .title = "E3: the same offset turns the two models opposite ways",
-                                           .x_label = "time [s]",
-                                           .y_label = "heading [deg]",
-                                           .curves = curves,
-                                           .n_curves = 3});
+    const moray_column columns[] = {
+        {.name = "t", .unit = "s", .values = track->t},
+        {.name = "first-principles, phi_0 = alpha/6", .unit = "deg", .values = heading[0]},
+        {.name = "control-oriented, phi_0 = a/6", .unit = "deg", .values = heading[1]},
+        {.name = "first-principles, phi_0 = -alpha/6", .unit = "deg", .values = heading[2]}};
+    return paper_draw(p, &(paper_graph){"e3", "E3: the same offset turns the two models opposite ways", "time [s]",
+                                        "heading [deg]", columns, 4, track->n, .style = MORAY_CURVE_LINE});
 }
 
 moray_status erratum_offset_sign(paper *p)
@@ -51,17 +43,13 @@ moray_status erratum_offset_sign(paper *p)
     }
     const moray_table_row rows[] = {
         {.label = paper_label(p, "mean heading at %g s", DURATION), .value = {end[0], end[2], end[1]}, .unit = "deg"}};
-    moray_json_open(p->json, "e3");
-    moray_json_number(p->json, "heading_fp_as_printed_deg", end[0]);
-    moray_json_number(p->json, "heading_fp_corrected_deg", end[2]);
-    moray_json_number(p->json, "heading_control_deg", end[1]);
-    moray_json_close(p->json);
-    MORAY_TRY(paper_table(p, &(moray_table){.title = "E3: Sec. V-C gives both models the same offset, a sixth of the "
-                                                     "amplitude",
-                                            .columns = {"as printed, alpha/6", "corrected, -alpha/6", "control, a/6"},
-                                            .n_columns = 3,
-                                            .rows = rows,
-                                            .n_rows = 1}));
+    moray_json_object(p->json, "e3",
+                      MORAY_MEMBERS({"heading_fp_as_printed_deg", end[0]}, {"heading_fp_corrected_deg", end[2]},
+                                    {"heading_control_deg", end[1]}));
+    MORAY_TRY(paper_rows(p,
+                         "E3: Sec. V-C gives both models the same offset, a sixth of the "
+                         "amplitude",
+                         PAPER_HEADS("as printed, alpha/6", "corrected, -alpha/6", "control, a/6"), rows, 1));
     return draw_turns(p, track, heading);
 }
 
@@ -79,11 +67,8 @@ static moray_steady swim_at(paper *p, double omega, moray_status *status)
 
 static void json_frequency(moray_json *json, const char *key, double omega, const moray_steady *steady)
 {
-    moray_json_open(json, key);
-    moray_json_number(json, "omega_rad_s", omega);
-    moray_json_number(json, "v_x_m_s", steady->v_x);
-    moray_json_number(json, "power_W", steady->power);
-    moray_json_close(json);
+    moray_json_object(json, key,
+                      MORAY_MEMBERS({"omega_rad_s", omega}, {"v_x_m_s", steady->v_x}, {"power_W", steady->power}));
 }
 
 // That nothing steady comes of the number as printed is a finding, too.
@@ -104,15 +89,12 @@ moray_status erratum_frequency(paper *p)
     json_frequency(p->json, "as_printed", printed, &fast);
     json_frequency(p->json, "corrected", corrected, &steady);
     moray_json_close(p->json);
-    MORAY_TRY(paper_table(
-        p, &(moray_table){.title = paper_label(p,
-                                               "E4: omega = %g is a number of deg/s, not of rad/s (Fig. 7 stays "
-                                               "below 0.5 m/s)",
-                                               printed),
-                          .columns = {"rad/s", "deg/s"},
-                          .n_columns = 2,
-                          .rows = rows,
-                          .n_rows = 4}));
+    MORAY_TRY(paper_rows(p,
+                         paper_label(p,
+                                     "E4: omega = %g is a number of deg/s, not of rad/s (Fig. 7 stays "
+                                     "below 0.5 m/s)",
+                                     printed),
+                         PAPER_HEADS("rad/s", "deg/s"), rows, 4));
     return moray_failed(why) ? paper_say(p, "E4: as rad/s it is not swum: %s.", why.text) : moray_ok();
 }
 
@@ -138,10 +120,6 @@ moray_status erratum_lambda(paper *p)
     moray_json_open(p->json, "e4_lambda");
     moray_json_numbers(p->json, "heading_printed_corrected_deg", end, 2);
     moray_json_close(p->json);
-    return paper_table(
-        p, &(moray_table){.title = "E4: lambda_1..3 of (19) are not those of (4), whose values Sec. V-A gives",
-                          .columns = {"those of (4)", "1.15 and 40"},
-                          .n_columns = 2,
-                          .rows = rows,
-                          .n_rows = 3});
+    return paper_rows(p, "E4: lambda_1..3 of (19) are not those of (4), whose values Sec. V-A gives",
+                      PAPER_HEADS("those of (4)", "1.15 and 40"), rows, 3);
 }

@@ -77,17 +77,11 @@ moray_status erratum_force_sign(paper *p)
         {.label = "sum", .value = {printed, sum}, .unit = "N"},
         {.label = "sum less N m dv_t/dt", .value = {printed - needed, sum - needed}, .unit = "N"},
     };
-    moray_json_open(p->json, "equation_13");
-    moray_json_number(p->json, "c_p_term_corrected_N", f.c_p);
-    moray_json_number(p->json, "sum_printed_N", printed);
-    moray_json_number(p->json, "sum_corrected_N", sum);
-    moray_json_number(p->json, "residual_corrected_N", sum - needed);
-    moray_json_close(p->json);
-    return paper_table(
-        p, &(moray_table){.title = "(13) has -c_p off the diagonal where (11) and (14) have +c_p: mean tangential "
-                                   "force in steady swimming",
-                          .columns = {"(13) as printed", "(14a)"},
-                          .n_columns = 2,
-                          .rows = rows,
-                          .n_rows = 5});
+    moray_json_object(p->json, "equation_13",
+                      MORAY_MEMBERS({"c_p_term_corrected_N", f.c_p}, {"sum_printed_N", printed},
+                                    {"sum_corrected_N", sum}, {"residual_corrected_N", sum - needed}));
+    return paper_rows(p,
+                      "(13) has -c_p off the diagonal where (11) and (14) have +c_p: mean tangential "
+                      "force in steady swimming",
+                      PAPER_HEADS("(13) as printed", "(14a)"), rows, 5);
 }

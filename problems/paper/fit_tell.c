@@ -44,12 +44,9 @@ moray_status paper_fit_write(const paper *p, const paper_constants *c)
 
 static void json_constants(moray_json *json, const char *key, const paper_constants *c)
 {
-    moray_json_open(json, key);
-    moray_json_number(json, "rot_damping", c->damping);
-    moray_json_number(json, "rot_gain", c->gain);
-    moray_json_number(json, "rms_deg", c->rms);
-    moray_json_number(json, "largest_deg", c->largest);
-    moray_json_close(json);
+    moray_json_object(json, key,
+                      MORAY_MEMBERS({"rot_damping", c->damping}, {"rot_gain", c->gain}, {"rms_deg", c->rms},
+                                    {"largest_deg", c->largest}));
 }
 
 // The ratio of the constants sets how fast the robot turns; the damping only how soon it does.
@@ -82,11 +79,8 @@ moray_status paper_fit_tell(paper *p, const paper_fitting *fit)
     json_constants(p->json, "half_damping", &fit->slower);
     json_constants(p->json, "twice_damping", &fit->faster);
     moray_json_number(p->json, "trials", fit->tried);
-    MORAY_TRY(paper_table(p, &(moray_table){.title = "Constants of the rotational dynamics (20)",
-                                            .columns = {"given", "fitted", "given from fitted [%]"},
-                                            .n_columns = 3,
-                                            .rows = rows,
-                                            .n_rows = 5}));
+    MORAY_TRY(paper_rows(p, "Constants of the rotational dynamics (20)",
+                         PAPER_HEADS("given", "fitted", "given from fitted [%]"), rows, 5));
     MORAY_TRY(paper_say(p,
                         "Fitted to the heading of the first-principles model, on average over a period, in the "
                         "manoeuvre of Sec. V-C at %g deg/s, its times scaled to the period; %d links, %d trials.",
@@ -96,18 +90,12 @@ moray_status paper_fit_tell(paper *p, const paper_fitting *fit)
 
 moray_status paper_fit_draw(paper *p, const paper_fitting *fit, const double *given)
 {
-    const moray_curve curves[] = {
-        {.label = "first-principles", .x = fit->times, .y = fit->target, .n = fit->n},
-        {.label = "control-oriented, fitted constants", .x = fit->times, .y = fit->trial, .n = fit->n},
-        {.label = "control-oriented, given constants", .x = fit->times, .y = given, .n = fit->n}};
+    static const char *const labels[] = {"first-principles", "control-oriented, fitted constants",
+                                         "control-oriented, given constants"};
     const moray_column columns[] = {{"t", "s", fit->times, 1},
                                     {"heading first-principles", "deg", fit->target, 1},
                                     {"heading fitted", "deg", fit->trial, 1},
                                     {"heading given", "deg", given, 1}};
-    MORAY_TRY(paper_csv(p, NULL, columns, 4, fit->n));
-    return paper_figure(p, &(moray_figure){.title = "Heading in a manoeuvre, mean over the last period",
-                                           .x_label = "time [s]",
-                                           .y_label = "heading [deg]",
-                                           .curves = curves,
-                                           .n_curves = 3});
+    return paper_draw(p, &(paper_graph){NULL, "Heading in a manoeuvre, mean over the last period", "time [s]",
+                                        "heading [deg]", columns, 4, fit->n, .labels = labels});
 }

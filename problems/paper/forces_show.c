@@ -16,23 +16,17 @@ static moray_status show_terms(paper *p, const char *title, const force_terms *f
         rows[j] = (moray_table_row){.label = meanings[j],
                                     .value = {f->mean[j], f->peak[j], 100 * f->share[j], 100 * f->cancelled[j]}};
     rows[TERMS] = (moray_table_row){.label = "sum of all less N m p_x''", .value = {NAN, f->residual, NAN, NAN}};
-    return paper_table(p, &(moray_table){.title = title,
-                                         .columns = {"mean [N]", "peak [N]", "share [%]", "cancelled [%]"},
-                                         .n_columns = 4,
-                                         .rows = rows,
-                                         .n_rows = TERMS + 1});
+    return paper_rows(p, title, PAPER_HEADS("mean [N]", "peak [N]", "share [%]", "cancelled [%]"), rows, TERMS + 1);
 }
 
 static void json_terms(moray_json *json, const char *key, const force_terms *f)
 {
     moray_json_open(json, key);
     for (int j = 0; j < TERMS; j++) {
-        moray_json_open(json, term_names[j]);
-        moray_json_number(json, "mean_N", f->mean[j]);
-        moray_json_number(json, "peak_N", f->peak[j]);
-        moray_json_number(json, "share_percent", 100 * f->share[j]);
-        moray_json_number(json, "cancelled_percent", 100 * f->cancelled[j]);
-        moray_json_close(json);
+        moray_json_object(json, term_names[j],
+                          MORAY_MEMBERS({"mean_N", f->mean[j]}, {"peak_N", f->peak[j]},
+                                        {"share_percent", 100 * f->share[j]},
+                                        {"cancelled_percent", 100 * f->cancelled[j]}));
     }
     moray_json_number(json, "residual_N", f->residual);
     moray_json_close(json);
@@ -157,24 +151,17 @@ static moray_status draw_shifts(paper *p)
             values[j][n] = 100 * s.f.share[j];
         n++;
     }
-    moray_curve curves[4];
-    const int shown[4] = {3, 2, 6, 1};
+    enum { SHOWN = 4 };
+    static const int shown[SHOWN] = {4, 3, 7, 2};
+    const char *labels[SHOWN];
     moray_column columns[ROWS] = {{.name = "delta", .unit = "deg", .values = values[TERMS]}};
     for (int j = 0; j < TERMS; j++)
         columns[1 + j] = (moray_column){.name = term_names[j], .unit = "%", .values = values[j]};
-    for (int c = 0; c < 4; c++)
-        curves[c] = (moray_curve){.label = meanings[shown[c]],
-                                  .x = values[TERMS],
-                                  .y = values[shown[c]],
-                                  .n = n,
-                                  .style = MORAY_CURVE_MARKED};
-    MORAY_TRY(paper_csv(p, "shares", columns, ROWS, n));
-    return paper_figure(p, &(moray_figure){.name = "shares",
-                                           .title = "Remark 3: share of the terms of (6) in the mean thrust",
-                                           .x_label = "phase shift delta [deg]",
-                                           .y_label = "share [%]",
-                                           .curves = curves,
-                                           .n_curves = 4});
+    for (int c = 0; c < SHOWN; c++)
+        labels[c] = meanings[shown[c] - 1];
+    return paper_draw(p, &(paper_graph){"shares", "Remark 3: share of the terms of (6) in the mean thrust",
+                                        "phase shift delta [deg]", "share [%]", columns, ROWS, n, MORAY_CURVE_MARKED,
+                                        labels, shown, SHOWN});
 }
 
 static moray_status leave_full_wave(paper *p)

@@ -78,38 +78,25 @@ static moray_status tell(paper *p, double ratio, const findings *f)
     moray_json_numbers(p->json, "excess_percent", f->excess, AMPLITUDES);
     moray_json_numbers(p->json, "excess_assumption_4_percent", f->simpler_excess, AMPLITUDES);
     moray_json_close(p->json);
-    return paper_table(
-        p, &(moray_table){
-               .title = paper_label(p, "Speed on the ground in m/s, c_t = %g kg/s, c_n = %g c_t", FRICTION, ratio),
-               .columns = {"first-principles", "control-oriented", "excess [%]", "with Ass. 4", "excess [%]"},
-               .n_columns = 5,
-               .rows = rows,
-               .n_rows = AMPLITUDES});
+    return paper_rows(p, paper_label(p, "Speed on the ground in m/s, c_t = %g kg/s, c_n = %g c_t", FRICTION, ratio),
+                      PAPER_HEADS("first-principles", "control-oriented", "excess [%]", "with Ass. 4", "excess [%]"),
+                      rows, AMPLITUDES);
 }
 
 static moray_status draw(paper *p, double ratio, const findings *f)
 {
-    const char *name = paper_label(p, "%g", ratio);
-    moray_curve curves[3] = {[2] = {.label = "control-oriented with Assumption 4 in place of 5",
-                                    .x = theta_max_deg,
-                                    .y = f->simpler,
-                                    .n = AMPLITUDES,
-                                    .style = MORAY_CURVE_MARKED}};
-    for (int k = 0; k < 2; k++)
-        curves[k] = paper_model_curve(paper_model_order[k], theta_max_deg, f->speed[paper_model_order[k]], AMPLITUDES);
+    const char *const labels[] = {moray_model_name(MORAY_FIRST_PRINCIPLES), moray_model_name(MORAY_CONTROL_ORIENTED),
+                                  "control-oriented with Assumption 4 in place of 5"};
     const moray_column columns[] = {
         {"theta_max", "deg", theta_max_deg, 1},
         {"speed first-principles", "m/s", f->speed[MORAY_FIRST_PRINCIPLES], 1},
         {"speed control-oriented", "m/s", f->speed[MORAY_CONTROL_ORIENTED], 1},
         {"speed control-oriented with Assumption 4", "m/s", f->simpler, 1},
     };
-    MORAY_TRY(paper_csv(p, name, columns, 4, AMPLITUDES));
-    return paper_figure(p, &(moray_figure){.name = name,
-                                           .title = paper_label(p, "Ground robot, c_n/c_t = %g", ratio),
-                                           .x_label = "theta_max [deg]",
-                                           .y_label = "speed [m/s]",
-                                           .curves = curves,
-                                           .n_curves = 3});
+    return paper_draw(p,
+                      &(paper_graph){paper_label(p, "%g", ratio), paper_label(p, "Ground robot, c_n/c_t = %g", ratio),
+                                     "theta_max [deg]", "speed [m/s]", columns, 4, AMPLITUDES,
+                                     .style = MORAY_CURVE_MARKED, .labels = labels});
 }
 
 // The last amplitude up to which all errors stay within the bound; 0 where none does.

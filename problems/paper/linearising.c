@@ -98,17 +98,12 @@ static moray_status compare_sizes(paper *p)
         all.states += worst.states;
         all.body = fmax(all.body, worst.body);
     }
-    moray_json_number(p->json, "states", all.states);
-    moray_json_number(p->json, "joint_error", all.joints);
-    moray_json_number(p->json, "body_error", all.body);
-    return paper_table(
-        p,
-        &(moray_table){.title = "What (14) and (15) make of the forces (22): largest error in random states, over the "
-                                "largest acceleration of the state",
-                       .columns = {"phi'' - ubar", "v_t', v_n' - (16)", "states"},
-                       .n_columns = 3,
-                       .rows = rows,
-                       .n_rows = SIZES});
+    moray_json_members(p->json,
+                       MORAY_MEMBERS({"states", all.states}, {"joint_error", all.joints}, {"body_error", all.body}));
+    return paper_rows(p,
+                      "What (14) and (15) make of the forces (22): largest error in random states, over the "
+                      "largest acceleration of the state",
+                      PAPER_HEADS("phi'' - ubar", "v_t', v_n' - (16)", "states"), rows, SIZES);
 }
 
 // ---- Closed loop ---------------------------------------------------------------------------------------------------

@@ -86,34 +86,21 @@ static moray_status show_displacement(paper *p, const link_paths paths[2])
         moray_json_numbers(p->json, "tangential_amplitude_m", along, N);
         moray_json_close(p->json);
     }
-    return paper_table(
-        p, &(moray_table){.title = "Property 4: amplitude of the links about the mean motion",
-                          .columns = {"across, mean [mm]", "largest", "along, mean [mm]", "largest", "across : along"},
-                          .n_columns = 5,
-                          .rows = rows,
-                          .n_rows = 2});
+    return paper_rows(p, "Property 4: amplitude of the links about the mean motion",
+                      PAPER_HEADS("across, mean [mm]", "largest", "along, mean [mm]", "largest", "across : along"),
+                      rows, 2);
 }
 
 static moray_status draw_amplitudes(paper *p, const link_paths paths[2], const double *number)
 {
-    const int N = paths[0].N;
-    const char *const labels[] = {"across, first-principles", "along, first-principles", "across, control-oriented",
-                                  "along, control-oriented"};
-    moray_curve curves[4];
-    moray_column columns[5] = {{.name = "link", .values = number}};
-    for (int c = 0; c < 4; c++) {
-        const link_paths *of = &paths[c < 2 ? MORAY_FIRST_PRINCIPLES : MORAY_CONTROL_ORIENTED];
-        const double *values = c % 2 ? of->along_amplitude : of->across_amplitude;
-        curves[c] = (moray_curve){.label = labels[c], .x = number, .y = values, .n = N, .style = MORAY_CURVE_MARKED};
-        columns[c + 1] = (moray_column){.name = labels[c], .unit = "m", .values = values};
-    }
-    MORAY_TRY(paper_csv(p, "amplitudes", columns, 5, N));
-    return paper_figure(p, &(moray_figure){.name = "amplitudes",
-                                           .title = "Property 4: amplitude of the links about the mean motion",
-                                           .x_label = "link",
-                                           .y_label = "amplitude [m]",
-                                           .curves = curves,
-                                           .n_curves = 4});
+    const link_paths *fp = &paths[MORAY_FIRST_PRINCIPLES], *control = &paths[MORAY_CONTROL_ORIENTED];
+    const moray_column columns[] = {{"link", NULL, number, 1},
+                                    {"across, first-principles", "m", fp->across_amplitude, 1},
+                                    {"along, first-principles", "m", fp->along_amplitude, 1},
+                                    {"across, control-oriented", "m", control->across_amplitude, 1},
+                                    {"along, control-oriented", "m", control->along_amplitude, 1}};
+    return paper_draw(p, &(paper_graph){"amplitudes", "Property 4: amplitude of the links about the mean motion",
+                                        "link", "amplitude [m]", columns, 5, fp->N, .style = MORAY_CURVE_MARKED});
 }
 
 // The paths of all links, each at its place on the body.
@@ -147,15 +134,11 @@ static moray_status draw_paths(paper *p, const link_paths paths[2])
 
 static void json_work(moray_json *json, const link_work *w)
 {
-    moray_json_open(json, "work");
-    moray_json_number(json, "normal_J", w->work[NORMAL]);
-    moray_json_number(json, "tangential_J", w->work[TANGENTIAL]);
-    moray_json_number(json, "torque_J", w->torque_work);
-    moray_json_number(json, "joints_J", w->joint_work);
-    moray_json_number(json, "residual_J", w->residual);
-    moray_json_number(json, "normal_forward_force_N", w->force[NORMAL]);
-    moray_json_number(json, "tangential_forward_force_N", w->force[TANGENTIAL]);
-    moray_json_close(json);
+    moray_json_object(json, "work",
+                      MORAY_MEMBERS({"normal_J", w->work[NORMAL]}, {"tangential_J", w->work[TANGENTIAL]},
+                                    {"torque_J", w->torque_work}, {"joints_J", w->joint_work},
+                                    {"residual_J", w->residual}, {"normal_forward_force_N", w->force[NORMAL]},
+                                    {"tangential_forward_force_N", w->force[TANGENTIAL]}));
 }
 
 static moray_status show_work(paper *p, const link_work *w)
@@ -171,30 +154,18 @@ static moray_status show_work(paper *p, const link_work *w)
         {.label = "balance", .value = {NAN, 1000 * w->residual, w->residual / all}},
     };
     json_work(p->json, w);
-    return paper_table(p, &(moray_table){.title = "Property 2: means over a period, first-principles model",
-                                         .columns = {"forward force [N]", "work [mJ]", "of the joints' [%]"},
-                                         .n_columns = 3,
-                                         .rows = rows,
-                                         .n_rows = sizeof rows / sizeof *rows});
+    return paper_rows(p, "Property 2: means over a period, first-principles model",
+                      PAPER_HEADS("forward force [N]", "work [mJ]", "of the joints' [%]"), rows,
+                      sizeof rows / sizeof *rows);
 }
 
 static moray_status draw_work(paper *p, const link_work *w, const double *number)
 {
-    static const char *const labels[DIRECTIONS] = {"across the link", "along the link"};
-    moray_curve curves[DIRECTIONS];
-    moray_column columns[1 + DIRECTIONS] = {{.name = "link", .values = number}};
-    for (int d = 0; d < DIRECTIONS; d++) {
-        curves[d] = (moray_curve){
-            .label = labels[d], .x = number, .y = w->of_link[d], .n = p->robot->links, .style = MORAY_CURVE_MARKED};
-        columns[1 + d] = (moray_column){.name = labels[d], .unit = "J", .values = w->of_link[d]};
-    }
-    MORAY_TRY(paper_csv(p, "work", columns, 1 + DIRECTIONS, p->robot->links));
-    return paper_figure(p, &(moray_figure){.name = "work",
-                                           .title = "Property 2: work of the fluid forces on each link over a period",
-                                           .x_label = "link",
-                                           .y_label = "work [J]",
-                                           .curves = curves,
-                                           .n_curves = DIRECTIONS});
+    const moray_column columns[] = {{"link", NULL, number, 1},
+                                    {"across the link", "J", w->of_link[NORMAL], 1},
+                                    {"along the link", "J", w->of_link[TANGENTIAL], 1}};
+    return paper_draw(p, &(paper_graph){"work", "Property 2: work of the fluid forces on each link over a period",
+                                        "link", "work [J]", columns, 3, p->robot->links, .style = MORAY_CURVE_MARKED});
 }
 
 // ---- The study -----------------------------------------------------------------------------------------------------

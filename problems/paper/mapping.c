@@ -39,13 +39,9 @@ distance_errors distance_errors_of(double l, double theta_max, double delta)
 
 static moray_status draw_period(paper *p)
 {
-    static const char *const labels[DISTANCES] = {"(29), exact", "(30), small angles", "(31), sine in the amplitude"};
     double *t, *phi, at[DISTANCES];
-    moray_curve curves[DISTANCES];
-    moray_column columns[1 + DISTANCES];
     MORAY_TRY(paper_numbers(p, (1 + DISTANCES) * POINTS, &t));
     phi = t + POINTS;
-    columns[0] = (moray_column){.name = "t", .unit = "s", .values = t};
     for (int k = 0; k < POINTS; k++) {
         const double phase = 2 * M_PI * k / (POINTS - 1);
         t[k] = phase / p->settings->omega;
@@ -53,19 +49,14 @@ static moray_status draw_period(paper *p)
         for (int f = 0; f < DISTANCES; f++)
             phi[f * POINTS + k] = at[f];
     }
-    for (int f = 0; f < DISTANCES; f++) {
-        curves[f] = (moray_curve){.label = labels[f], .x = t, .y = phi + f * POINTS, .n = POINTS};
-        columns[1 + f] = (moray_column){.name = labels[f], .unit = "cm", .values = phi + f * POINTS};
-    }
-    MORAY_TRY(paper_csv(p, "fig6", columns, 1 + DISTANCES, POINTS));
-    return paper_figure(
-        p, &(moray_figure){.name = "fig6",
-                           .title = paper_label(p, "Fig. 6: joint distance over a period, theta_max = %.3g deg",
-                                                p->settings->theta_max / DEG),
-                           .x_label = "time [s]",
-                           .y_label = "joint distance [cm]",
-                           .curves = curves,
-                           .n_curves = DISTANCES});
+    const moray_column columns[] = {{"t", "s", t, 1},
+                                    {"(29), exact", "cm", phi, 1},
+                                    {"(30), small angles", "cm", phi + POINTS, 1},
+                                    {"(31), sine in the amplitude", "cm", phi + 2 * POINTS, 1}};
+    const char *title =
+        paper_label(p, "Fig. 6: joint distance over a period, theta_max = %.3g deg", p->settings->theta_max / DEG);
+    return paper_draw(p, &(paper_graph){"fig6", title, "time [s]", "joint distance [cm]", columns, 1 + DISTANCES,
+                                        POINTS, .style = MORAY_CURVE_LINE});
 }
 
 // Errors of the two approximations by theta_max, in percent of the amplitude of (29).
@@ -76,7 +67,6 @@ static moray_status draw_errors(paper *p)
     static const char *const labels[ROWS] = {"theta_max", "(30), largest error", "(31), largest error",
                                              "(30), amplitude", "(31), amplitude"};
     double values[ROWS][ANGLES];
-    moray_curve curves[SHOWN];
     moray_column columns[ROWS];
     for (int k = 0; k < ANGLES; k++) {
         const distance_errors e = distance_errors_of(p->robot->l, (k + 1) * DEG, p->settings->delta);
@@ -88,15 +78,9 @@ static moray_status draw_errors(paper *p)
     }
     for (int j = 0; j < ROWS; j++)
         columns[j] = (moray_column){.name = labels[j], .unit = j ? "%" : "deg", .values = values[j]};
-    for (int c = 0; c < SHOWN; c++)
-        curves[c] = (moray_curve){.label = labels[shown[c]], .x = values[0], .y = values[shown[c]], .n = ANGLES};
-    MORAY_TRY(paper_csv(p, "errors", columns, ROWS, ANGLES));
-    return paper_figure(p, &(moray_figure){.name = "errors",
-                                           .title = "Errors of (30) and (31) against (29)",
-                                           .x_label = "theta_max [deg]",
-                                           .y_label = "error [% of the amplitude]",
-                                           .curves = curves,
-                                           .n_curves = SHOWN});
+    return paper_draw(p, &(paper_graph){"errors", "Errors of (30) and (31) against (29)", "theta_max [deg]",
+                                        "error [% of the amplitude]", columns, ROWS, ANGLES, .shown = shown,
+                                        .n_shown = SHOWN});
 }
 
 static moray_status show_errors(paper *p)
@@ -112,22 +96,17 @@ static moray_status show_errors(paper *p)
                                     .value = {1000 * amplitude, 1000 * e.curve[DISTANCE_30],
                                               1000 * e.curve[DISTANCE_31], 100 * e.amplitude[DISTANCE_30] / amplitude,
                                               100 * e.amplitude[DISTANCE_31] / amplitude}};
-        moray_json_open(p->json, NULL);
-        moray_json_number(p->json, "theta_max_deg", angles[k]);
-        moray_json_number(p->json, "amplitude_29_m", amplitude);
-        moray_json_number(p->json, "largest_error_30_m", e.curve[DISTANCE_30]);
-        moray_json_number(p->json, "largest_error_31_m", e.curve[DISTANCE_31]);
-        moray_json_number(p->json, "amplitude_error_30_m", e.amplitude[DISTANCE_30]);
-        moray_json_number(p->json, "amplitude_error_31_m", e.amplitude[DISTANCE_31]);
-        moray_json_close(p->json);
+        moray_json_object(p->json, NULL,
+                          MORAY_MEMBERS({"theta_max_deg", angles[k]}, {"amplitude_29_m", amplitude},
+                                        {"largest_error_30_m", e.curve[DISTANCE_30]},
+                                        {"largest_error_31_m", e.curve[DISTANCE_31]},
+                                        {"amplitude_error_30_m", e.amplitude[DISTANCE_30]},
+                                        {"amplitude_error_31_m", e.amplitude[DISTANCE_31]}));
     }
     moray_json_close(p->json);
-    return paper_table(
-        p, &(moray_table){.title = "Joint distance: (30) and (31) against (29)",
-                          .columns = {"amplitude [mm]", "(30) [mm]", "(31) [mm]", "(30) ampl. [%]", "(31) ampl. [%]"},
-                          .n_columns = 5,
-                          .rows = rows,
-                          .n_rows = N_ANGLES});
+    return paper_rows(p, "Joint distance: (30) and (31) against (29)",
+                      PAPER_HEADS("amplitude [mm]", "(30) [mm]", "(31) [mm]", "(30) ampl. [%]", "(31) ampl. [%]"), rows,
+                      N_ANGLES);
 }
 
 // The sines of (29) are 2 sin(theta_max sin x cos(delta/2)) cos(theta_max cos x sin(delta/2)), largest at x = pi/2.

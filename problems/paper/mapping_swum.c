@@ -127,18 +127,15 @@ static void json_swum(moray_json *json, const swum_amplitudes *s, int n)
     moray_json_open_list(json, "swum");
     for (int k = 0; k < n; k++) {
         moray_json_open(json, NULL);
-        moray_json_number(json, "links", s[k].N);
-        moray_json_number(json, "theta_max_deg", s[k].theta_max / DEG);
-        moray_json_number(json, "delta_deg", s[k].delta / DEG);
-        moray_json_number(json, "alpha_27_deg", s[k].alpha / DEG);
-        moray_json_number(json, "joint_angle_deg", s[k].joint_angle / DEG);
+        moray_json_members(json, MORAY_MEMBERS({"links", s[k].N}, {"theta_max_deg", s[k].theta_max / DEG},
+                                               {"delta_deg", s[k].delta / DEG}, {"alpha_27_deg", s[k].alpha / DEG},
+                                               {"joint_angle_deg", s[k].joint_angle / DEG}));
         moray_json_numbers(json, "link_angle_rad", (const double[]){s[k].link_least, s[k].link_mean, s[k].link_largest},
                            3);
-        moray_json_number(json, "a_33_m", s[k].a);
-        moray_json_number(json, "joint_coordinate_m", s[k].joint_coordinate);
-        moray_json_number(json, "joint_distance_m", s[k].joint_distance);
-        moray_json_number(json, "link_angle_12_inner_deg", s[k].inner_angle / DEG);
-        moray_json_number(json, "link_angle_12_end_deg", s[k].end_angle / DEG);
+        moray_json_members(json, MORAY_MEMBERS({"a_33_m", s[k].a}, {"joint_coordinate_m", s[k].joint_coordinate},
+                                               {"joint_distance_m", s[k].joint_distance},
+                                               {"link_angle_12_inner_deg", s[k].inner_angle / DEG},
+                                               {"link_angle_12_end_deg", s[k].end_angle / DEG}));
         moray_json_close(json);
     }
     moray_json_close(json);
@@ -184,18 +181,13 @@ moray_status show_swum_amplitudes(paper *p)
                                       .value = {100 * s[k].a, 100 * s[k].joint_coordinate, 100 * s[k].joint_distance,
                                                 s[k].inner_angle / DEG, s[k].end_angle / DEG}};
     }
-    MORAY_TRY(paper_table(p, &(moray_table){.title = "Proposition 1: amplitudes swum by the first-principles model",
-                                            .columns = {"(27)", "joints", "least link", "mean link", "largest link"},
-                                            .n_columns = 5,
-                                            .rows = first,
-                                            .n_rows = n}));
-    MORAY_TRY(paper_table(
-        p, &(moray_table){.title = "Proposition 2: amplitudes swum by the control-oriented model, with the joint "
-                                   "distance (28) of the first-principles model's links beside them",
-                          .columns = {"(33) [cm]", "joints [cm]", "(28) [cm]", "(12) inner [deg]", "(12) ends [deg]"},
-                          .n_columns = 5,
-                          .rows = second,
-                          .n_rows = n}));
+    MORAY_TRY(paper_rows(p, "Proposition 1: amplitudes swum by the first-principles model",
+                         PAPER_HEADS("(27)", "joints", "least link", "mean link", "largest link"), first, n));
+    MORAY_TRY(paper_rows(p,
+                         "Proposition 2: amplitudes swum by the control-oriented model, with the joint "
+                         "distance (28) of the first-principles model's links beside them",
+                         PAPER_HEADS("(33) [cm]", "joints [cm]", "(28) [cm]", "(12) inner [deg]", "(12) ends [deg]"),
+                         second, n));
     json_swum(p->json, s, n);
     return conclude(p, s, n);
 }

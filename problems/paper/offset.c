@@ -2,7 +2,7 @@
 //
 // Property 3: turning by the joint offset phi_0, which is given in parts of the joint amplitude so that both models
 // share it.
-#include "paper.h"
+#include "swim.h"
 
 static const double still[2] = {0, 0};
 
@@ -39,34 +39,21 @@ static void json_swim(moray_json *json, const char *key, double value, const mor
 {
     const double rates[2] = {steady[0].heading_drift / DEG, steady[1].heading_drift / DEG};
     const double speeds[2] = {steady[0].speed, steady[1].speed};
-    moray_json_open(json, NULL);
-    moray_json_number(json, key, value);
-    moray_json_number(json, "control_turning_deg_s", rates[MORAY_CONTROL_ORIENTED]);
-    moray_json_number(json, "fp_turning_deg_s", rates[MORAY_FIRST_PRINCIPLES]);
-    moray_json_number(json, "control_speed_m_s", speeds[MORAY_CONTROL_ORIENTED]);
-    moray_json_number(json, "fp_speed_m_s", speeds[MORAY_FIRST_PRINCIPLES]);
-    moray_json_close(json);
+    moray_json_object(json, NULL,
+                      MORAY_MEMBERS({key, value}, {"control_turning_deg_s", rates[MORAY_CONTROL_ORIENTED]},
+                                    {"fp_turning_deg_s", rates[MORAY_FIRST_PRINCIPLES]},
+                                    {"control_speed_m_s", speeds[MORAY_CONTROL_ORIENTED]},
+                                    {"fp_speed_m_s", speeds[MORAY_FIRST_PRINCIPLES]}));
 }
 
 static moray_status draw_offsets(paper *p, const double *ratio, const double *turning, int n)
 {
-    moray_curve curves[2];
-    moray_column columns[3] = {{.name = "phi_0 / amplitude", .values = ratio}};
-    for (int model = 0; model < 2; model++) {
-        columns[1 + model] =
-            (moray_column){.name = moray_model_name(model), .unit = "deg/s", .values = turning + model * n};
-        curves[model] = (moray_curve){.label = moray_model_name(model),
-                                      .x = ratio,
-                                      .y = turning + model * n,
-                                      .n = n,
-                                      .style = MORAY_CURVE_MARKED};
-    }
-    MORAY_TRY(paper_csv(p, NULL, columns, 3, n));
-    return paper_figure(p, &(moray_figure){.title = "Property 3: turning by the joint offset, in still water",
-                                           .x_label = "phi_0 / joint amplitude",
-                                           .y_label = "turning rate, counter-clockwise [deg/s]",
-                                           .curves = curves,
-                                           .n_curves = 2});
+    const moray_column columns[] = {{"phi_0 / amplitude", NULL, ratio, 1},
+                                    {moray_model_name(0), "deg/s", turning, 1},
+                                    {moray_model_name(1), "deg/s", turning + n, 1}};
+    return paper_draw(p, &(paper_graph){NULL, "Property 3: turning by the joint offset, in still water",
+                                        "phi_0 / joint amplitude", "turning rate, counter-clockwise [deg/s]", columns,
+                                        3, n, .style = MORAY_CURVE_MARKED});
 }
 
 // turning[n] at ascending offsets, of which the one in the middle is zero.
@@ -102,14 +89,12 @@ static moray_status vary_offset(paper *p, claims *found)
     moray_json_close(p->json);
     for (int model = 0; model < 2; model++)
         judge_offsets(turning + model * N, N, model, found);
-    MORAY_TRY(paper_table(
-        p, &(moray_table){
-               .title = "Property 3: turning rate (counter-clockwise) by the joint offset, in still water; "
-                        "control-oriented model left, first-principles model right",
-               .columns = {"phi_0 [cm]", "rate [deg/s]", "speed [m/s]", "phi_0 [deg]", "rate [deg/s]", "speed [m/s]"},
-               .n_columns = 6,
-               .rows = rows,
-               .n_rows = N}));
+    MORAY_TRY(paper_rows(
+        p,
+        "Property 3: turning rate (counter-clockwise) by the joint offset, in still water; "
+        "control-oriented model left, first-principles model right",
+        PAPER_HEADS("phi_0 [cm]", "rate [deg/s]", "speed [m/s]", "phi_0 [deg]", "rate [deg/s]", "speed [m/s]"), rows,
+        N));
     return draw_offsets(p, ratio, turning, N);
 }
 
@@ -167,14 +152,12 @@ static moray_status vary_speed(paper *p, claims *found)
         json_swim(p->json, "omega_deg_s", omega / DEG, steady);
     }
     moray_json_close(p->json);
-    MORAY_TRY(paper_table(
-        p, &(moray_table){
-               .title = "Property 3: turning rate by speed, phi_0 a sixth of the amplitude, in still water; "
-                        "control-oriented model left, first-principles model right",
-               .columns = {"speed [m/s]", "rate [deg/s]", "curv. [1/m]", "speed [m/s]", "rate [deg/s]", "curv. [1/m]"},
-               .n_columns = 6,
-               .rows = rows,
-               .n_rows = SPEEDS}));
+    MORAY_TRY(paper_rows(
+        p,
+        "Property 3: turning rate by speed, phi_0 a sixth of the amplitude, in still water; "
+        "control-oriented model left, first-principles model right",
+        PAPER_HEADS("speed [m/s]", "rate [deg/s]", "curv. [1/m]", "speed [m/s]", "rate [deg/s]", "curv. [1/m]"), rows,
+        SPEEDS));
     return draw_speeds(p, speed, turning);
 }
 
@@ -201,24 +184,9 @@ static moray_status turn_once(paper *p, int model, double still_rate, double *ra
     const double period = 2 * M_PI / gait.omega, needed = START + 2 * (2 * M_PI / fabs(still_rate)) / period;
     const int n = needed < MOST ? (int)needed : MOST;
     const moray_gait_change change = {.t = 0, .gait = gait};
-    moray_swimmer *swimmer = p->rig.swimmer[model];
+    const paper_swim_plan plan = {.model = (moray_model)model, .schedule = &change, .n_changes = 1};
     moray_swim_track *track;
-    double *times, *x;
-    MORAY_TRY(paper_track(p, swimmer, n, &track));
-    MORAY_TRY(paper_numbers(p, (size_t)n, &times));
-    MORAY_TRY(paper_numbers(p, (size_t)moray_swimmer_states(swimmer), &x));
-    for (int k = 0; k < n; k++)
-        times[k] = k * period;
-    moray_swimmer_set_current(swimmer, p->rig.current[0], p->rig.current[1]);
-    MORAY_TRY(moray_swim_run(swimmer, &p->rig.settings.sim,
-                             &(moray_swim_plan){.t1 = times[n - 1],
-                                                .schedule = &change,
-                                                .n_changes = 1,
-                                                .times = times,
-                                                .n_times = n,
-                                                .observe = moray_swim_track_add,
-                                                .observer = track},
-                             x, NULL));
+    MORAY_TRY(paper_swim(p, &plan, (n - 1) * period, period, &track));
     *rate = copysign(2 * M_PI / turn_time(track, START), track->pose[n - 1].heading - track->pose[START].heading);
     return moray_ok();
 }
@@ -236,11 +204,8 @@ static moray_status turn_in_current(paper *p)
                                                   100 * (rate[model] / steady[model].heading_drift - 1)}};
     }
     moray_json_numbers(p->json, "mean_turning_in_current_rad_s", rate, 2);
-    return paper_table(p, &(moray_table){.title = "Turning rate over a whole turn, phi_0 a sixth of the amplitude",
-                                         .columns = {"still water [deg/s]", "current [deg/s]", "change [%]"},
-                                         .n_columns = 3,
-                                         .rows = rows,
-                                         .n_rows = 2});
+    return paper_rows(p, "Turning rate over a whole turn, phi_0 a sixth of the amplitude",
+                      PAPER_HEADS("still water [deg/s]", "current [deg/s]", "change [%]"), rows, 2);
 }
 
 static const char *yes(bool claim)

@@ -26,7 +26,7 @@ typedef struct paper_settings {
 
 // What a study told: for report.html.
 typedef struct paper_telling {
-    char *text; // paragraphs, one a line
+    const char *text; // paragraphs, one a line
     moray_table table[PAPER_TABLES];
     int n_tables;
 } paper_telling;
@@ -95,11 +95,25 @@ void paper_progress(const paper *p, const char *format, ...) __attribute__((form
 
 // A table, a paragraph: on standard output unless --json, and in the report, which keeps a copy.
 moray_status paper_table(paper *p, const moray_table *table);
+moray_status paper_rows(paper *p, const char *title, const char *const *heads, const moray_table_row *rows, int n);
+#define PAPER_HEADS(...) ((const char *const[]){__VA_ARGS__, NULL}) // of the columns
 moray_status paper_say(paper *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // STUDY_name.csv and STUDY_figure->name.svg (STUDY.csv, STUDY.svg with name NULL); nothing without --out. Without
 // gnuplot a figure is left out with a note on standard error. Error: those of moray_output_file.
 moray_status paper_csv(paper *p, const char *name, const moray_column *columns, int n_columns, int n_rows);
 moray_status paper_figure(paper *p, const moray_figure *figure);
+
+// Columns of n rows, as both: the figure has those from the second on, or of them the ones shown, over the first.
+typedef struct paper_graph {
+    const char *name, *title, *x_label, *y_label; // of the figure
+    const moray_column *columns;
+    int n_columns, n;
+    moray_curve_style style;
+    const char *const *labels; // of the curves; NULL: the names of the columns
+    const int *shown;          // [n_shown] columns; NULL: all
+    int n_shown;
+} paper_graph;
+moray_status paper_draw(paper *p, const paper_graph *graph);
 
 #endif

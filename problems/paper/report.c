@@ -27,16 +27,12 @@ void paper_json_head(moray_json *json, const paper_settings *settings)
 {
     moray_json_text(json, "problem", "paper");
     moray_json_text(json, "version", moray_version());
-    moray_json_open(json, "robot");
-    moray_json_number(json, "links", settings->snake.robot.links);
-    moray_json_close(json);
+    moray_json_object(json, "robot", MORAY_MEMBERS({"links", settings->snake.robot.links}));
     moray_json_numbers(json, "current_m_s", settings->snake.current, 2);
     moray_json_text(json, "reading", paper_reading_names[settings->reading]);
-    moray_json_open(json, "gait");
-    moray_json_number(json, "theta_max_deg", settings->theta_max / DEG);
-    moray_json_number(json, "omega_deg_s", settings->omega / DEG);
-    moray_json_number(json, "delta_deg", settings->delta / DEG);
-    moray_json_close(json);
+    moray_json_object(json, "gait",
+                      MORAY_MEMBERS({"theta_max_deg", settings->theta_max / DEG},
+                                    {"omega_deg_s", settings->omega / DEG}, {"delta_deg", settings->delta / DEG}));
 }
 
 void paper_json_end(moray_json *json, moray_status status)

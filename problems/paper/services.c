@@ -198,6 +198,14 @@ moray_status paper_table(paper *p, const moray_table *table)
     return moray_ok();
 }
 
+moray_status paper_rows(paper *p, const char *title, const char *const *heads, const moray_table_row *rows, int n)
+{
+    moray_table table = {.title = title, .rows = rows, .n_rows = n};
+    for (; heads[table.n_columns]; table.n_columns++)
+        table.columns[table.n_columns] = heads[table.n_columns];
+    return paper_table(p, &table);
+}
+
 moray_status paper_say(paper *p, const char *format, ...)
 {
     va_list arguments;
@@ -206,8 +214,8 @@ moray_status paper_say(paper *p, const char *format, ...)
     va_end(arguments);
     if (!text)
         return no_memory(p);
-    char *before = p->telling->text;
-    p->telling->text = (char *)paper_label(p, "%s%s%s", before ? before : "", before ? "\n" : "", text);
+    const char *before = p->telling->text;
+    p->telling->text = paper_label(p, "%s%s%s", before ? before : "", before ? "\n" : "", text);
     if (prints(p)) {
         paper_print_wrapped(text, stdout);
         printf("\n");
@@ -244,4 +252,28 @@ moray_status paper_figure(paper *p, const moray_figure *figure)
     const moray_status status = moray_output_figure(p->output, &named);
     moray_ticker_end(&p->ticker);
     return moray_app_drawn(&p->settings->common, "paper", status);
+}
+
+moray_status paper_draw(paper *p, const paper_graph *graph)
+{
+    enum { MOST = 16 };
+    moray_curve curves[MOST];
+    const int n_curves = graph->shown ? graph->n_shown : graph->n_columns - 1;
+    if (n_curves > MOST)
+        return moray_error(MORAY_INPUT, "%s: %d curves; a figure may have %d", p->study, n_curves, MOST);
+    for (int c = 0; c < n_curves; c++) {
+        const moray_column *column = &graph->columns[graph->shown ? graph->shown[c] : 1 + c];
+        curves[c] = (moray_curve){.label = graph->labels ? graph->labels[c] : column->name,
+                                  .x = graph->columns->values,
+                                  .y = column->values,
+                                  .n = graph->n,
+                                  .style = graph->style};
+    }
+    MORAY_TRY(paper_csv(p, graph->name, graph->columns, graph->n_columns, graph->n));
+    return paper_figure(p, &(moray_figure){.name = graph->name,
+                                           .title = graph->title,
+                                           .x_label = graph->x_label,
+                                           .y_label = graph->y_label,
+                                           .curves = curves,
+                                           .n_curves = n_curves});
 }

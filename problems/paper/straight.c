@@ -22,60 +22,25 @@ static moray_status swim_in_steps(paper *p, moray_model model, moray_swim_track 
     return paper_swim(p, &plan, AMPLITUDES * HOLD, STEP, track);
 }
 
-// What the figures show of one model.
-typedef struct {
-    const double *t;
-    double *x, *y, *v_x;
-    int n;
-} shown;
-
-static moray_status show(paper *p, moray_model model, shown *s)
+static moray_status draw(paper *p)
 {
-    moray_swim_track *track;
-    MORAY_TRY(swim_in_steps(p, model, &track));
-    MORAY_TRY(paper_series(p, track, PAPER_P_X, &s->x));
-    MORAY_TRY(paper_series(p, track, PAPER_P_Y, &s->y));
-    MORAY_TRY(paper_series(p, track, PAPER_V_X, &s->v_x));
-    s->t = track->t;
-    s->n = track->n;
-    return moray_ok();
-}
-
-static moray_status draw_position(paper *p, const shown s[2])
-{
+    moray_swim_track *track[2];
+    paper_pair pair;
     double mark[2][2 * AMPLITUDES]; // where the robots are when the amplitude has been held
+    for (int model = 0; model < 2; model++)
+        MORAY_TRY(swim_in_steps(p, (moray_model)model, &track[model]));
+    MORAY_TRY(paper_pair_of(p, track, &pair));
     for (int k = 0; k < 2 * AMPLITUDES; k++) {
         const int model = k % 2, at = (int)lround((k / 2 + 1) * HOLD / STEP);
-        mark[0][k] = s[model].x[at];
-        mark[1][k] = s[model].y[at];
+        mark[0][k] = pair.of[PAPER_P_X][model][at];
+        mark[1][k] = pair.of[PAPER_P_Y][model][at];
     }
-    const moray_curve curves[] = {
-        paper_model_curve(MORAY_FIRST_PRINCIPLES, s[MORAY_FIRST_PRINCIPLES].x, s[MORAY_FIRST_PRINCIPLES].y, s->n),
-        paper_model_curve(MORAY_CONTROL_ORIENTED, s[MORAY_CONTROL_ORIENTED].x, s[MORAY_CONTROL_ORIENTED].y, s->n),
-        {.label = "every 45 s", .x = mark[0], .y = mark[1], .n = 2 * AMPLITUDES, .style = MORAY_CURVE_POINTS}};
-    return paper_figure(p, &(moray_figure){.name = "position",
-                                           .title = "Fig. 7: position; theta_max 10, 15, 20, 30 deg for 45 s each",
-                                           .x_label = "p_x [m]",
-                                           .y_label = "p_y [m]",
-                                           .equal_axes = true,
-                                           .curves = curves,
-                                           .n_curves = 3});
-}
-
-static moray_status draw(paper *p, const shown s[2])
-{
-    moray_column columns[7] = {{.name = "t", .unit = "s", .values = s[0].t}};
-    for (int model = 0; model < 2; model++) {
-        const char *name = moray_model_name(model);
-        columns[1 + model] = (moray_column){paper_label(p, "p_x %s", name), "m", s[model].x, 1};
-        columns[3 + model] = (moray_column){paper_label(p, "p_y %s", name), "m", s[model].y, 1};
-        columns[5 + model] = (moray_column){paper_label(p, "v_x %s", name), "m/s", s[model].v_x, 1};
-    }
-    MORAY_TRY(paper_csv(p, NULL, columns, 7, s[0].n));
-    MORAY_TRY(draw_position(p, s));
-    const double *const v_x[2] = {s[0].v_x, s[1].v_x};
-    return paper_compare(p, "velocity", "Fig. 7: velocity; theta_max 10, 15, 20, 30 deg for 45 s each", "time [s]",
-                         "v_x [m/s]", s->t, v_x, s->n);
+    const moray_curve held = {
+        .label = "every 45 s", .x = mark[0], .y = mark[1], .n = 2 * AMPLITUDES, .style = MORAY_CURVE_POINTS};
+    MORAY_TRY(paper_pair_csv(p, &pair, 1 + PAPER_V_X));
+    MORAY_TRY(paper_pair_position(p, &pair, "Fig. 7: position; theta_max 10, 15, 20, 30 deg for 45 s each", &held));
+    return paper_pair_over_time(p, &pair, PAPER_V_X, "velocity",
+                                "Fig. 7: velocity; theta_max 10, 15, 20, 30 deg for 45 s each", "v_x [m/s]");
 }
 
 // ---- Each amplitude from rest --------------------------------------------------------------------------------------
@@ -111,18 +76,14 @@ static moray_status tell(paper *p, double speed[2][AMPLITUDES])
     moray_json_numbers(p->json, "v_x_fp_m_s", speed[MORAY_FIRST_PRINCIPLES], AMPLITUDES);
     moray_json_numbers(p->json, "v_x_control_m_s", speed[MORAY_CONTROL_ORIENTED], AMPLITUDES);
     moray_json_numbers(p->json, "excess_percent", excess, AMPLITUDES);
-    return paper_table(
-        p, &(moray_table){.title = "Mean v_x in m/s over the last five periods of 45 s, each amplitude from rest",
-                          .columns = {"alpha [deg]", "a [cm]", "first-principles", "control-oriented", "excess [%]"},
-                          .n_columns = 5,
-                          .rows = rows,
-                          .n_rows = AMPLITUDES});
+    return paper_rows(p, "Mean v_x in m/s over the last five periods of 45 s, each amplitude from rest",
+                      PAPER_HEADS("alpha [deg]", "a [cm]", "first-principles", "control-oriented", "excess [%]"), rows,
+                      AMPLITUDES);
 }
 
 moray_status paper_straight(paper *p)
 {
     double speed[2][AMPLITUDES];
-    shown s[2];
     MORAY_TRY(measure(p, speed));
     MORAY_TRY(tell(p, speed));
     MORAY_TRY(paper_say(p,
@@ -130,7 +91,5 @@ moray_status paper_straight(paper *p)
                         "overestimates the velocity: here by %.1f and %.1f %%, then by %.1f and %.1f %%.",
                         100 * (speed[0][0] / speed[1][0] - 1), 100 * (speed[0][1] / speed[1][1] - 1),
                         100 * (speed[0][2] / speed[1][2] - 1), 100 * (speed[0][3] / speed[1][3] - 1)));
-    for (int model = 0; model < 2; model++)
-        MORAY_TRY(show(p, (moray_model)model, &s[model]));
-    return draw(p, s);
+    return draw(p);
 }

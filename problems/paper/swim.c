@@ -87,3 +87,49 @@ moray_status paper_compare(paper *p, const char *name, const char *title, const 
         p, &(moray_figure){
                .name = name, .title = title, .x_label = x_label, .y_label = y_label, .curves = curves, .n_curves = 2});
 }
+
+moray_status paper_pair_of(paper *p, moray_swim_track *const track[2], paper_pair *pair)
+{
+    *pair = (paper_pair){.t = track[0]->t, .n = track[0]->n};
+    for (int q = 0; q < PAPER_QUANTITIES; q++)
+        for (int model = 0; model < 2; model++)
+            MORAY_TRY(paper_series(p, track[model], (paper_quantity)q, &pair->of[q][model]));
+    return moray_ok();
+}
+
+moray_status paper_pair_csv(paper *p, const paper_pair *pair, int n_quantities)
+{
+    static const char *const names[PAPER_QUANTITIES][2] = {
+        {"p_x", "m"}, {"p_y", "m"}, {"v_x", "m/s"}, {"v_y", "m/s"}, {"heading", "deg"}};
+    moray_column columns[1 + 2 * PAPER_QUANTITIES] = {{.name = "t", .unit = "s", .values = pair->t}};
+    for (int k = 0; k < 2 * n_quantities; k++)
+        columns[1 + k] = (moray_column){.name = paper_label(p, "%s %s", names[k / 2][0], moray_model_name(k % 2)),
+                                        .unit = names[k / 2][1],
+                                        .values = pair->of[k / 2][k % 2]};
+    return paper_csv(p, NULL, columns, 1 + 2 * n_quantities, pair->n);
+}
+
+moray_status paper_pair_over_time(paper *p, const paper_pair *pair, paper_quantity quantity, const char *name,
+                                  const char *title, const char *y_label)
+{
+    const double *const y[2] = {pair->of[quantity][0], pair->of[quantity][1]};
+    return paper_compare(p, name, title, "time [s]", y_label, pair->t, y, pair->n);
+}
+
+moray_status paper_pair_position(paper *p, const paper_pair *pair, const char *title, const moray_curve *points)
+{
+    moray_curve curves[3];
+    for (int k = 0; k < 2; k++) {
+        const moray_model model = paper_model_order[k];
+        curves[k] = paper_model_curve(model, pair->of[PAPER_P_X][model], pair->of[PAPER_P_Y][model], pair->n);
+    }
+    if (points)
+        curves[2] = *points;
+    return paper_figure(p, &(moray_figure){.name = "position",
+                                           .title = title,
+                                           .x_label = "p_x [m]",
+                                           .y_label = "p_y [m]",
+                                           .equal_axes = true,
+                                           .curves = curves,
+                                           .n_curves = points ? 3 : 2});
+}

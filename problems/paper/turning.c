@@ -3,7 +3,7 @@
 // Sec. V-C, Fig. 8: turning by a joint offset of a sixth of the amplitude, there and back.
 #include "swim.h"
 
-enum { CHANGES = 5, QUANTITIES = 5 };
+enum { CHANGES = 5 };
 static const double THETA_MAX = 10 * DEG, END = 190, STEP = 0.1;
 
 // t in [40, 70] s one way, in [130, 160] s the other. The offset is a/6 and, by erratum E3, -alpha/6.
@@ -21,23 +21,7 @@ static moray_status turn(paper *p, moray_model model, moray_swim_track **track)
 
 // ---- Fig. 8 --------------------------------------------------------------------------------------------------------
 
-static moray_status draw_position(paper *p, double *series[2][QUANTITIES], int n)
-{
-    moray_curve curves[2];
-    for (int k = 0; k < 2; k++) {
-        const moray_model model = paper_model_order[k];
-        curves[k] = paper_model_curve(model, series[model][PAPER_P_X], series[model][PAPER_P_Y], n);
-    }
-    return paper_figure(p, &(moray_figure){.name = "position",
-                                           .title = "Fig. 8(a): position",
-                                           .x_label = "p_x [m]",
-                                           .y_label = "p_y [m]",
-                                           .equal_axes = true,
-                                           .curves = curves,
-                                           .n_curves = 2});
-}
-
-static moray_status draw(paper *p, const double *t, double *series[2][QUANTITIES], int n)
+static moray_status draw(paper *p, const paper_pair *pair)
 {
     static const struct {
         paper_quantity quantity;
@@ -47,26 +31,12 @@ static moray_status draw(paper *p, const double *t, double *series[2][QUANTITIES
         {PAPER_V_X, "v_x", "Fig. 8(c): velocity of the centre of mass along x", "v_x [m/s]"},
         {PAPER_V_Y, "v_y", "Fig. 8(d): velocity of the centre of mass along y", "v_y [m/s]"},
     };
-    MORAY_TRY(draw_position(p, series, n));
-    for (unsigned i = 0; i < sizeof figures / sizeof *figures; i++) {
-        const double *const y[2] = {series[0][figures[i].quantity], series[1][figures[i].quantity]};
-        MORAY_TRY(paper_compare(p, figures[i].name, figures[i].title, "time [s]", figures[i].y_label, t, y, n));
-    }
+    MORAY_TRY(paper_pair_csv(p, pair, PAPER_QUANTITIES));
+    MORAY_TRY(paper_pair_position(p, pair, "Fig. 8(a): position", NULL));
+    for (unsigned i = 0; i < sizeof figures / sizeof *figures; i++)
+        MORAY_TRY(
+            paper_pair_over_time(p, pair, figures[i].quantity, figures[i].name, figures[i].title, figures[i].y_label));
     return moray_ok();
-}
-
-static moray_status write(paper *p, const double *t, double *series[2][QUANTITIES], int n)
-{
-    static const char *const names[QUANTITIES][2] = {
-        {"p_x", "m"}, {"p_y", "m"}, {"v_x", "m/s"}, {"v_y", "m/s"}, {"heading", "deg"}};
-    moray_column columns[1 + 2 * QUANTITIES] = {{.name = "t", .unit = "s", .values = t}};
-    for (int model = 0; model < 2; model++)
-        for (int q = 0; q < QUANTITIES; q++)
-            columns[1 + 2 * q + model] =
-                (moray_column){.name = paper_label(p, "%s %s", names[q][0], moray_model_name(model)),
-                               .unit = names[q][1],
-                               .values = series[model][q]};
-    return paper_csv(p, NULL, columns, 1 + 2 * QUANTITIES, n);
 }
 
 // ---- In numbers ----------------------------------------------------------------------------------------------------
@@ -91,26 +61,20 @@ static moray_status tell(paper *p, moray_swim_track *track[2])
     moray_json_number(p->json, "heading_control_deg", heading[MORAY_CONTROL_ORIENTED]);
     moray_json_numbers(p->json, "end_fp_m", end[MORAY_FIRST_PRINCIPLES], 2);
     moray_json_numbers(p->json, "end_control_m", end[MORAY_CONTROL_ORIENTED], 2);
-    return paper_table(p, &(moray_table){.title = "Manoeuvre of Sec. V-C, theta_max 10 deg",
-                                         .columns = {moray_model_name(MORAY_FIRST_PRINCIPLES),
-                                                     moray_model_name(MORAY_CONTROL_ORIENTED)},
-                                         .n_columns = 2,
-                                         .rows = rows,
-                                         .n_rows = 3});
+    return paper_rows(p, "Manoeuvre of Sec. V-C, theta_max 10 deg",
+                      PAPER_HEADS(moray_model_name(MORAY_FIRST_PRINCIPLES), moray_model_name(MORAY_CONTROL_ORIENTED)),
+                      rows, 3);
 }
 
 moray_status paper_turning(paper *p)
 {
     moray_swim_track *track[2];
-    double *series[2][QUANTITIES];
-    for (int model = 0; model < 2; model++) {
+    paper_pair pair;
+    for (int model = 0; model < 2; model++)
         MORAY_TRY(turn(p, (moray_model)model, &track[model]));
-        for (int q = 0; q < QUANTITIES; q++)
-            MORAY_TRY(paper_series(p, track[model], (paper_quantity)q, &series[model][q]));
-    }
     MORAY_TRY(tell(p, track));
     MORAY_TRY(paper_say(p, "The offset is a/6 in the control-oriented model and, since a positive offset turns the two "
                            "models opposite ways (erratum E3), -alpha/6 in the first-principles model."));
-    MORAY_TRY(write(p, track[0]->t, series, track[0]->n));
-    return draw(p, track[0]->t, series, track[0]->n);
+    MORAY_TRY(paper_pair_of(p, track, &pair));
+    return draw(p, &pair);
 }

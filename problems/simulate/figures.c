@@ -6,7 +6,7 @@
 
 // ---- Path ----------------------------------------------------------------------------------------------------------
 
-static moray_status draw_path(const simulate *run, const simulate_results *results)
+static moray_status draw_path(const simulate_results *results, moray_output *output)
 {
     const moray_swim_track *track = &results->track;
     double *x, *y;
@@ -18,49 +18,49 @@ static moray_status draw_path(const simulate *run, const simulate_results *resul
                                    .y = &track->pose->p_y,
                                    .n = track->n,
                                    .stride = sizeof *track->pose / sizeof(double)}};
-    const moray_status status = moray_output_figure(run->common.output, &(moray_figure){.name = "path",
-                                                                                        .title = "Path of the robot",
-                                                                                        .x_label = "x [m]",
-                                                                                        .y_label = "y [m]",
-                                                                                        .equal_axes = true,
-                                                                                        .curves = curves,
-                                                                                        .n_curves = 2});
+    const moray_status status = moray_output_figure(output, &(moray_figure){.name = "path",
+                                                                            .title = "Path of the robot",
+                                                                            .x_label = "x [m]",
+                                                                            .y_label = "y [m]",
+                                                                            .equal_axes = true,
+                                                                            .curves = curves,
+                                                                            .n_curves = 2});
     free(x);
     return status;
 }
 
 // ---- Over time -----------------------------------------------------------------------------------------------------
 
-static moray_status draw_velocity(const simulate *run, const double *t, const double *v_x, const double *v_y, int n)
+static moray_status draw_over_time(moray_output *output, const char *name, const char *title, const char *y_label,
+                                   const moray_curve *curves, int n)
+{
+    return moray_output_figure(
+        output,
+        &(moray_figure){
+            .name = name, .title = title, .x_label = "time [s]", .y_label = y_label, .curves = curves, .n_curves = n});
+}
+
+static moray_status draw_velocity(moray_output *output, const double *t, const double *v_x, const double *v_y, int n)
 {
     const moray_curve curves[] = {{.label = "v_x", .x = t, .y = v_x, .n = n},
                                   {.label = "v_y", .x = t, .y = v_y, .n = n}};
-    return moray_output_figure(run->common.output,
-                               &(moray_figure){.name = "velocity",
-                                               .title = "Velocity over ground of the centre of mass",
-                                               .x_label = "time [s]",
-                                               .y_label = "velocity [m/s]",
-                                               .curves = curves,
-                                               .n_curves = 2});
+    return draw_over_time(output, "velocity", "Velocity over ground of the centre of mass", "velocity [m/s]", curves,
+                          2);
 }
 
-static moray_status draw_heading(const simulate *run, const double *t, const double *heading, int n)
+static moray_status draw_heading(const simulate_results *results, moray_output *output, const double *t,
+                                 const double *heading, int n)
 {
-    const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
+    const bool control = results->run->snake.model == MORAY_CONTROL_ORIENTED;
     const moray_curve curve = {.label = control ? "theta" : "mean link angle", .x = t, .y = heading, .n = n};
-    return moray_output_figure(run->common.output, &(moray_figure){.name = "heading",
-                                                                   .title = "Heading",
-                                                                   .x_label = "time [s]",
-                                                                   .y_label = "heading [deg]",
-                                                                   .curves = &curve,
-                                                                   .n_curves = 1});
+    return draw_over_time(output, "heading", "Heading", "heading [deg]", &curve, 1);
 }
 
 // Of the joints at the tail, in the middle and at the head: more curves than that nobody reads.
-static moray_status draw_efforts(const simulate *run, const simulate_results *results, const double *t, double *u)
+static moray_status draw_efforts(const simulate_results *results, moray_output *output, const double *t, double *u)
 {
     const moray_swim_track *track = &results->track;
-    const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
+    const bool control = results->run->snake.model == MORAY_CONTROL_ORIENTED;
     const int joint[] = {0, (track->n_joints - 1) / 2, track->n_joints - 1}, shown = track->n_joints < 3 ? 1 : 3;
     int from = 0;
     char label[3][32], title[80];
@@ -76,34 +76,30 @@ static moray_status draw_efforts(const simulate *run, const simulate_results *re
     }
     snprintf(title, sizeof title, "Joint %s, %.4g s to %.4g s", control ? "forces" : "torques", results->window.from,
              results->window.to);
-    return moray_output_figure(run->common.output,
-                               &(moray_figure){.name = "effort",
-                                               .title = title,
-                                               .x_label = "time [s]",
-                                               .y_label = control ? "joint force [N]" : "joint torque [N m]",
-                                               .curves = curves,
-                                               .n_curves = shown});
+    return draw_over_time(output, "effort", title, control ? "joint force [N]" : "joint torque [N m]", curves, shown);
 }
 
-moray_status simulate_figures(const simulate *run, const simulate_results *results)
+moray_status simulate_figures(const void *found, moray_output *output)
 {
+    const simulate_results *results = found;
     const moray_swim_track *track = &results->track;
     const int n = track->n;
-    double *v_x = malloc(3 * (size_t)n * sizeof *v_x), *v_y = v_x + n, *heading = v_y + n;
+    double *v_x = malloc(3 * (size_t)n * sizeof *v_x);
     if (!v_x)
         return moray_error(MORAY_MEMORY, "no memory for the figures");
+    double *v_y = v_x + n, *heading = v_y + n;
     for (int k = 0; k < n; k++) {
         v_x[k] = track->pose[k].v_x;
         v_y[k] = track->pose[k].v_y;
         heading[k] = track->pose[k].heading / DEG;
     }
-    moray_status status = draw_path(run, results);
+    moray_status status = draw_path(results, output);
     if (!moray_failed(status))
-        status = draw_velocity(run, track->t, v_x, v_y, n);
+        status = draw_velocity(output, track->t, v_x, v_y, n);
     if (!moray_failed(status))
-        status = draw_heading(run, track->t, heading, n);
+        status = draw_heading(results, output, track->t, heading, n);
     if (!moray_failed(status))
-        status = draw_efforts(run, results, track->t, v_x); // whose turn is over
+        status = draw_efforts(results, output, track->t, v_x); // whose turn is over
     free(v_x);
     return status;
 }

@@ -114,15 +114,12 @@ static void json_gait(moray_json *json, const simulate *run, const moray_gait_ch
     const bool control = is_control(run);
     const moray_gait *gait = &change->gait;
     const double theta_max = moray_theta_max_from_amplitude(robot, run->snake.model, gait->amplitude, gait->delta);
-    moray_json_open(json, NULL);
-    moray_json_number(json, "t_s", change->t);
-    moray_json_number(json, "theta_max_deg", theta_max / DEG);
-    moray_json_number(json, control ? "a_m" : "alpha_deg", control ? gait->amplitude : gait->amplitude / DEG);
-    moray_json_number(json, "omega_deg_s", gait->omega / DEG);
-    moray_json_number(json, "delta_deg", gait->delta / DEG);
-    moray_json_number(json, control ? "phi0_m" : "phi0_deg", control ? gait->offset : gait->offset / DEG);
-    moray_json_number(json, "taper", gait->taper);
-    moray_json_close(json);
+    moray_json_object(json, NULL,
+                      MORAY_MEMBERS({"t_s", change->t}, {"theta_max_deg", theta_max / DEG},
+                                    {control ? "a_m" : "alpha_deg", control ? gait->amplitude : gait->amplitude / DEG},
+                                    {"omega_deg_s", gait->omega / DEG}, {"delta_deg", gait->delta / DEG},
+                                    {control ? "phi0_m" : "phi0_deg", control ? gait->offset : gait->offset / DEG},
+                                    {"taper", gait->taper}));
 }
 
 static void json_head(moray_json *json, const simulate *run, const simulate_results *results)
@@ -138,20 +135,14 @@ static void json_head(moray_json *json, const simulate *run, const simulate_resu
 static void json_mean(moray_json *json, const simulate *run, const simulate_results *r)
 {
     const bool control = is_control(run);
-    moray_json_open(json, "simulated");
-    moray_json_number(json, "from_s", r->window.from);
-    moray_json_number(json, "to_s", r->window.to);
-    moray_json_number(json, "periods", r->window.periods);
-    moray_json_number(json, "v_x_m_s", r->v_x);
-    moray_json_number(json, "v_y_m_s", r->v_y);
-    moray_json_number(json, "speed_m_s", r->speed);
-    moray_json_number(json, "course_speed_m_s", r->course_speed);
-    moray_json_number(json, "power_W", r->power);
-    moray_json_number(json, "cost_of_transport_J_m", r->cost_of_transport);
-    moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", r->peak_effort);
-    moray_json_number(json, "max_link_angle_deg", r->peak_link_angle / DEG);
-    moray_json_number(json, "heading_deg", r->heading / DEG);
-    moray_json_close(json);
+    moray_json_object(json, "simulated",
+                      MORAY_MEMBERS({"from_s", r->window.from}, {"to_s", r->window.to}, {"periods", r->window.periods},
+                                    {"v_x_m_s", r->v_x}, {"v_y_m_s", r->v_y}, {"speed_m_s", r->speed},
+                                    {"course_speed_m_s", r->course_speed}, {"power_W", r->power},
+                                    {"cost_of_transport_J_m", r->cost_of_transport},
+                                    {control ? "peak_force_N" : "peak_torque_N_m", r->peak_effort},
+                                    {"max_link_angle_deg", r->peak_link_angle / DEG},
+                                    {"heading_deg", r->heading / DEG}));
 }
 
 static void json_run(moray_json *json, const simulate *run, const simulate_results *r)
@@ -161,50 +152,30 @@ static void json_run(moray_json *json, const simulate *run, const simulate_resul
     moray_json_open(json, "run");
     moray_json_number(json, "duration_s", r->t1);
     moray_json_numbers(json, "end_position_m", position, 2);
-    moray_json_number(json, "end_heading_deg", r->end.heading / DEG);
-    moray_json_number(json, "energy_J", r->energy);
-    moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", r->peak_effort_of_run);
+    moray_json_members(json, MORAY_MEMBERS({"end_heading_deg", r->end.heading / DEG}, {"energy_J", r->energy},
+                                           {control ? "peak_force_N" : "peak_torque_N_m", r->peak_effort_of_run}));
     moray_json_close(json);
     moray_json_open(json, "integrator");
     moray_json_text(json, "name", simulate_integrators[run->integrator]);
-    moray_json_number(json, "rtol", r->sim.rtol);
-    moray_json_number(json, "atol", r->sim.atol);
-    moray_json_number(json, "steps", (double)r->statistics.steps);
-    moray_json_number(json, "rhs_evaluations", (double)r->statistics.rhs_evaluations);
+    moray_json_members(json, MORAY_MEMBERS({"rtol", r->sim.rtol}, {"atol", r->sim.atol},
+                                           {"steps", (double)r->statistics.steps},
+                                           {"rhs_evaluations", (double)r->statistics.rhs_evaluations}));
     moray_json_close(json);
 }
 
 // ---- All of it -----------------------------------------------------------------------------------------------------
 
-struct found {
-    const simulate *run;
-    const simulate_results *results;
-};
-
 static void summarise(const void *found, moray_json *json)
 {
-    const struct found *f = found;
-    json_head(json, f->run, f->results);
-    json_mean(json, f->run, f->results);
-    json_run(json, f->run, f->results);
+    const simulate_results *results = found;
+    json_head(json, results->run, results);
+    json_mean(json, results->run, results);
+    json_run(json, results->run, results);
 }
 
-static moray_status write(const void *found, moray_output *output)
+moray_status simulate_report(const simulate_results *results)
 {
-    (void)output;
-    const struct found *f = found;
-    return simulate_trajectory(f->run, f->results);
-}
-
-static moray_status draw(const void *found, moray_output *output)
-{
-    (void)output;
-    const struct found *f = found;
-    return simulate_figures(f->run, f->results);
-}
-
-moray_status simulate_report(const simulate *run, const simulate_results *results)
-{
+    const simulate *run = results->run;
     struct tables t;
     char text[500];
     fill_means(run, results, &t);
@@ -212,10 +183,10 @@ moray_status simulate_report(const simulate *run, const simulate_results *result
     describe(run, results, text, sizeof text);
     const moray_report report = {.title = "simulate", .text = text, .tables = t.table, .n_tables = 2};
     return moray_app_show(&run->common, &(moray_results){.name = "simulate",
-                                                         .found = &(struct found){run, results},
+                                                         .found = results,
                                                          .summary = summarise,
                                                          .print = print,
-                                                         .write = write,
-                                                         .draw = draw,
+                                                         .write = simulate_trajectory,
+                                                         .draw = simulate_figures,
                                                          .report = &report});
 }

@@ -188,6 +188,7 @@ static moray_status allot(const simulate *run, simulate_results *results)
 
 moray_status simulate_run(const simulate *run, simulate_results *results)
 {
+    results->run = run;
     results->sim = settings_of(run);
     MORAY_TRY(moray_sim_settings_check(&results->sim));
     MORAY_TRY(read_schedule(run, results));

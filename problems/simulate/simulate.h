@@ -26,6 +26,7 @@ typedef struct simulate_window {
 } simulate_window;
 
 typedef struct simulate_results {
+    const simulate *run;
     moray_sim_settings sim;
     moray_gait_change *schedule; // as far as the simulation goes
     int n_changes;
@@ -41,18 +42,16 @@ typedef struct simulate_results {
     double energy;
 } simulate_results;
 
-// Simulates. Error: MORAY_INPUT, MORAY_IO (schedule), MORAY_MEMORY, MORAY_NUMERIC.
+// Simulates; the run must outlive the results. Error: MORAY_INPUT, MORAY_IO (schedule), MORAY_MEMORY, MORAY_NUMERIC.
 moray_status simulate_run(const simulate *run, simulate_results *results);
 void simulate_release(simulate_results *results); // safe on zeroed results
 
 // Tables or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
-moray_status simulate_report(const simulate *run, const simulate_results *results);
+moray_status simulate_report(const simulate_results *results);
 
-// trajectory.csv. Error: MORAY_IO, MORAY_MEMORY.
-moray_status simulate_trajectory(const simulate *run, const simulate_results *results);
-
-// The figures. Error: MORAY_MEMORY; those of moray_output_figure.
-moray_status simulate_figures(const simulate *run, const simulate_results *results);
+// Of simulate_results: trajectory.csv; the figures. Error: MORAY_IO, MORAY_MEMORY; those of moray_output_figure.
+moray_status simulate_trajectory(const void *results, moray_output *output);
+moray_status simulate_figures(const void *results, moray_output *output);
 
 extern const char *const simulate_integrators[];
 const moray_gait *simulate_last_gait(const simulate_results *results);

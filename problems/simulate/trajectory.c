@@ -56,11 +56,13 @@ static void choose_columns(const simulate *run, const simulate_results *results,
         add_column(c, "u", i + 1, control ? "N" : "N m", track->u + i, track->n_joints);
 }
 
-moray_status simulate_trajectory(const simulate *run, const simulate_results *results)
+moray_status simulate_trajectory(const void *found, moray_output *output)
 {
+    const simulate_results *results = found;
+    const simulate *run = results->run;
     const size_t most = 3 * (size_t)run->snake.robot.links + 12;
     FILE *file;
-    MORAY_TRY(moray_output_file(run->common.output, "trajectory.csv", &file));
+    MORAY_TRY(moray_output_file(output, "trajectory.csv", &file));
     columns c = {.column = calloc(most, sizeof *c.column), .name = calloc(most, sizeof *c.name)};
     const bool room = c.column && c.name;
     if (room) {

@@ -12,14 +12,11 @@ static void json_scores(const steer_job *job, moray_json *json, const char *key,
 static void json_receding(const steer_job *job, moray_json *json, const steer_trial *trial)
 {
     const moray_receding_horizon_record *record = &trial->record[MORAY_FIRST_PRINCIPLES];
-    moray_json_open(json, "receding");
-    moray_json_number(json, "plans", record->plans);
-    moray_json_number(json, "not_solved", record->failures);
-    moray_json_number(json, "iterations", record->iterations);
-    moray_json_number(json, "time_s", record->seconds);
-    moray_json_number(json, "longest_s", record->longest);
-    moray_json_number(json, "times_real_time", job->program->swum(job, trial) / record->seconds);
-    moray_json_close(json);
+    moray_json_object(json, "receding",
+                      MORAY_MEMBERS({"plans", record->plans}, {"not_solved", record->failures},
+                                    {"iterations", record->iterations}, {"time_s", record->seconds},
+                                    {"longest_s", record->longest},
+                                    {"times_real_time", job->program->swum(job, trial) / record->seconds}));
 }
 
 static void json_trial(const steer_job *job, moray_json *json, const steer_trial *trial)

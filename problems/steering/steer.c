@@ -39,13 +39,17 @@ static bool certified(const steer_job *job)
     return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->snake.model].pass;
 }
 
-int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job)
+int steer_main(const moray_program *own, const steer_program *program, int argc, char **argv, steer_job *job)
 {
+    const moray_option_group snake = {&moray_snake_option_table, offsetof(steer_job, snake)};
+    moray_program app = *own;
     int exit_code;
-    job->name = app->name;
+    app.groups = &snake;
+    app.n_groups = 1;
+    job->name = app.name;
     job->program = program;
     memcpy(job->number, program->numbers, (size_t)program->n_numbers * sizeof *job->number);
-    if (!moray_app_start(app, argc, argv, job, &exit_code))
+    if (!moray_app_start(&app, argc, argv, job, &exit_code))
         return exit_code;
     job->ticker = moray_ticker_start(stderr, job->common.quiet);
     moray_interrupt_begin();
@@ -54,10 +58,13 @@ int steer_main(const moray_program *app, const steer_program *program, int argc,
     moray_ticker_end(&job->ticker);
     if (!moray_failed(status))
         status = steer_report(job);
-    exit_code = moray_app_end(app, job, status);
+    exit_code = moray_app_end(&app, job, status);
     if (exit_code == MORAY_EXIT_SOLVED && !certified(job))
         exit_code = MORAY_EXIT_CERTIFICATE;
-    program->release(job);
+    for (int k = 0; k < 3; k++)
+        moray_steering_plan_free(&job->plan[k]);
+    if (program->release)
+        program->release(job);
     return exit_code;
 }
 
@@ -88,13 +95,13 @@ moray_settings steer_settings(steer_job *job, bool averaged, int intervals, doub
     return settings;
 }
 
-moray_status steer_take_plan(steer_job *job, int number, const moray_solution *solution,
-                             const moray_straight_motion *straight)
+moray_status steer_take_plan(steer_job *job, int number)
 {
     const moray_sim_settings sim = moray_sim_settings_default();
     const moray_integrator integrator = moray_sim_integrator(&sim);
-    job->plan[number] = (steer_plan){solution, *straight};
-    return number == STEER_AVERAGED ? moray_ok() : moray_certify(solution, &integrator, &job->certificate[number]);
+    if (number == STEER_AVERAGED)
+        return moray_ok();
+    return moray_certify(job->plan[number].solution, &integrator, &job->certificate[number]);
 }
 
 moray_status steer_not_solved(const moray_solution *solution)

@@ -89,8 +89,8 @@ typedef struct steer_tables steer_tables;
 typedef struct steer_program {
     // Makes plans, chooses trials, runs them. Error: MORAY_NOT_SOLVED saying what limits the robot, MORAY_INTERRUPTED.
     moray_status (*work)(steer_job *job);
-    void (*release)(steer_job *job);
-    bool one_gait; // number 0, for all trials
+    void (*release)(steer_job *job); // of what is the program's own; or NULL
+    bool one_gait;                   // number 0, for all trials
     const steer_law *laws;
     const steer_number *numbers; // [n_numbers], or copied to the job where the ranges are found along the way
     int n_numbers;
@@ -140,12 +140,6 @@ struct steer_trial {
     moray_receding_horizon_record record[2];
 };
 
-// Of the program's own, whose job also owns it.
-typedef struct steer_plan {
-    const moray_solution *solution; // NULL: not yet made
-    moray_straight_motion straight;
-} steer_plan;
-
 enum { STEER_AVERAGED = 2 }; // plan beside those of the models
 
 struct steer_job {
@@ -161,7 +155,7 @@ struct steer_job {
     const steer_program *program;
     steer_number number[STEER_NUMBERS];
     moray_straight_motion straight[STEER_GAITS][2]; // of the paper's gait, those of the plans; by the model swum on
-    steer_plan plan[3];
+    moray_steering_plan plan[3];                    // owned; without a solution: not yet made
     moray_certificate certificate[2];
     double turn_rate[2]; // sustained at the limit of the offset [rad/s], with its sign
     steer_trial trial[STEER_TRIALS];
@@ -172,10 +166,11 @@ struct steer_job {
 // First-principles model, radau5, mesh by the period.
 steer_job steer_defaults(void);
 
-// Runs a program; the job is what it begins with. Returns the exit code.
-int steer_main(const moray_program *app, const steer_program *program, int argc, char **argv, steer_job *job);
+// Runs a program, whose options are its own and those of the snake; the job is what it begins with. Returns the exit
+// code.
+int steer_main(const moray_program *own, const steer_program *program, int argc, char **argv, steer_job *job);
 
-static inline const steer_plan *steer_last_plan(const steer_job *job)
+static inline const moray_steering_plan *steer_last_plan(const steer_job *job)
 {
     return &job->plan[job->snake.model];
 }
@@ -211,9 +206,8 @@ double steer_offset_ratio(const steer_job *job, int gait, moray_model from, mora
 // Of a solve on the averaged plant, on one mesh, or on the full one.
 moray_settings steer_settings(steer_job *job, bool averaged, int intervals, double mesh_tolerance, double barrier);
 
-// Notes a plan that is solved, number model or STEER_AVERAGED; certifies it unless averaged.
-moray_status steer_take_plan(steer_job *job, int number, const moray_solution *solution,
-                             const moray_straight_motion *straight);
+// A plan that is solved, number model or STEER_AVERAGED: certifies it unless averaged.
+moray_status steer_take_plan(steer_job *job, int number);
 
 // The first sentences of a solution's diagnosis as an error; of an interrupted one MORAY_INTERRUPTED.
 moray_status steer_not_solved(const moray_solution *solution);

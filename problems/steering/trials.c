@@ -14,7 +14,7 @@ static const accuracy careful = {1e-8, 20};
 static moray_status set_controller(steer_steersman *h)
 {
     const steer_trial *trial = h->trial;
-    const steer_plan *plan = &h->job->plan[trial->plan];
+    const moray_steering_plan *plan = &h->job->plan[trial->plan];
     h->plan = (moray_plan){plan->solution, steer_offset_ratio(h->job, trial->gait, trial->plan, h->model)};
     h->planned = &plan->straight;
     if (trial->law->set)

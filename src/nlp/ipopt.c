@@ -230,9 +230,10 @@ static moray_status solve_with(struct session *session, moray_iterate *iterate)
     if (alone)
         moray_mumps_lock();
     // Ipopt copies the bounds.
-    IpoptProblem problem = CreateIpoptProblem(
-        nlp->n, (double *)nlp->x_lower, (double *)nlp->x_upper, nlp->m, (double *)nlp->g_lower, (double *)nlp->g_upper,
-        nlp->nnz_jac, nlp->nnz_hess, 0, on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
+    IpoptProblem problem =
+        CreateIpoptProblem(nlp->n, moray_for_ipopt(nlp->x_lower), moray_for_ipopt(nlp->x_upper), nlp->m,
+                           moray_for_ipopt(nlp->g_lower), moray_for_ipopt(nlp->g_upper), nlp->nnz_jac, nlp->nnz_hess, 0,
+                           on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
     if (problem) {
         status = run(problem, session, iterate, &logs, &code);
         FreeIpoptProblem(problem); // writes the rest of the logs

@@ -47,8 +47,8 @@ bool moray_ipopt_set_options(IpoptProblem problem, const moray_nlp *nlp, const m
     ok = ok && set_linear_solver(problem, nlp, solver, work);
     if (nlp->x_scale || nlp->g_scale || nlp->f_scale != 0) {
         ok = ok && AddIpoptStrOption(problem, (char *)"nlp_scaling_method", (char *)"user-scaling");
-        ok = ok && SetIpoptProblemScaling(problem, nlp->f_scale != 0 ? nlp->f_scale : 1, (double *)nlp->x_scale,
-                                          (double *)nlp->g_scale);
+        ok = ok && SetIpoptProblemScaling(problem, nlp->f_scale != 0 ? nlp->f_scale : 1, moray_for_ipopt(nlp->x_scale),
+                                          moray_for_ipopt(nlp->g_scale));
     }
     if (settings->warm) {
         static const char *const pushes[] = {"warm_start_bound_push", "warm_start_bound_frac",
@@ -56,7 +56,7 @@ bool moray_ipopt_set_options(IpoptProblem problem, const moray_nlp *nlp, const m
                                              "warm_start_mult_bound_push"};
         ok = ok && AddIpoptStrOption(problem, (char *)"warm_start_init_point", (char *)"yes");
         for (unsigned i = 0; i < sizeof pushes / sizeof *pushes; i++)
-            ok = ok && AddIpoptNumOption(problem, (char *)pushes[i], 1e-9);
+            ok = ok && AddIpoptNumOption(problem, moray_for_ipopt(pushes[i]), 1e-9);
     }
     return ok;
 }

@@ -12,6 +12,7 @@
 
 #include "base/number.h"
 #include "nlp/ipopt_log.h"
+#include "nlp/ipopt_options.h"
 #include "nlp/mumps_lock.h"
 
 enum kind { refused, integer, number, text };
@@ -67,19 +68,19 @@ static bool read_integer(const char *value, int *whole)
     return end != value && *end == 0 && !errno && read >= INT_MIN && read <= INT_MAX;
 }
 
-static bool set(IpoptProblem problem, const moray_ipopt_option *option, enum kind kind)
+static bool set(IpoptProblem problem, const moray_key_value *option, enum kind kind)
 {
-    char *key = (char *)option->key; // 3.11 declares its option texts as char * but only reads them
+    char *key = moray_for_ipopt(option->key);
     int whole;
     double real;
     if (kind == integer)
         return read_integer(option->value, &whole) && AddIpoptIntOption(problem, key, whole);
     if (kind == number)
         return moray_number_read(option->value, &real) && AddIpoptNumOption(problem, key, real);
-    return AddIpoptStrOption(problem, key, (char *)option->value);
+    return AddIpoptStrOption(problem, key, moray_for_ipopt(option->value));
 }
 
-static enum kind kind_of(IpoptProblem silent, const moray_ipopt_option *option)
+static enum kind kind_of(IpoptProblem silent, const moray_key_value *option)
 {
     for (enum kind kind = integer; kind <= text; kind++)
         if (set(silent, option, kind))
@@ -87,7 +88,7 @@ static enum kind kind_of(IpoptProblem silent, const moray_ipopt_option *option)
     return refused;
 }
 
-static moray_status refusal(const moray_ipopt_option *option, const struct ipopt_log *log)
+static moray_status refusal(const moray_key_value *option, const struct ipopt_log *log)
 {
     char line[200];
     if (moray_ipopt_log_find(log, "not a valid option", line, sizeof line))
@@ -97,7 +98,7 @@ static moray_status refusal(const moray_ipopt_option *option, const struct ipopt
 }
 
 // Options that would let files decide or break the output of the program.
-static moray_status check_key(const moray_ipopt_option *option)
+static moray_status check_key(const moray_key_value *option)
 {
     static const char *const kept[][2] = {{"option_file_name", "no option file is read"},
                                           {"sb", "the banner is never printed"},
@@ -109,7 +110,7 @@ static moray_status check_key(const moray_ipopt_option *option)
     return moray_ok();
 }
 
-static moray_status set_alone(IpoptProblem problem, const moray_ipopt_option *option)
+static moray_status set_alone(IpoptProblem problem, const moray_key_value *option)
 {
     struct ipopt_log log;
     IpoptProblem silent = new_silent();
@@ -127,7 +128,7 @@ static moray_status set_alone(IpoptProblem problem, const moray_ipopt_option *op
 }
 
 // Solving the small problem makes an instance of MUMPS.
-static moray_status set_on(IpoptProblem problem, const moray_ipopt_option *option)
+static moray_status set_on(IpoptProblem problem, const moray_key_value *option)
 {
     moray_mumps_lock();
     const moray_status status = set_alone(problem, option);

@@ -2,124 +2,200 @@
 //
 // What a solution is worth, measured apart from the solver that found it.
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "ocp/certify.h"
+#include "ocp/curvature.h"
 #include "ocp/differences.h"
-#include "ocp/examine.h"
+#include "ocp/names.h"
+#include "ocp/optimality.h"
 
-// ---- Re-simulation ----
+static const double no_length = 1e-9; // of a phase, relative to the longest
+enum { where_size = 300, good_stages = 4 };
 
-struct resimulation {
-    struct examiner *e;
-    const struct interval *interval; // the one being integrated: its control also at its ends, where controls may jump
+// What was found, and where it is worst.
+struct verdict {
+    const moray_solution *solution;
+    moray_certificate *c;
+    struct finding mesh, between, shooting, drift, constant; // constant: drift of the phases where it should be 0
+    struct optimality optimality;
+    char derivative[where_size];
 };
 
-static bool resimulated_rhs(double t, const double *x, double *dx, void *self)
+void moray_find(struct finding *finding, double value, int p, double time)
 {
-    const struct resimulation *r = self;
-    struct examiner *e = r->e;
-    moray_examiner_evaluate(e, r->interval, t, x);
-    for (int i = 0; i < e->n; i++) {
-        dx[i] = e->out[moray_examiner_output(e, i)];
-        if (!isfinite(dx[i]))
-            return false;
-    }
-    return true;
+    if (value > finding->value || isnan(value))
+        *finding = (struct finding){isnan(value) ? INFINITY : value, p, time};
 }
 
-// Raises *worst to the largest relative difference between n of the integrated quantities and what was found.
-static void compare(const struct examiner *e, const double *x, const double *found, int first, int n, double *worst)
-{
-    for (int i = 0; i < n; i++) {
-        const double difference = fabs(x[first + i] - found[i]) / e->size[first + i];
-        *worst = isnan(difference) ? INFINITY : fmax(*worst, difference);
-    }
-}
+// ---- Numbers ----
 
-// Integrates interval by interval, the integrals along with the states.
-static moray_status resimulate(struct examiner *e, const moray_integrator *integrator, moray_certificate *certificate)
+static moray_status examine_phase(struct verdict *v, int p, const moray_integrator *integrator)
 {
-    const struct transcription *t = e->solution->transcription;
-    const struct phase_layout *layout = &t->layout.phase[e->p];
-    const double *found = e->solution->iterate.x;
-    const int nx = t->ocp->phase[e->p].nx;
-    double *x = calloc((size_t)(e->n + layout->nodes), sizeof *x), *time = x + e->n;
-    if (!x)
-        return moray_error(MORAY_MEMORY, "no memory for the certificate");
-    memcpy(x, found + layout->node[0].x, (size_t)nx * sizeof *x);
-    moray_solution_nodes(e->solution, e->p, time, NULL);
-    struct resimulation resimulation = {e, NULL};
-    const moray_ode ode = {e->n, resimulated_rhs, &resimulation};
-    moray_status status = moray_ok();
-    for (int k = 0; k < layout->mesh.intervals && !moray_failed(status); k++) {
-        const int first = layout->interval[k].first, last = first + layout->interval[k].scheme->points - 1;
-        resimulation.interval = &layout->interval[k];
-        status = integrator->run(integrator, &ode, time[first], time[last], x, NULL, 0, NULL, NULL);
-        compare(e, x, found + layout->node[last].x, 0, nx, &certificate->resimulation);
+    struct examiner e;
+    MORAY_TRY(moray_examiner_new(&e, v->solution, p));
+    const struct transcription *t = v->solution->transcription;
+    const struct phase_layout *layout = &t->layout.phase[p];
+    for (int k = 0; k < layout->mesh.intervals; k++) {
+        double outside = 0;
+        const double T = t->phase[p].tf - t->phase[p].t0,
+                     error = moray_examiner_interval(&e, &layout->interval[k], &outside);
+        const double middle = t->phase[p].t0 + T * (layout->mesh.edge[k] + layout->mesh.edge[k + 1]) / 2;
+        moray_find(&v->mesh, error, p, middle);
+        moray_find(&v->between, outside, p, middle);
     }
-    compare(e, x, found + layout->q, nx, e->n - nx, &certificate->resimulation);
-    free(x);
+    const moray_status status = moray_resimulate(&e, integrator, &v->shooting, &v->c->composed);
+    moray_examiner_free(&e);
     return status;
 }
 
-// ---- Hamiltonian ----
-
-static bool is_autonomous(const moray_map *map)
+// Where functions change with time they may jump, and the Hamiltonian with them, between nodes.
+static moray_status question_hamiltonian(struct verdict *v, const struct witness *w, int p)
 {
-    for (int k = 0; k < map->jac.nnz; k++)
-        if (map->jac.col[k] == map->n_in - 1)
-            return false;
-    return true;
-}
-
-static moray_status spread_of_hamiltonian(const moray_solution *solution, int p, double *spread)
-{
-    double *values = calloc((size_t)solution->transcription->layout.phase[p].nodes, sizeof *values);
-    if (!values)
-        return moray_error(MORAY_MEMORY, "no memory for the certificate");
-    double least = INFINITY, most = -INFINITY;
-    const int nodes = moray_solution_hamiltonian(solution, p, values);
-    for (int n = 0; n < nodes; n++) {
-        least = fmin(least, values[n]); // which pass over NaN
-        most = fmax(most, values[n]);
-    }
-    *spread = fmax(*spread, (most - least) / (1 + fmax(fabs(least), fabs(most))));
-    free(values);
+    struct finding drift = {.value = -1};
+    bool autonomous;
+    MORAY_TRY(moray_hamiltonian_drift(w, p, &drift, &autonomous));
+    if (autonomous)
+        moray_find(&v->constant, drift.value, drift.p, drift.time);
+    moray_find(&v->drift, drift.value, drift.p, drift.time);
     return moray_ok();
 }
 
-static moray_status examine_phase(const moray_solution *solution, int p, const moray_integrator *integrator,
-                                  moray_certificate *certificate)
+static moray_status question_witness(struct verdict *v, const struct witness *w)
 {
-    struct examiner e;
-    MORAY_TRY(moray_examiner_new(&e, solution, p));
-    const struct phase_layout *layout = &solution->transcription->layout.phase[p];
-    for (int k = 0; k < layout->mesh.intervals; k++)
-        certificate->mesh_error = fmax(certificate->mesh_error,
-                                       moray_examiner_interval(&e, &layout->interval[k], &certificate->between_nodes));
-    moray_status status = resimulate(&e, integrator, certificate);
-    moray_examiner_free(&e);
-    if (!moray_failed(status) && is_autonomous(solution->transcription->phase[p].map))
-        status = spread_of_hamiltonian(solution, p, &certificate->hamiltonian);
-    return status;
+    MORAY_TRY(moray_compare_columns(w, &v->c->derivatives, v->derivative, where_size));
+    MORAY_TRY(moray_measure_optimality(w, &v->optimality));
+    MORAY_TRY(moray_measure_curvature(w, &v->c->curvature, NULL));
+    for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
+        MORAY_TRY(question_hamiltonian(v, w, p));
+    return moray_ok();
+}
+
+static moray_status gather(struct verdict *v, const moray_integrator *integrator)
+{
+    struct witness w;
+    MORAY_TRY(moray_witness_new(&w, v->solution));
+    moray_status status = question_witness(v, &w);
+    moray_witness_free(&w);
+    MORAY_TRY(status);
+    MORAY_TRY(moray_difference_solution(v->solution, &v->c->directions));
+    for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
+        MORAY_TRY(examine_phase(v, p, integrator));
+    v->c->kkt = fmax(v->optimality.improvement, v->optimality.feasibility);
+    v->c->gap = v->optimality.gap;
+    v->c->mesh_error = v->mesh.value;
+    v->c->between_nodes = v->between.value;
+    v->c->resimulation = v->shooting.value;
+    v->c->hamiltonian = v->drift.value < 0 ? NAN : v->drift.value;
+    return moray_ok();
+}
+
+// ---- Judgement ----
+
+static void fail(struct verdict *v, const char *what, double value, double limit, const char *where)
+{
+    if (v->c->pass)
+        snprintf(v->c->why, sizeof v->c->why, "%s: %.2g, where %.2g is allowed%s%s", what, value, limit,
+                 *where ? "; " : "", where);
+    v->c->pass = false;
+}
+
+static void judge(struct verdict *v, const char *what, double value, double limit, const char *where)
+{
+    if (!(value <= limit))
+        fail(v, what, value, limit, where);
+}
+
+static void judge_finding(struct verdict *v, const char *what, const struct finding *f, double limit)
+{
+    char where[where_size];
+    snprintf(where, sizeof where, "phase %.100s near t = %.6g", v->solution->transcription->ocp->phase[f->p].name,
+             f->time);
+    judge(v, what, f->value, limit, where);
+}
+
+static void judge_optimality(struct verdict *v)
+{
+    const struct transcription *t = v->solution->transcription;
+    const struct optimality *o = &v->optimality;
+    const double *x = v->solution->iterate.x;
+    char where[where_size] = "", name[200] = "";
+    if (o->row >= t->nlp.m)
+        moray_layout_column_name(&t->layout, t->ocp, x, o->row - t->nlp.m, name, sizeof name);
+    else if (o->row >= 0)
+        moray_layout_row_name(&t->layout, t->ocp, x, o->row, name, sizeof name);
+    judge(v, "constraints are violated, relative to their size", o->feasibility, MORAY_LIMIT_KKT, name);
+    if (o->column >= 0) {
+        moray_layout_column_name(&t->layout, t->ocp, x, o->column, name, sizeof name);
+        snprintf(where, sizeof where, "most by %s", name);
+    }
+    judge(v, "the objective could still improve, relative to its size", o->improvement, MORAY_LIMIT_KKT, where);
+    judge(v, "multipliers times slacks, relative to the objective's size", o->gap, MORAY_LIMIT_GAP,
+          "the solver stopped inside the constraints");
+    if (!isnan(v->c->curvature))
+        judge(v, "the Lagrangian bends down along the active constraints", v->c->curvature, MORAY_LIMIT_CURVATURE,
+              "a saddle or a maximum");
+}
+
+// Whether costates at the nodes are of an order that makes the Hamiltonian a judge.
+static bool has_good_costates(const moray_solution *solution)
+{
+    const struct layout *layout = &solution->transcription->layout;
+    for (int p = 0; p < layout->phases && layout->family == MORAY_LOBATTO; p++)
+        for (int k = 0; k < layout->phase[p].mesh.intervals; k++)
+            if (layout->phase[p].interval[k].scheme->stages < good_stages)
+                return false;
+    return true;
+}
+
+static void judge_all(struct verdict *v)
+{
+    const moray_settings *settings = &v->solution->settings;
+    const double loose = violation_slack * settings->mesh_tolerance;
+    judge(v, "derivatives in use differ from differences of the functions", v->c->derivatives, MORAY_LIMIT_DERIVATIVES,
+          v->derivative);
+    judge(v, "derivatives of the programme differ from differences along directions", v->c->directions,
+          MORAY_LIMIT_DIRECTIONS, "a second derivative, or a kink");
+    judge_optimality(v);
+    judge_finding(v, "error of the dynamics between the nodes", &v->mesh, settings->mesh_tolerance);
+    judge_finding(v, "violation of limits between the nodes", &v->between, loose);
+    judge_finding(v, "difference to a re-simulation of an interval", &v->shooting, loose);
+    if (has_good_costates(v->solution))
+        judge_finding(v, "drift of the Hamiltonian", &v->constant, MORAY_LIMIT_HAMILTONIAN);
+}
+
+// A phase without length has no dynamics: none of its numbers says anything.
+static bool all_have_length(struct verdict *v)
+{
+    const struct transcription *t = v->solution->transcription;
+    double longest = 0;
+    for (int p = 0; p < t->ocp->phases; p++)
+        longest = fmax(longest, fabs(t->phase[p].tf - t->phase[p].t0));
+    for (int p = 0; p < t->ocp->phases; p++)
+        if (!(t->phase[p].tf - t->phase[p].t0 > no_length * longest)) {
+            snprintf(v->c->why, sizeof v->c->why, "phase %.100s has no length: it goes from t = %.9g to %.9g",
+                     t->ocp->phase[p].name, t->phase[p].t0, t->phase[p].tf);
+            return false;
+        }
+    return true;
 }
 
 moray_status moray_certify(const moray_solution *solution, const moray_integrator *integrator,
                            moray_certificate *certificate)
 {
-    *certificate = (moray_certificate){.hamiltonian = NAN};
-    moray_kkt kkt;
-    MORAY_TRY(moray_kkt_error(&solution->transcription->nlp, &solution->iterate, &kkt));
-    certificate->kkt = kkt.error;
-    MORAY_TRY(moray_difference_solution(solution, &certificate->derivatives));
-    for (int p = 0; p < solution->transcription->ocp->phases; p++)
-        MORAY_TRY(examine_phase(solution, p, integrator, certificate));
-    const moray_settings *settings = &solution->settings;
-    certificate->pass = certificate->kkt <= 100 * settings->tolerance &&
-                        certificate->derivatives <= MORAY_WORST_DERIVATIVES &&
-                        certificate->mesh_error <= settings->mesh_tolerance &&
-                        certificate->between_nodes <= violation_slack * settings->mesh_tolerance &&
-                        certificate->resimulation <= 100 * settings->mesh_tolerance;
+    struct verdict v = {.solution = solution, .c = certificate, .drift = {.value = -1}};
+    *certificate = (moray_certificate){.pass = true};
+    if (!moray_transcription_jacobians(solution->transcription, solution->iterate.x))
+        return moray_error(MORAY_NUMERIC, "at the solution, %.200s", solution->transcription->failure.text);
+    if (!all_have_length(&v)) {
+        certificate->pass = false;
+        certificate->kkt = certificate->mesh_error = certificate->between_nodes = certificate->resimulation = NAN;
+        certificate->derivatives = certificate->directions = certificate->hamiltonian = certificate->composed = NAN;
+        certificate->gap = certificate->curvature = NAN;
+        return moray_ok();
+    }
+    MORAY_TRY(gather(&v, integrator));
+    judge_all(&v);
     return moray_ok();
 }

@@ -144,5 +144,5 @@ moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivat
     *report = (moray_ocp_derivative_report){.jacobian_error = -1, .hessian_error = -1};
     for (int p = 0; p < ocp->phases; p++)
         MORAY_TRY(check_subject((struct subject){.ocp = ocp, .p = p, .map = ocp->phase[p].map}, report));
-    return check_subject((struct subject){.ocp = ocp, .p = -1, .map = ocp->endpoint}, report);
+    return check_subject((struct subject){.ocp = ocp, .p = -1, .map = ocp->endpoint->map}, report);
 }

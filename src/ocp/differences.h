@@ -2,10 +2,14 @@
 #ifndef SRC_OCP_DIFFERENCES_H
 #define SRC_OCP_DIFFERENCES_H
 
-#include "ocp/solution.h"
+#include "ocp/witness.h"
 
 // *worst: the largest disagreement between the derivatives of the programme at the solution and differences of its
 // functions along directions that move every variable at once, and so trust no pattern. Error: MORAY_MEMORY.
 moray_status moray_difference_solution(const moray_solution *solution, double *worst);
+
+// *worst: the largest disagreement of a derivative in use at a node or at the endpoint with the witness's, relative to
+// what its function moves by; where[size] says which. Error: MORAY_MEMORY.
+moray_status moray_compare_columns(const struct witness *w, double *worst, char *where, int size);
 
 #endif

@@ -73,8 +73,10 @@ struct looking {
 static moray_status looking_new(struct looking *l, int n_in)
 {
     double *block = calloc((size_t)(1 + moray_probe_points) * n_in + 1, sizeof *block);
+    if (!block)
+        return moray_error(MORAY_MEMORY, "no memory for its functions");
     *l = (struct looking){block, block + n_in, {block + n_in, block, moray_probe_points}};
-    return block ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for its functions");
+    return moray_ok();
 }
 
 // Room for one more map. Error: MORAY_MEMORY.
@@ -110,13 +112,13 @@ static moray_status endpoint_map(moray_ocp *ocp, int trial, const struct looking
     moray_endpoint_points(ocp, trial, l->points);
     moray_endpoint_sizes(ocp, l->size);
     if (ocp->endpoint_real_fn)
-        return moray_real_map_new(&ocp->own_endpoint->map, n_in, n_out, call_endpoint_real, ocp, NULL, &l->probe);
-    return moray_complex_map_new(&ocp->own_endpoint->map, n_in, n_out, call_endpoint, ocp, NULL, &l->probe);
+        return moray_real_map_new(&ocp->endpoint->own->map, n_in, n_out, call_endpoint_real, ocp, NULL, &l->probe);
+    return moray_complex_map_new(&ocp->endpoint->own->map, n_in, n_out, call_endpoint, ocp, NULL, &l->probe);
 }
 
 static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phase_spec *spec)
 {
-    struct looking l;
+    struct looking l = {0};
     moray_status status = looking_new(&l, moray_phase_inputs(p));
     p->wrapped = calloc(1, sizeof *p->wrapped);
     if (!p->wrapped)
@@ -138,15 +140,15 @@ static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phas
 
 static moray_status wrap_endpoint(moray_ocp *ocp)
 {
-    struct looking l;
+    struct looking l = {0};
     moray_status status = looking_new(&l, moray_endpoint_inputs(ocp));
     if (!moray_failed(status))
-        status = own_map_new(&ocp->own_endpoint);
+        status = own_map_new(&ocp->endpoint->own);
     if (!moray_failed(status))
         status = endpoint_map(ocp, 0, &l);
     for (int trial = 1; trial < trials && status.code == MORAY_INPUT; trial++)
         status = endpoint_map(ocp, trial, &l);
-    ocp->endpoint = ocp->own_endpoint ? &ocp->own_endpoint->map : NULL;
+    ocp->endpoint->map = ocp->endpoint->own ? &ocp->endpoint->own->map : NULL;
     free(l.size);
     if (moray_failed(status))
         return moray_error(status.code, "endpoint of %s: %s", ocp->name, status.text);
@@ -158,7 +160,7 @@ moray_status moray_wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec)
     for (int i = 0; i < ocp->phases; i++)
         if (!spec->phase[i].map)
             MORAY_TRY(wrap_phase(ocp, &ocp->phase[i], &spec->phase[i]));
-    return ocp->endpoint ? moray_ok() : wrap_endpoint(ocp);
+    return ocp->endpoint->map ? moray_ok() : wrap_endpoint(ocp);
 }
 
 bool moray_phase_is_differenced(const struct phase *p)
@@ -172,5 +174,5 @@ void moray_unwrap_functions(moray_ocp *ocp)
         own_maps_free(ocp->phase[i].own);
         free(ocp->phase[i].wrapped);
     }
-    own_maps_free(ocp->own_endpoint);
+    own_maps_free(ocp->endpoint ? ocp->endpoint->own : NULL);
 }

@@ -104,9 +104,10 @@ static moray_status fill_guess_from(const moray_csv *t, const moray_ocp *ocp, mo
     if (ocp->phases > 1 && column < 0)
         return moray_error(MORAY_INPUT, "%s: no column phase, which a problem of %d phases needs",
                            moray_path_tail(t->text.path), ocp->phases);
-    int *rows = calloc((size_t)ocp->phases + (size_t)t->rows, sizeof *rows), *phase = rows + ocp->phases;
+    int *rows = calloc((size_t)ocp->phases + (size_t)t->rows, sizeof *rows);
     if (!rows)
         return moray_error(MORAY_MEMORY, "no memory for %s", moray_path_tail(t->text.path));
+    int *phase = rows + ocp->phases;
     moray_status status = read_phases(t, ocp, column, phase);
     for (int row = 0; row < t->rows && !moray_failed(status); row++)
         rows[phase[row]]++;

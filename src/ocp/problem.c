@@ -166,10 +166,12 @@ static moray_status copy_spec(moray_ocp *ocp, const moray_ocp_spec *spec)
 {
     ocp->name = copy_text(ocp, spec->name ? spec->name : "problem");
     ocp->phases = spec->phases, ocp->ns = spec->ns, ocp->ne = spec->ne, ocp->data = spec->data;
-    ocp->endpoint = spec->endpoint_map, ocp->endpoint_fn = spec->endpoint;
+    ocp->endpoint_fn = spec->endpoint;
     ocp->endpoint_real_fn = spec->endpoint_real;
-    if (!ocp->name)
+    ocp->endpoint = own(ocp, sizeof *ocp->endpoint);
+    if (!ocp->name || !ocp->endpoint)
         return no_memory();
+    *ocp->endpoint = (struct endpoint){.map = spec->endpoint_map};
     if (spec->phases < 1 || spec->ns < 0 || spec->ne < 0)
         return moray_error(MORAY_INPUT, "problem %s: %d phases, ns %d, ne %d; there must be a phase, none negative",
                            ocp->name, spec->phases, spec->ns, spec->ne);

@@ -25,12 +25,17 @@ struct phase {
     const char **x_names, **u_names, **c_names; // NULL where the user named nothing
 };
 
+struct endpoint {
+    const moray_map *map; // in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
+    struct own_map *own;  // as of a phase
+};
+
+// Phases and endpoint stand apart: solves, to which the problem is constant, widen the patterns of their maps.
 struct moray_ocp {
     const char *name;
     int phases, ns, ne;
     struct phase *phase;
-    const moray_map *endpoint; // in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
-    struct own_map *own_endpoint;
+    struct endpoint *endpoint;
     moray_endpoint_fn *endpoint_fn;
     moray_endpoint_real_fn *endpoint_real_fn;
     moray_phase_ends *ends; // scratch for endpoint_fn

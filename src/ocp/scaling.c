@@ -21,10 +21,21 @@ static double largest_in_phase(const struct phase_layout *layout, const double *
     return largest;
 }
 
+// A time is measured from the other end of its phase, not from when clocks began.
+static double size_of_time(moray_bounds bounds, double time, double other, double other_bound)
+{
+    const double size = size_of(bounds, fabs(time)), span = fabs(time - other);
+    const bool boxed = bounds.lower > -MORAY_INFINITY && bounds.upper < MORAY_INFINITY;
+    const double most = boxed ? fmax(fabs(bounds.upper - other_bound), fabs(bounds.lower - other_bound)) : span;
+    return most > 0 && most < size ? most : size;
+}
+
 static void scale_phase(struct transcription *t, int p, const double *x, double *x_scale, double *g_scale)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
+    double t0, tf;
+    moray_layout_span(&t->layout, t->ocp, x, p, &t0, &tf);
     for (int r = 0; r < phase->nx; r++) {
         const double scale = 1 / size_of(phase->x[r], largest_in_phase(layout, x, r));
         for (int n = 0; n < layout->nodes; n++)
@@ -45,9 +56,9 @@ static void scale_phase(struct transcription *t, int p, const double *x, double 
     for (int m = 0; m < phase->nq; m++)
         x_scale[layout->q + m] = g_scale[layout->integral_row + m] = 1 / size_of(phase->q[m], fabs(x[layout->q + m]));
     if (layout->t0 >= 0)
-        x_scale[layout->t0] = 1 / size_of(phase->t0, fabs(x[layout->t0]));
+        x_scale[layout->t0] = 1 / size_of_time(phase->t0, t0, tf, phase->tf.upper);
     if (layout->tf >= 0)
-        x_scale[layout->tf] = 1 / size_of(phase->tf, fabs(x[layout->tf]));
+        x_scale[layout->tf] = 1 / size_of_time(phase->tf, tf, t0, phase->t0.lower);
 }
 
 // A row that is not a defect: the largest entry of its gradient in scaled variables becomes at most 1.

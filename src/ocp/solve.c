@@ -4,9 +4,11 @@
 #include <string.h>
 
 #include "ocp/refine.h"
+#include "ocp/saddle.h"
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-3;
+enum { most_escapes = 2 };   // from saddles
 enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
 
 moray_settings moray_settings_default(void)
@@ -44,7 +46,7 @@ struct campaign {
     int stages; // of new intervals
     struct mesh *meshes;
     moray_mesh_record *history; // becomes the solution's
-    int tried, widenings;
+    int tried, widenings, escapes;
 };
 
 static void free_meshes(struct campaign *c)
@@ -214,7 +216,7 @@ static void drop(moray_solution *solution)
 }
 
 // Solves on the meshes in c, and again from there where a function turns out to depend on more than its patterns know.
-static moray_status solve_mesh(struct campaign *c, const moray_guess *guess, moray_solution **result)
+static moray_status solve_widened(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     MORAY_TRY(solve_once(c, guess, result));
     while (c->widenings < most_widenings && (*result)->info.outcome != MORAY_NLP_INTERRUPTED) {
@@ -236,11 +238,54 @@ static moray_status solve_mesh(struct campaign *c, const moray_guess *guess, mor
     return moray_ok();
 }
 
+// Solves again from beside a saddle. Where that fails the saddle is the result, as it was.
+static moray_status solve_beside(struct campaign *c, const double *kept, moray_solution **result)
+{
+    moray_solution *saddle = *result, *next = NULL;
+    const moray_guess beside = moray_guess_from_solution(saddle);
+    record(c, saddle, NAN, 0);
+    c->escapes++;
+    const moray_status status = solve_widened(c, &beside, &next);
+    if (!moray_failed(status) && moray_is_solved(next)) {
+        *result = next;
+        drop(saddle);
+        return status;
+    }
+    memcpy(saddle->iterate.x, kept, (size_t)saddle->transcription->nlp.n * sizeof *kept);
+    moray_transcription_jacobians(saddle->transcription, saddle->iterate.x); // accessors read the caches
+    if (next) {
+        if (next->info.outcome == MORAY_NLP_INTERRUPTED)
+            saddle->info.outcome = MORAY_NLP_INTERRUPTED;
+        drop(next);
+    }
+    return status;
+}
+
+// Solves on the meshes in c. A start that was not a solution may have led to a saddle, as one of symmetry does.
+static moray_status solve_mesh(struct campaign *c, const moray_guess *guess, moray_solution **result)
+{
+    MORAY_TRY(solve_widened(c, guess, result));
+    bool moved = !(guess && guess->from);
+    while (moved && c->escapes < most_escapes && moray_is_solved(*result)) {
+        const moray_solution *before = *result;
+        double *kept = calloc((size_t)before->transcription->nlp.n, sizeof *kept);
+        if (!kept)
+            return moray_error(MORAY_MEMORY, "no memory to leave a saddle");
+        moray_status status = moray_leave_saddle(*result, kept, &moved);
+        if (!moray_failed(status) && moved)
+            status = solve_beside(c, kept, result);
+        free(kept);
+        MORAY_TRY(status);
+        moved = *result != before;
+    }
+    return moray_ok();
+}
+
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
 static moray_status record_and_refine(struct campaign *c, moray_solution *solution, bool *again)
 {
     double error = NAN;
-    const bool more = c->tried - c->widenings < c->settings->max_refinements;
+    const bool more = c->tried - c->widenings - c->escapes < c->settings->max_refinements;
     free_meshes(c);
     if (moray_is_solved(solution))
         MORAY_TRY(moray_refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
@@ -268,7 +313,7 @@ static moray_status solve_finer(struct campaign *c, moray_solution **solution, b
 static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
 {
     bool again;
-    const int room = c->settings->max_refinements + 1 + most_widenings;
+    const int room = c->settings->max_refinements + 1 + most_widenings + most_escapes;
     c->history = calloc((size_t)room, sizeof *c->history);
     if (!c->history)
         return moray_error(MORAY_MEMORY, "no memory for a history of %d meshes", room);

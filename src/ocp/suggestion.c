@@ -17,7 +17,7 @@ static bool can_be_checked(const moray_ocp *ocp)
     bool analytic = ocp->endpoint_real_fn == NULL;
     for (int p = 0; p < ocp->phases; p++)
         analytic = analytic && ocp->phase[p].map->n_in <= most_inputs && !moray_phase_is_differenced(&ocp->phase[p]);
-    return analytic && ocp->endpoint->n_in <= most_inputs;
+    return analytic && ocp->endpoint->map->n_in <= most_inputs;
 }
 
 static bool wrong_derivative(const struct evidence *e)

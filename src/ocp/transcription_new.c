@@ -5,14 +5,16 @@
 
 static void set_row(struct transcription *t, int row, moray_bounds bounds)
 {
-    ((double *)t->nlp.g_lower)[row] = bounds.lower;
-    ((double *)t->nlp.g_upper)[row] = bounds.upper;
+    double *lower = t->bounds + 2 * t->layout.columns, *upper = lower + t->layout.rows;
+    lower[row] = bounds.lower;
+    upper[row] = bounds.upper;
 }
 
 static void set_column(struct transcription *t, int column, moray_bounds bounds)
 {
-    ((double *)t->nlp.x_lower)[column] = bounds.lower;
-    ((double *)t->nlp.x_upper)[column] = bounds.upper;
+    double *lower = t->bounds, *upper = lower + t->layout.columns;
+    lower[column] = bounds.lower;
+    upper[column] = bounds.upper;
 }
 
 static void set_phase_bounds(struct transcription *t, int p)
@@ -144,7 +146,7 @@ moray_status moray_transcription_new(struct transcription **result, const moray_
     if (!t)
         return moray_error(MORAY_MEMORY, "no memory for the transcription");
     t->ocp = ocp;
-    t->endpoint = ocp->endpoint;
+    t->endpoint = ocp->endpoint->map;
     moray_status status = moray_layout_new(&t->layout, ocp, family, meshes);
     if (!moray_failed(status))
         status = allocate(t);

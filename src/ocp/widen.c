@@ -46,12 +46,13 @@ static moray_status widen_phase(const struct transcription *t, struct phase *pha
 
 moray_status moray_widen_patterns(const struct transcription *t, int *found)
 {
-    moray_ocp *ocp = (moray_ocp *)t->ocp; // to its user it stays the same problem
+    const moray_ocp *ocp = t->ocp;
     *found = 0;
     for (int p = 0; p < ocp->phases; p++)
         if (ocp->phase[p].own)
             MORAY_TRY(widen_phase(t, &ocp->phase[p], p, found));
-    if (ocp->own_endpoint && !moray_map_pattern_holds(ocp->endpoint, t->end_in))
-        return widen(&ocp->own_endpoint, &ocp->endpoint, t->end_in, 1, found);
+    struct endpoint *end = ocp->endpoint;
+    if (end->own && !moray_map_pattern_holds(end->map, t->end_in))
+        return widen(&end->own, &end->map, t->end_in, 1, found);
     return moray_ok();
 }

@@ -18,8 +18,8 @@ static void add_group(moray_options *options, const moray_program *program, cons
 {
     for (int i = 0; i < group->table->n; i++)
         if (has(program, &group->table->rows[i])) {
-            options->row[options->n] = group->table->rows[i];
-            options->row[options->n++].offset += group->at;
+            options->own[options->n] = group->table->rows[i];
+            options->own[options->n++].offset += group->at;
         }
 }
 
@@ -28,11 +28,12 @@ moray_status moray_options_new(moray_options *options, const moray_program *prog
     int room = program->n_options + moray_common_table.n;
     for (int i = 0; i < program->n_groups; i++)
         room += program->groups[i].table->n;
-    *options = (moray_options){.row = calloc((size_t)room, sizeof *options->row), .words = program->words};
-    if (!options->row)
+    *options = (moray_options){.own = calloc((size_t)room, sizeof *options->own), .words = program->words};
+    options->row = options->own;
+    if (!options->own)
         return moray_error(MORAY_MEMORY, "no memory for the table of options");
     for (int i = 0; i < program->n_options; i++)
-        options->row[options->n++] = program->options[i];
+        options->own[options->n++] = program->options[i];
     for (int i = 0; i < program->n_groups; i++)
         add_group(options, program, &program->groups[i]);
     add_group(options, program, &(moray_option_group){&moray_common_table, 0});

@@ -140,7 +140,7 @@ moray_status moray_app_help(const moray_program *program, const void *settings, 
                   "Exit status: 0 solved and certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 "
                   "interrupted.",
                   0, 0);
-    free(options.row);
+    free(options.own);
     if (fflush(file) || ferror(file))
         return moray_error(MORAY_IO, "the help text cannot be written");
     return moray_ok();

@@ -42,7 +42,7 @@ moray_status moray_ipopt_list_set(moray_ipopt_list *list, const char *text)
     if (i == MORAY_IPOPT_OPTIONS)
         return moray_error(MORAY_INPUT, "ipopt.%.60s: more than %d options of Ipopt", given, (int)MORAY_IPOPT_OPTIONS);
     memcpy(list->text[i], given, strlen(text) + 1);
-    list->at[i] = (moray_ipopt_option){list->text[i], list->text[i] + (equals - text) + 1};
+    list->at[i] = (moray_key_value){list->text[i], list->text[i] + (equals - text) + 1};
     list->n += i == list->n;
     return moray_ok();
 }

@@ -8,12 +8,13 @@
 
 // The program's rows followed by those of its groups and of moray_common, all from the start of its settings.
 typedef struct moray_options {
-    moray_option *row;
+    const moray_option *row;
     int n;
     const moray_words *words; // NULL: none
+    moray_option *own;        // the rows, where they were put together
 } moray_options;
 
-// Error: MORAY_MEMORY. Free row with free().
+// Error: MORAY_MEMORY. Free own with free().
 moray_status moray_options_new(moray_options *options, const moray_program *program);
 
 extern const moray_option_table moray_common_table; // the rows of moray_common

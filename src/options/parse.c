@@ -73,6 +73,6 @@ moray_status moray_app_parse(const moray_program *program, int argc, char **argv
         status = fill(program, &options, &arguments, settings);
     }
     free(arguments.item);
-    free(options.row);
+    free(options.own);
     return status;
 }

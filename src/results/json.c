@@ -84,6 +84,19 @@ void moray_json_numbers(moray_json *json, const char *key, const double *values,
     moray_json_close(json);
 }
 
+void moray_json_members(moray_json *json, const moray_json_member *members, int n)
+{
+    for (int k = 0; k < n; k++)
+        moray_json_number(json, members[k].key, members[k].value);
+}
+
+void moray_json_object(moray_json *json, const char *key, const moray_json_member *members, int n)
+{
+    moray_json_open(json, key);
+    moray_json_members(json, members, n);
+    moray_json_close(json);
+}
+
 void moray_json_text(moray_json *json, const char *key, const char *text)
 {
     attach(json, key, text ? cJSON_CreateString(text) : cJSON_CreateNull());

@@ -36,9 +36,10 @@ static int rows(const app_run *run, int p)
 static bool fill(struct track *t, int p)
 {
     const int nx = entries(&t->run->app->spec->phase[p]), nodes = rows(t->run, p);
-    double *time = calloc((size_t)nodes * (size_t)(1 + nx), sizeof *time), *costate = time + nodes;
+    double *time = calloc((size_t)nodes * (size_t)(1 + nx), sizeof *time);
     if (!time)
         return false;
+    double *costate = time + nodes;
     moray_solution_nodes(t->run->solution, p, time, costate);
     for (int n = 0; n < nodes; n++) {
         double *values = t->values + (size_t)(t->first[p] + n) * t->columns;

@@ -12,32 +12,14 @@ _Static_assert(MORAY_LINEAR_MORAY == 0 && MORAY_LINEAR_MUMPS == 1 && MORAY_LINEA
                "the choices of linear_solver in this order");
 
 static const moray_option own_rows[] = {
-    {.section = "solver",
-     .key = "mesh_tol",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(app_run, mesh_tol),
-     .max = INFINITY,
-     .open = true,
-     .help = "largest relative error between nodes that the certificate accepts"},
-    {.section = "solver",
-     .key = "refinements",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(app_run, refinements),
-     .max = 100,
-     .help = "finer meshes tried while the error between nodes is above mesh_tol"},
-    {.section = "solver",
-     .key = "max_iterations",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(app_run, max_iterations),
-     .max = 1000000,
-     .help = "limit of the solver's iterations"},
-    {.section = "solver",
-     .key = "barrier",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(app_run, barrier),
-     .max = INFINITY,
-     .open = true,
-     .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"},
+    MORAY_ROW(REAL, app_run, mesh_tol, "solver", "mesh_tol", .max = INFINITY, .open = true,
+              .help = "largest relative error between nodes that the certificate accepts"),
+    MORAY_ROW(INT, app_run, refinements, "solver", "refinements", .max = 100,
+              .help = "finer meshes tried while the error between nodes is above mesh_tol"),
+    MORAY_ROW(INT, app_run, max_iterations, "solver", "max_iterations", .max = 1000000,
+              .help = "limit of the solver's iterations"),
+    MORAY_ROW(REAL, app_run, barrier, "solver", "barrier", .max = INFINITY, .open = true,
+              .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"),
     MORAY_CONTINUE(app_run, from_file),
     {.flag = "check",
      .type = MORAY_OPTION_BOOL,
@@ -172,20 +154,18 @@ static moray_status judge(const app_run *run)
 
 static const double doubtful = 1e-4; // difference that rounding does not explain
 
-// What to do about the number that fails the certificate.
+// What failed, and what to do about it.
 static void say_failure(const app_run *run)
 {
     const moray_certificate *c = &run->certificate;
-    const double loose = 100 * run->mesh_tol, tight = 100 * run->common.tol;
-    const char *text =
-        c->derivatives > MORAY_WORST_DERIVATIVES
+    const char *advice =
+        !(c->derivatives <= MORAY_LIMIT_DERIVATIVES && c->directions <= MORAY_LIMIT_DIRECTIONS)
             ? "the derivatives are wrong at the solution, or it lies on a kink of a function: see --check"
-        : c->kkt > tight                ? "the solver stopped short of an optimum: try a smaller tol"
-        : c->mesh_error > run->mesh_tol ? "the mesh is too coarse: try more refinements, intervals or stages"
-        : c->between_nodes > loose      ? "limits are passed between the nodes: try more intervals"
-                                        : "the simulation departs from the solution: try more intervals "
-                                          "or, where the equations are unstable, distrust it";
-    fprintf(stderr, "%s: certificate failed: %s\n", run->name, text);
+        : !(c->kkt <= MORAY_LIMIT_KKT) ? "the solver stopped short of an optimum: try a smaller tol, or bounds and "
+                                         "guesses of the sizes that occur"
+        : !(c->mesh_error <= run->mesh_tol) ? "the mesh is too coarse: try more refinements, intervals or stages"
+                                            : "try more intervals or refinements";
+    fprintf(stderr, "%s: certificate failed: %s. %s\n", run->name, c->why, advice);
 }
 
 static moray_status check(const app_run *run)

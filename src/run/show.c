@@ -111,19 +111,23 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
     const moray_certificate *c = &run->certificate;
     const double loose = 100 * run->mesh_tol;
     const moray_table_row filled[] = {
-        {.label = "optimality and feasibility (KKT)", .value = {c->kkt, 100 * run->common.tol}},
+        {.label = "optimality and feasibility (KKT)", .value = {c->kkt, MORAY_LIMIT_KKT}},
+        {.label = "gap held by slacks", .value = {c->gap, MORAY_LIMIT_GAP}},
+        {.label = "downward curvature", .value = {c->curvature, MORAY_LIMIT_CURVATURE}},
         {.label = "error of the dynamics between nodes", .value = {c->mesh_error, run->mesh_tol}},
         {.label = "violation of limits between nodes", .value = {c->between_nodes, loose}},
-        {.label = "difference to a re-simulation", .value = {c->resimulation, loose}},
-        {.label = "derivatives against differences", .value = {c->derivatives, MORAY_WORST_DERIVATIVES}},
-        {.label = "spread of the Hamiltonian", .value = {c->hamiltonian, NAN}}};
+        {.label = "re-simulation of each interval", .value = {c->resimulation, loose}},
+        {.label = "re-simulation of whole phases", .value = {c->composed, NAN}},
+        {.label = "derivatives against differences", .value = {c->derivatives, MORAY_LIMIT_DERIVATIVES}},
+        {.label = "the same along directions", .value = {c->directions, MORAY_LIMIT_DIRECTIONS}},
+        {.label = "drift of the Hamiltonian", .value = {c->hamiltonian, NAN}}};
     memcpy(rows, filled, sizeof filled);
     return sizeof filled / sizeof *filled;
 }
 
 moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
-    enum { solver_room = 10, certificate_room = 6 };
+    enum { solver_room = 10, certificate_room = 10 };
     const int solution_room = count_rows(run->app->spec);
     int meshes;
     moray_solution_history(run->solution, &meshes);
@@ -175,13 +179,10 @@ static void json_meshes(moray_json *json, const moray_solution *solution)
     for (int k = 0; k < meshes; k++) {
         moray_json_open(json, NULL);
         moray_json_text(json, "status", moray_nlp_outcome_text(mesh[k].outcome));
-        moray_json_number(json, "intervals", mesh[k].intervals);
-        moray_json_number(json, "nodes", mesh[k].nodes);
-        moray_json_number(json, "nvar", mesh[k].variables);
-        moray_json_number(json, "iterations", mesh[k].iterations);
-        moray_json_number(json, "time_s", mesh[k].seconds);
-        moray_json_number(json, "mesh_error", mesh[k].error);
-        moray_json_number(json, "objective", mesh[k].objective);
+        moray_json_members(json, MORAY_MEMBERS({"intervals", mesh[k].intervals}, {"nodes", mesh[k].nodes},
+                                               {"nvar", mesh[k].variables}, {"iterations", mesh[k].iterations},
+                                               {"time_s", mesh[k].seconds}, {"mesh_error", mesh[k].error},
+                                               {"objective", mesh[k].objective}));
         moray_json_close(json);
     }
     moray_json_close(json);

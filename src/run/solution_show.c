@@ -9,30 +9,27 @@ void moray_solver_to_json(moray_json *json, const moray_solution *solution)
     const moray_nlp_size size = moray_solution_size(solution);
     moray_json_open(json, "solver");
     moray_json_text(json, "status", moray_nlp_outcome_text(info->outcome));
-    moray_json_number(json, "iterations", info->iterations);
-    moray_json_number(json, "objective", moray_solution_objective(solution));
-    moray_json_number(json, "nvar", size.variables);
-    moray_json_number(json, "ncon", size.constraints);
-    moray_json_number(json, "nnz_jac", size.nnz_jac);
-    moray_json_number(json, "nnz_hess", size.nnz_hess);
-    moray_json_number(json, "time_s", info->seconds);
-    moray_json_number(json, "eval_time_s", info->evaluation_seconds);
+    moray_json_members(json,
+                       MORAY_MEMBERS({"iterations", info->iterations},
+                                     {"objective", moray_solution_objective(solution)}, {"nvar", size.variables},
+                                     {"ncon", size.constraints}, {"nnz_jac", size.nnz_jac}, {"nnz_hess", size.nnz_hess},
+                                     {"time_s", info->seconds}, {"eval_time_s", info->evaluation_seconds}));
     moray_json_text(json, "linear_solver", moray_linear_solver_text(info->linear_solver));
     moray_json_text(json, "linear_fallback", moray_failed(info->linear_fallback) ? info->linear_fallback.text : NULL);
 }
 
 void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate)
 {
-    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN, NAN};
+    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, ""};
     const moray_certificate *c = certificate ? certificate : &none;
     moray_json_open(json, "certificate");
     moray_json_bool(json, "pass", c->pass);
-    moray_json_number(json, "kkt", c->kkt);
-    moray_json_number(json, "mesh_error", c->mesh_error);
-    moray_json_number(json, "between_nodes", c->between_nodes);
-    moray_json_number(json, "resimulation", c->resimulation);
-    moray_json_number(json, "derivatives", c->derivatives);
-    moray_json_number(json, "hamiltonian", c->hamiltonian);
+    moray_json_members(json,
+                       MORAY_MEMBERS({"kkt", c->kkt}, {"mesh_error", c->mesh_error}, {"between_nodes", c->between_nodes},
+                                     {"resimulation", c->resimulation}, {"derivatives", c->derivatives},
+                                     {"directions", c->directions}, {"hamiltonian", c->hamiltonian}, {"gap", c->gap},
+                                     {"curvature", c->curvature}, {"composed", c->composed}));
+    moray_json_text(json, "why", c->why);
     moray_json_close(json);
 }
 

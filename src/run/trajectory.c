@@ -42,9 +42,10 @@ static bool fill(struct track *t, int p)
     const moray_phase_spec *phase = &t->run->app->spec->phase[p];
     const int n = entries(phase), nodes = moray_solution_nodes(t->run->solution, p, NULL, NULL);
     const int steps = steps_between(nodes);
-    double *time = calloc((size_t)(nodes + n), sizeof *time), *x = time + nodes;
+    double *time = calloc((size_t)(nodes + n), sizeof *time);
     if (!time)
         return false;
+    double *x = time + nodes;
     moray_solution_nodes(t->run->solution, p, time, NULL);
     for (int row = t->first[p]; row < t->first[p + 1]; row++) {
         const int k = row - t->first[p], node = k / steps, part = k % steps;

@@ -45,5 +45,5 @@ static moray_status run(const moray_integrator *self, const moray_ode *ode, doub
 
 moray_integrator moray_sim_integrator(const moray_sim_settings *settings)
 {
-    return (moray_integrator){.run = run, .self = (void *)settings};
+    return (moray_integrator){.run = run, .self = settings};
 }

@@ -136,7 +136,7 @@ static void rounding(const moray_num *x, moray_num *out, int n)
     out[1] = 1e-9 * x[0] * x[3] + 1e3 * x[0];
 }
 
-static const struct sample samples[] = {
+static struct sample samples[] = {
     {"separable", separable, 50, 50, 50, 50, 1, 2, NAN},
     {"sum of squares", sum_of_squares, 20, 1, 20, 20, 20, 40, NAN},
     {"bilinear", bilinear, 20, 10, 20, 10, 2, 2, NAN},
@@ -168,7 +168,7 @@ static void check_patterns(const struct sample *sample, const moray_map *map, co
     CHECK(!saw_nan, "%s, %s: never called with a NaN", sample->name, kind);
 }
 
-static void check_sample(const struct sample *sample)
+static void check_sample(struct sample *sample)
 {
     static double probe[most], weight[most], values[most * most];
     moray_map map;
@@ -178,7 +178,7 @@ static void check_sample(const struct sample *sample)
         weight[i] = 1 + 0.3 * cos(3.0 * i);
     calls = 0;
     saw_nan = false;
-    CHECK_OK(moray_map_from_complex(&map, sample->n_in, sample->n_out, call_complex, (void *)sample, NULL, probe),
+    CHECK_OK(moray_map_from_complex(&map, sample->n_in, sample->n_out, call_complex, sample, NULL, probe),
              sample->name);
     const int groups = sample->for_jacobian, points = 13;
     CHECK(calls <= points * (sample->n_in + 2 + 2 * groups * groups + 4 * groups), "%s: %d calls to find the patterns",
@@ -200,8 +200,7 @@ static void check_sample(const struct sample *sample)
     moray_map_release(&map);
     if (sample->function == rounding) // differences of a real function do not resolve it
         return;
-    CHECK_OK(moray_map_from_real(&map, sample->n_in, sample->n_out, call_real, (void *)sample, NULL, probe),
-             sample->name);
+    CHECK_OK(moray_map_from_real(&map, sample->n_in, sample->n_out, call_real, sample, NULL, probe), sample->name);
     check_patterns(sample, &map, "real");
     moray_map_release(&map);
 }

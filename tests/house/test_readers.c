@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // One dialect: every reader takes the same forms and refuses the same faults, in whatever locale the process is.
+#include "arguments.h"
 #include "tap.h"
 
 #include <locale.h>
@@ -74,9 +75,10 @@ static moray_status read_ini(double *sum)
         {.section = "test", .key = "bb", .type = MORAY_OPTION_REAL, MORAY_AT(settings, b)}};
     const moray_program program = {.name = "readers", .summary = "", .options = rows, .n_options = 2};
     settings s = {.common = moray_common_default()};
+    command_line line;
+    command_set(&line, "readers", (const char *const[]){"--config", file_name}, 2);
     moray_request request;
-    moray_status status =
-        moray_app_parse(&program, 3, (char *[]){"readers", "--config", (char *)file_name, NULL}, &s, &request);
+    moray_status status = moray_app_parse(&program, line.argc, line.argv, &s, &request);
     *sum = 3 * s.a + s.b;
     return status;
 }

@@ -146,7 +146,7 @@ static double solve(chain *c, const moray_nlp_settings *settings, moray_status *
 static double solve_with(const char *key, const char *value, moray_status *status, moray_nlp_info *info)
 {
     chain c = chain_new(40);
-    const moray_ipopt_option option = {key, value};
+    const moray_key_value option = {key, value};
     moray_nlp_settings settings = moray_nlp_settings_default();
     settings.ipopt = &option;
     settings.n_ipopt = key != NULL;

@@ -12,7 +12,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 20;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 // ---- Two legs of a cart: x' = v, v' = p u, up to the middle and on to rest, with least u^2 ----
 
@@ -123,8 +123,10 @@ static void test_read(void)
     check_refused(ocp, "t,x,\"speed, forward\",u\n0,0,0,0\n", "no column phase, which a problem of 2 phases needs");
     check_refused(ocp, "phase,t,x,u\n1,0,0,0\n2,0,0,0\n", "no column speed, forward, which phase out needs");
     check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0,0\n", "no line of phase 2, in");
-    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0\n", "test_guess.csv:2: 4 fields, but line 1 names 5 columns");
-    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0,0\n\n2,0,zero,0,0\n", "test_guess.csv:4: x = zero: not a finite number");
+    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0\n",
+                  "test_guess.csv:2: 4 fields, but line 1 names 5 columns");
+    check_refused(ocp, "phase,t,x,\"speed, forward\",u\n1,0,0,0,0\n\n2,0,zero,0,0\n",
+                  "test_guess.csv:4: x = zero: not a finite number");
     check_refused(ocp, "phase,t\n", "needs a line of names and a line of values");
     remove(path);
     moray_status status = moray_guess_read(&guess, ocp, path);

@@ -11,7 +11,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 100;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 // ---- Hypersensitive problem (Rao & Mease 1999): x' = -x^3 + u, minimise the integral of (x^2 + u^2)/2, x(0) = 1.5,
 //      x(tf) = 1. For long times the Hamiltonian vanishes, so the costate is -x^3 +- x sqrt(x^4 + 1) on the way in and
@@ -106,8 +106,7 @@ static void check_history(const moray_solution *solution, const char *what)
     const moray_mesh_record *history = moray_solution_history(solution, &meshes);
     moray_certificate certificate;
     CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
-    CHECK(certificate.pass, "%s: passes: KKT %.1e, mesh %.1e, between nodes %.1e, re-simulation %.1e", what,
-          certificate.kkt, certificate.mesh_error, certificate.between_nodes, certificate.resimulation);
+    CHECK(certificate.pass, "%s: passes %s", what, certificate.why);
     const moray_mesh_record last = history[meshes - 1];
     CHECK_NEAR(last.error, certificate.mesh_error, 1e-15, "error of the last mesh");
     CHECK(last.objective == moray_solution_objective(solution) &&

@@ -11,7 +11,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 20;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 static void check_status(moray_status status, moray_code code, const char *expected)
 {

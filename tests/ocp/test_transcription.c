@@ -90,15 +90,17 @@ static void programme_hessian(void *self, const double *x, const double *weight,
     nlp->hessian(nlp->self, x, true, weight[0], weight + 1, values);
 }
 
-static moray_status programme_as_map(const moray_nlp *nlp, moray_map *map)
+static moray_status programme_as_map(moray_nlp *nlp, moray_map *map)
 {
     *map = (moray_map){.n_in = nlp->n,
                        .n_out = 1 + nlp->m,
-                       .self = (void *)nlp,
+                       .self = nlp,
                        .value = programme_value,
                        .jacobian = programme_jacobian,
-                       .hessian = programme_hessian,
-                       .hess = {nlp->nnz_hess, (int *)nlp->hess_row, (int *)nlp->hess_col}};
+                       .hessian = programme_hessian};
+    MORAY_TRY(moray_pattern_new(&map->hess, nlp->nnz_hess));
+    memcpy(map->hess.row, nlp->hess_row, (size_t)nlp->nnz_hess * sizeof *map->hess.row);
+    memcpy(map->hess.col, nlp->hess_col, (size_t)nlp->nnz_hess * sizeof *map->hess.col);
     MORAY_TRY(moray_pattern_new(&map->jac, nlp->n + nlp->nnz_jac));
     for (int j = 0; j < nlp->n; j++)
         map->jac.col[j] = j;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "arguments.h"
 #include "degree.h"
 #include "tap.h"
 
@@ -114,17 +115,15 @@ static char directory[] = "/tmp/moray-options-XXXXXX";
 // Parses up to eight arguments into *s, which starts at the defaults.
 static moray_status parse(settings *s, const char *const arguments[8])
 {
-    char *argv[10] = {"test"};
-    int argc = 1;
-    for (int i = 0; i < 8 && arguments[i]; i++)
-        argv[argc++] = (char *)arguments[i];
+    command_line line;
+    command_set(&line, "test", arguments, 8);
     moray_request request;
     *s = (settings){.common = moray_common_default(),
                     .body = {.links = 10, .m_kg = 1},
                     .limit = INFINITY,
                     .range = {0, INFINITY},
                     .word = "word"};
-    return moray_app_parse(&program, argc, argv, s, &request);
+    return moray_app_parse(&program, line.argc, line.argv, s, &request);
 }
 #define PARSE(s, ...) parse((s), (const char *const[8]){__VA_ARGS__})
 
@@ -377,7 +376,7 @@ static void test_help(void)
     CHECK(strstr(text, "--links N") && strstr(text, "default 12"), "with the present values as defaults");
     CHECK(strstr(text, "range=LOW:HIGH") && strstr(text, "default 0:none"), "and unlimited ends as none");
     free(text);
-    free(options.row);
+    free(options.own);
 }
 
 static void test_plain(void)
@@ -407,13 +406,11 @@ static moray_status parse_words(wordy *s, const char *const arguments[4])
     static const moray_option_group bodies[] = {{&body_table, offsetof(wordy, body)}};
     static const moray_program wordy_program = {
         .name = "w", .summary = "s", .groups = bodies, .n_groups = 1, .words = &words, .without = without};
-    char *argv[6] = {"w"};
-    int argc = 1;
+    command_line line;
+    command_set(&line, "w", arguments, 4);
     moray_request request;
-    for (int i = 0; i < 4 && arguments[i]; i++)
-        argv[argc++] = (char *)arguments[i];
     *s = (wordy){.common = moray_common_default()};
-    const moray_status status = moray_app_parse(&wordy_program, argc, argv, s, &request);
+    const moray_status status = moray_app_parse(&wordy_program, line.argc, line.argv, s, &request);
     if (request == MORAY_REQUEST_HELP) {
         char text[8192] = "";
         FILE *file = fmemopen(text, sizeof text, "w");

@@ -9,7 +9,7 @@
 #include "rk4.h"
 
 static const int rk4_steps = 40;
-static const moray_integrator rk4 = {rk4_run, (void *)&rk4_steps};
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
 // Too long for here; problems/classics solves them.
 static const char *const long_ones[] = {
@@ -40,12 +40,10 @@ static void test_one(const struct classic *classic)
     CHECK(result.agrees, "%s: %.10g, published %s%s%s", classic->name, result.value, classic->published,
           classic->computed ? ", by the data " : "", classic->computed ? classic->computed : "");
     if (classic->fixed_mesh)
-        CHECK(result.certificate.kkt < 100 * settings.tolerance && result.meshes == 1,
+        CHECK(result.certificate.kkt <= MORAY_LIMIT_KKT && result.meshes == 1,
               "%s: optimal on the published mesh: KKT %.1e", classic->name, result.certificate.kkt);
     else
-        CHECK(result.certificate.pass, "%s: KKT %.1e, mesh %.1e, between nodes %.1e, re-simulation %.1e", classic->name,
-              result.certificate.kkt, result.certificate.mesh_error, result.certificate.between_nodes,
-              result.certificate.resimulation);
+        CHECK(result.certificate.pass, "%s passes: %s", classic->name, result.certificate.why);
 }
 
 static void test_mesh_history(void)
@@ -57,7 +55,7 @@ static void test_mesh_history(void)
     CHECK_OK(classic_solve(classic, &settings, &rk4, &result, NULL, 0), classic->name);
     for (int k = 0; k < result.meshes; k++)
         iterations += result.mesh[k].iterations;
-    CHECK(result.meshes > 1 && result.mesh[0].intervals == classic->intervals &&
+    CHECK(result.meshes > 1 && result.mesh[0].intervals == settings.intervals &&
               result.mesh[result.meshes - 1].error <= settings.mesh_tolerance && iterations == result.iterations,
           "%d meshes, the first of %d intervals, the last with error %.1e", result.meshes, result.mesh[0].intervals,
           result.mesh[result.meshes - 1].error);

@@ -25,24 +25,65 @@ check "summary.json is what --json prints" cmp -s out results/summary.json
 check "the first line of trajectory.csv names and has units" \
     eval 'head -n 1 results/trajectory.csv | grep -q "^t \[s\],theta \[rad\],p_x \[m\]"'
 
-# ---- The whole pipeline: control-oriented optimum, first-principles optimum, proof
-run --json
+# ---- The whole pipeline: control-oriented optimum, first-principles optimum, the gait optimised for several models, proof
+run --json --jobs 2
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
-check "first-principles optimum gains at least 3.9 % at equal power: $(number gain speed_percent_at_equal_power)" \
-    awk -v g="$(number gain speed_percent_at_equal_power)" 'BEGIN { exit !(g >= 3.9) }'
+check "first-principles optimum gains at least 3.9 % at equal power: $(number first_principles_optimum speed_percent_at_equal_power)" \
+    awk -v g="$(number first_principles_optimum speed_percent_at_equal_power)" 'BEGIN { exit !(g >= 3.9) }'
 check "simulation confirms its speed" near "$(number predicted speed_m_s)" "$(number validated speed_m_s)" 1e-5
 check "simulation confirms its power" near "$(number predicted power_W)" "$(number validated power_W)" 1e-5
 check "the control-oriented optimum is beside it" near "$(number control_oriented_optimum delta_deg)" 34.9 0.1
+
+# rung MODEL: its gain in the first ladder of the JSON; BLOCK MODEL: in the first after BLOCK opens.
+rung() {
+    [ $# -eq 1 ] && set -- . "$1"
+    awk -v block="\"$1\":" -v model="\"$2\"" 'index($0, block) || block == "\".\":" { seen = 1 }
+        seen && /"model"/ && index($0, model) { found = 1 }
+        found && /gain_percent/ { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
+}
+
+# The ladder: the recommended gait's and the others', as an independent code has them (paper-notes, section 6).
+check "the gait optimised for the ladder is recommended: $(number recommended)" [ "$(number recommended)" = '"ladder_optimum"' ]
+check "it wins on all: $(number verdict)" eval 'number verdict | grep -q "\"wins on all 15"'
+for model in paper strip consistent; do
+    check "by 1.3 % or more on $model: $(rung $model)" awk -v g="$(rung $model)" 'BEGIN { exit !(g >= 1.3) }'
+done
+check "the worst of these gains is what was maximised: $(number over_gain_percent)" near "$(number over_gain_percent)" "$(rung consistent)" 1e-4
+check "simulated at equal power it gains what the ladder says" near "$(number gain speed_percent_at_equal_power)" "$(rung paper)" 1e-3
+check "three ladders of 15 rungs" [ "$(grep -c gain_percent_at_equal_power out)" = 45 ]
+for expected in paper:4.03 split2:1.09 split3:0.62 split5:0.39 strip:0.26; do
+    check "first-principles optimum on ${expected%:*}: $(rung first_principles_optimum ${expected%:*})" \
+        near "$(rung first_principles_optimum ${expected%:*})" ${expected#*:} 0.1
+done
+for expected in paper:-5.07 split2:-4.24 split3:-4.10 split5:-4.03 strip:-3.99; do
+    check "control-oriented optimum on ${expected%:*}: $(rung control_oriented_optimum ${expected%:*})" \
+        near "$(rung control_oriented_optimum ${expected%:*})" ${expected#*:} 0.1
+done
 if thorough; then
 run --json --set theta_max_deg=1:60
-check "at least 10.5 % with theta_max free: $(number gain speed_percent_at_equal_power)" \
-    eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" "BEGIN { exit !(g >= 10.5) }"'
+check "first-principles optimum: at least 10.5 % with theta_max free: $(number first_principles_optimum speed_percent_at_equal_power)" \
+    eval '[ $code -eq 0 ] && awk -v g="$(number first_principles_optimum speed_percent_at_equal_power)" "BEGIN { exit !(g >= 10.5) }"'
+for model in paper strip consistent; do
+    check "and the recommended gait 4.0 % or more on $model: $(rung $model)" awk -v g="$(rung $model)" 'BEGIN { exit !(g >= 4) }'
+done
 
-run --json --set theta_max_deg=1:60 --set taper=-1:1
+run --json --set theta_max_deg=1:60 --set taper=-1:1 --over none
 check "at least 11.5 % with a taper as well, larger at the tail: $(number gain speed_percent_at_equal_power)" \
     eval '[ $code -eq 0 ] && awk -v g="$(number gain speed_percent_at_equal_power)" -v t="$(number gait taper)" \
         "BEGIN { exit !(g >= 11.5 && t < -0.1 && t > -0.2) }"'
+check "without --over that is what is recommended" [ "$(number recommended)" = '"first_principles_optimum"' ]
 fi
+refuse 'over = strips: must be none or names of rungs' --over paper,strips
+refuse 'paper stands there twice' --over paper,paper
+
+# ---- Other robots: their paper's gait, and what is left out
+run --json --links 5 --over none
+check "the paper's gait for 5 links has delta = 2 pi/4" near "$(number baseline delta_deg)" 90 1e-9
+check "and its name: $(number baseline name)" [ "$(number baseline name)" = "\"the paper's gait for 5 links\"" ]
+check "delta may leave 90 deg: $(number gait delta_deg)" [ $code -eq 0 ]
+run --links 3 --set power_W=0.02
+check "no baseline that makes way: $code $(cat err)" eval '[ $code -eq 0 ] && grep -q "^Left out as a baseline on the first-principles model: the paper.s gait for 3 links" out'
+check "and so no ladder" grep -q 'is compared on none of 15' out
 
 run --quiet --model control --set taper=-0.8
 check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
@@ -50,9 +91,11 @@ check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, 
 run --quiet
 check "the table says plainly that the gait loses" grep -q 'LOSES on the first-principles model' out
 check "and puts both models' gains side by side" grep -q 'The control-oriented model itself predicted' out
+check "the headline has the range: $(grep ^Recommended out)" \
+    grep -q '^Recommended: the gait optimised for the ladder, .* it wins on all 15, from +1.3[0-9] to +3.7[0-9] %\.$' out
 
 # ---- Currents
-run --current 0.1,0.1 --json
+run --current 0.1,0.1 --json --over none
 check "a current it can stem: exit 0" [ $code -eq 0 ]
 run --current=-0.5,0
 check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.5000 m/s of it run against" err'

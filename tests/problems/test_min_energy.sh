@@ -30,7 +30,7 @@ run --model control --set speed_m_s=0.5 --set omega_deg_s=30:120
 check "a speed out of reach: $(cat err)" \
     eval '[ $code -eq 1 ] && grep -q "speed_m_s = 0.5: within the limits the robot makes 0.43[0-9]* m/s" err'
 run --model control --current=-0.3,0
-check "no speed to default to: $(cat err)" eval '[ $code -eq 1 ] && grep -q "speed_m_s: the paper.s gait, whose" err'
+check "no speed to default to: $(cat err)" eval '[ $code -eq 1 ] && grep -q "speed_m_s: its default is that of the paper.s gait, which is left out" err'
 run --json --model control --current=-0.3,0 --set speed_m_s=0.05
 check "though the robot can make one, and it pays to: $(number predicted course_speed_m_s) m/s over ground" \
     near "$(number predicted course_speed_m_s)" 0.3 5e-3

@@ -8,16 +8,16 @@
 
 #include "moray/app/run.h"
 
-struct world {
+static struct world {
     double gate, raise, undefined, crooked;
     int calls;
-};
+} the_world = {.gate = 1};
 
 static void move(const moray_node *at, moray_rates *out, const void *data)
 {
-    struct world *world = (struct world *)data;
-    if (world->raise > 0 && ++world->calls > 2500) { // in the solver
-        world->raise--;
+    const struct world *world = data;
+    if (the_world.raise > 0 && ++the_world.calls > 2500) { // in the solver
+        the_world.raise--;
         raise(SIGINT);
     }
     out->f[0] = at->x[1];
@@ -38,7 +38,6 @@ static void join(const moray_ends *at, moray_end_values *out, const void *data)
 
 int main(int argc, char **argv)
 {
-    struct world world = {.gate = 1};
     const char *const states[] = {"x", "v"}, *const controls[] = {"u"}, *const parameters[] = {"share"};
     const moray_bounds box[] = {moray_between(-5, 5), moray_between(-5, 5)};
     moray_phase_spec phase[2] = {{.name = "to the gate",
@@ -66,12 +65,12 @@ int main(int argc, char **argv)
                                  .ne = 4,
                                  .e = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0), moray_fixed(0), moray_fixed(0)),
                                  .endpoint = join,
-                                 .data = &world};
+                                 .data = &the_world};
     const moray_app_constant constants[] = {
-        {.key = "gate", .value = &world.gate, .unit = "m", .help = "where the phases meet"},
-        {.key = "raise", .value = &world.raise, .help = "how many times SIGINT comes"},
-        {.key = "crooked", .value = &world.crooked, .help = "whether a derivative is wrong"},
-        {.key = "undefined", .value = &world.undefined, .help = "whether the effort is undefined at u = 0"}};
+        {.key = "gate", .value = &the_world.gate, .unit = "m", .help = "where the phases meet"},
+        {.key = "raise", .value = &the_world.raise, .help = "how many times SIGINT comes"},
+        {.key = "crooked", .value = &the_world.crooked, .help = "whether a derivative is wrong"},
+        {.key = "undefined", .value = &the_world.undefined, .help = "whether the effort is undefined at u = 0"}};
     const char *const units[] = {"m", "m/s"}, *const force[] = {"N"}, *const effort[] = {"N^2 s"};
     const moray_app_units both[] = {{.x = units, .u = force, .q = effort}, {.x = units, .u = force, .q = effort}};
     return moray_app_run(&(moray_app){.spec = &spec,

@@ -9,7 +9,8 @@
 #include <stdio.h>
 
 #include "moray/export.h"
-#include "moray/nlp.h"
+#include "moray/key_value.h"
+#include "moray/status.h"
 
 MORAY_BEGIN
 
@@ -44,13 +45,20 @@ typedef struct moray_option {
 // .offset and .size of a row: {.key = "tol", MORAY_AT(moray_common, tol), ...}
 #define MORAY_AT(settings, field) .offset = offsetof(settings, field), .size = sizeof(((settings *)0)->field)
 
+// A row of a field, of a type without its prefix, with what else it has behind the key:
+//   MORAY_ROW(REAL, moray_common, tol, "solver", "tol", .max = 1, .open = true, .help = "tolerance of the solver")
+#define MORAY_ROW(kind, settings, field, part, name, ...)                                                              \
+    {                                                                                                                  \
+        .section = part, .key = name, .type = MORAY_OPTION_##kind, MORAY_AT(settings, field), __VA_ARGS__              \
+    }
+
 enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };
 
 // Options of Ipopt that the user names, for moray_settings.ipopt.
 enum { MORAY_IPOPT_OPTIONS = 32, MORAY_IPOPT_SIZE = 128 };
 typedef struct moray_ipopt_list {
     int n;
-    moray_ipopt_option at[MORAY_IPOPT_OPTIONS];       // [n], into text
+    moray_key_value at[MORAY_IPOPT_OPTIONS];          // [n], into text
     char text[MORAY_IPOPT_OPTIONS][MORAY_IPOPT_SIZE]; // key, 0, value
 } moray_ipopt_list;
 

@@ -54,6 +54,18 @@ MORAY_API void moray_json_numbers(moray_json *json, const char *key, const doubl
 MORAY_API void moray_json_text(moray_json *json, const char *key, const char *text); // NULL becomes null
 MORAY_API void moray_json_bool(moray_json *json, const char *key, bool value);
 
+// Numbers as a table: into the current object, or as one of their own inside it. In C:
+//   moray_json_object(json, "gait", MORAY_MEMBERS({"omega_deg_s", omega / DEG}, {"delta_deg", delta / DEG}));
+typedef struct moray_json_member {
+    const char *key;
+    double value;
+} moray_json_member;
+#define MORAY_MEMBERS(...)                                                                                             \
+    (const moray_json_member[]){__VA_ARGS__},                                                                          \
+        (int)(sizeof((const moray_json_member[]){__VA_ARGS__}) / sizeof(moray_json_member))
+MORAY_API void moray_json_members(moray_json *json, const moray_json_member *members, int n);
+MORAY_API void moray_json_object(moray_json *json, const char *key, const moray_json_member *members, int n);
+
 // Writes the whole object and a newline, and flushes. Error: MORAY_MEMORY (now or while building), MORAY_IO.
 MORAY_API moray_status moray_json_write(const moray_json *json, FILE *file);
 MORAY_API void moray_json_free(moray_json *json);

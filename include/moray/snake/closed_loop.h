@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Simulated closed_loops: a swimmer under a controller from a straight straight on, recorded and judged.
+// Simulated closed_loops: a swimmer under a controller from a straight motion on, recorded and judged.
 #ifndef MORAY_SNAKE_CLOSED_LOOP_H
 #define MORAY_SNAKE_CLOSED_LOOP_H
 

@@ -31,12 +31,18 @@ MORAY_API moray_status moray_straight_motion_find(moray_straight_motion *straigh
 MORAY_API moray_status moray_turn_rate(const moray_robot *robot, moray_model model, const moray_gait *gait,
                                        double *rate);
 
-// The state of a steering problem that swims so at t = 0, with this mean heading, in the current, from p = 0.
-MORAY_API void moray_straight_motion_start(const moray_straight_motion *straight, double heading,
-                                           const double current[2], double state[MORAY_STEERING_STATES]);
-
 // Heading at t without the undulation.
 MORAY_API double moray_straight_motion_heading(const moray_straight_motion *straight, double t, double heading);
+
+// ---- Plans made ----------------------------------------------------------------------------------------------------
+
+// A plan from t = 0 on that begins in the straight motion of its gait.
+typedef struct moray_steering_plan {
+    moray_steering_problem problem;
+    moray_solution *solution;
+    moray_straight_motion straight; // its speed is the start's, its undulation is what the heading is without
+} moray_steering_plan;
+MORAY_API void moray_steering_plan_free(moray_steering_plan *plan); // safe on a zeroed plan, and twice
 
 // ---- Plans carried out ---------------------------------------------------------------------------------------------
 
@@ -49,7 +55,7 @@ typedef struct moray_plan {
 MORAY_API moray_offset moray_plan_offset(const moray_plan *plan, double t);
 
 // Blindly. The plan must outlive the controller.
-MORAY_API moray_swim_controller moray_plan_controller(const moray_plan *plan);
+MORAY_API moray_swim_controller moray_plan_controller(moray_plan *plan);
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------
 

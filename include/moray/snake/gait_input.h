@@ -26,10 +26,7 @@ MORAY_API moray_gait_input moray_gait_input_default(void);
 
 // Rows of a table of options for the moray_gait_input at `field` of the settings.
 #define MORAY_GAIT_OPTION(settings, place, name, low, high, in, text)                                                  \
-    {                                                                                                                  \
-        .section = "gait", .key = name, .type = MORAY_OPTION_REAL, MORAY_AT(settings, place), .min = low, .max = high, \
-        .unit = in, .help = text                                                                                       \
-    }
+    MORAY_ROW(REAL, settings, place, "gait", name, .min = low, .max = high, .unit = in, .help = text)
 #define MORAY_GAIT_OPTIONS(settings, field)                                                                            \
     MORAY_GAIT_OPTION(settings, field.theta_max, "theta_max_deg", 0, 89, "deg",                                        \
                       "link-angle amplitude of (24); 20 unless an amplitude is given"),                                \

@@ -64,7 +64,8 @@ MORAY_API moray_gait moray_gait_from_parameters(const double s[MORAY_GAIT_PARAME
 MORAY_API void moray_gait_to_parameters(const moray_gait *gait, double s[MORAY_GAIT_PARAMETERS]);
 
 // Solves from the orbit of `gait` (parameters of the problem's model): a track over one period, from t = 0, p = 0, as
-// moray_swim_steady leaves it. Errors and result: those of moray_solve.
+// moray_swim_steady leaves it. MORAY_INPUT where gait or problem is of a series; other errors and result: those of
+// moray_solve.
 MORAY_API moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
                                                 const moray_gait *gait, const moray_swim_track *orbit,
                                                 moray_solution **solution);

@@ -44,7 +44,6 @@ typedef struct moray_heading_weights {
 // The problem of following the reference: the objective is the mean over [t0, t1] of the weighted sum. The error is
 // that of the heading without its undulation: the mean link angle of the first-principles model swings by some 4 deg
 // with every stroke, which no offset within its limits would stop.
-typedef struct moray_heading_task moray_heading_task;
 typedef struct moray_heading_spec {
     moray_robot robot;
     moray_model model;
@@ -59,33 +58,15 @@ typedef struct moray_heading_spec {
     double undulation[2];                // of the heading: factors of cos and sin of omega t [rad]
 } moray_heading_spec;
 
-typedef struct moray_heading {
-    moray_steering *steering;
-    moray_heading_task *task;
-} moray_heading;
-
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_heading_free.
-MORAY_API moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec);
-MORAY_API void moray_heading_free(moray_heading *problem);
-
-// A plan from t = 0 on that begins in the straight straight of its gait.
-typedef struct moray_heading_plan {
-    moray_heading problem;
-    moray_solution *solution;
-    moray_straight_motion
-        straight; // of its gait: its speed is the start's, its undulation is what the error leaves out
-} moray_heading_plan;
-
-// Solves; start and undulation of the spec are set by this, t0 is 0. On the averaged plant the gait is found within the
+// Plans; start and undulation of the spec are set by this, t0 is 0. On the averaged plant the gait is found within the
 // limits, from `gait` on. Elsewhere it is `gait`, whatever the limits of gait and power: the undulation's phase omega t
 // goes round so often that a free omega has a local optimum every fraction of a percent. Starts from the plan `from`
-// (of any model, averaged or not), or with NULL from the reference as though it were followed. Errors: those of
-// moray_heading_new, moray_straight_motion_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or
-// not. Free with moray_heading_plan_free.
-MORAY_API moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
+// (of any model, averaged or not), or with NULL from the reference as though it were followed. Errors:
+// MORAY_INPUT, those of moray_straight_motion_find and moray_solve. Returns MORAY_OK whenever the solver ran, solved or
+// not. Free with moray_steering_plan_free.
+MORAY_API moray_status moray_heading_plan_make(moray_steering_plan *plan, const moray_heading_spec *spec,
                                                const moray_settings *settings, const moray_gait *gait,
-                                               const moray_heading_plan *from);
-MORAY_API void moray_heading_plan_free(moray_heading_plan *plan); // safe on a zeroed plan, and twice
+                                               const moray_steering_plan *from);
 
 MORAY_END
 

@@ -20,7 +20,7 @@ typedef enum { MORAY_DRAG_LINEAR, MORAY_DRAG_QUADRATIC, MORAY_DRAG_BOTH } moray_
 typedef enum { MORAY_ADDED_MASS_PAPER, MORAY_ADDED_MASS_INVARIANT } moray_added_mass;
 typedef enum { MORAY_FRAME_PAPER, MORAY_FRAME_INVARIANT } moray_frame;
 typedef struct moray_hydrodynamics {
-    moray_rotation rotation; // drag and added mass at the centre of a link, or spread evenly along it
+    moray_rotation rotation; // drag and added mass at the centre of a link, or spread evenly along it in place of (4)
     moray_drag drag;         // the terms of (2) relative to the water: linear, quadratic, both (Remark 2, erratum E8)
     moray_added_mass added_mass; // (2) as printed, or the same to every observer who moves with a constant velocity
     moray_frame frame; // (15b), (15c) of the control-oriented model, or with theta' v_n, -theta' v_t (erratum E7)
@@ -31,9 +31,11 @@ typedef struct moray_hydrodynamics {
 // Strip, both drags, invariant added mass and frame.
 MORAY_API moray_hydrodynamics moray_hydrodynamics_consistent(void);
 
+enum { MORAY_MOST_LINKS = 1000 };
+
 // The robot. Every field is set; moray_robot_check says whether they make sense.
 typedef struct moray_robot {
-    int links;                           // N >= 2
+    int links;                           // N = 2..MORAY_MOST_LINKS
     double l;                            // half a link [m]; L = 2l (erratum E2)
     double m, J;                         // mass [kg] and moment of inertia [kg m^2] of a link
     double c_t, c_n;                     // tangential and normal drag per link [kg/s]
@@ -80,7 +82,8 @@ enum { MORAY_SERIES_HARMONICS = 12 }; // at most
 // for the control-oriented model, alpha and phi_0 in rad for the first-principles model. Where the offset moves,
 // offset_rate and offset_acceleration are phi_0' and phi_0'' at t, fed forward. Eel-like motion, beyond the paper, with
 // a negative taper: A_i = amplitude (1 + taper s_i) with s_i = 2 (i-1)/(N-2) - 1 from -1 at the first joint, the tail,
-// to 1 at the last (0 where N = 2). And beyond that, what swims heeds a series to be added, plants and orbits do not.
+// to 1 at the last (0 where N = 2). And beyond that, what swims heeds a
+// series to be added; what needs a gait (25) alone (orbits, searches, plans, comparisons on both models) refuses one.
 typedef struct moray_gait {
     double amplitude, omega, delta, offset, taper, offset_rate, offset_acceleration;
     const moray_series *series; // of the gait's omega, for N-1 joints; NULL: none

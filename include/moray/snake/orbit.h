@@ -46,6 +46,11 @@ typedef struct moray_orbit_result {
 // MORAY_MEMORY; MORAY_NOT_SOLVED when no orbit is found, as where the current across is stronger than the gait.
 MORAY_API moray_status moray_orbit_solve(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result);
 
+// Rescales gait->omega until the mean power on the orbit is `power` > 0 [W], to 1e-8 of it. Error: those of
+// moray_orbit_solve; MORAY_NOT_SOLVED when no omega is found.
+MORAY_API moray_status moray_orbit_match_power(moray_orbit *orbit, moray_gait *gait, double power,
+                                               moray_orbit_result *result);
+
 // The rest is of the last orbit found. Error of all: MORAY_INPUT when there is none, MORAY_MEMORY, MORAY_NUMERIC.
 
 // Derivatives by (amplitude, omega, delta, offset, taper), by the implicit function theorem: one solve with the

@@ -46,29 +46,11 @@ typedef struct moray_path_spec {
 
 // One control more than a steering problem has: the distance along the path. With a given duration the time gained is
 // what is made good at the end, along the course of the path where it should then be, at the typical speed.
-typedef struct moray_path_task moray_path_task;
-typedef struct moray_path_problem {
-    moray_steering *steering;
-    moray_path_task *task;
-} moray_path_problem;
-
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_path_problem_free.
-MORAY_API moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec);
-MORAY_API void moray_path_problem_free(moray_path_problem *problem);
-
-// A plan from t = 0 on that begins in the straight straight of its gait; see moray_heading_plan.
-typedef struct moray_path_plan {
-    moray_path_problem problem;
-    moray_solution *solution;
-    moray_straight_motion straight;
-} moray_path_plan;
-
 // Begins at the position, with this mean heading; `start`, `along`, `t0`, `duration` and `speed` of the spec are set by
 // this; the rest as moray_heading_plan_make. Error: MORAY_NOT_SOLVED too, where the path is not passable.
-MORAY_API moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *spec,
+MORAY_API moray_status moray_path_plan_make(moray_steering_plan *plan, const moray_path_spec *spec,
                                             const moray_settings *settings, const moray_gait *gait,
-                                            const double position[2], double heading, const moray_path_plan *from);
-MORAY_API void moray_path_plan_free(moray_path_plan *plan);
+                                            const double position[2], double heading, const moray_steering_plan *from);
 
 // Plans of a given length from any state on, in receding horizon.
 typedef struct moray_path_replanner {
@@ -87,12 +69,12 @@ MORAY_API moray_replanner moray_path_replan(moray_path_replanner *replanner);
 // / lookahead) in the same way.
 typedef struct moray_guidance {
     const moray_path *path;
-    const moray_path_plan *plan; // NULL: line of sight
-    double plan_scale;           // offsets of the swimmer per offset of the plan
-    double lookahead, ahead;     // [m]
-    double gain;                 // of the integral [m/s]
-    double period;               // between two measurements [s]
-    double along, integral;      // now; integral y [m]
+    const moray_steering_plan *plan; // NULL: line of sight
+    double plan_scale;               // offsets of the swimmer per offset of the plan
+    double lookahead, ahead;         // [m]
+    double gain;                     // of the integral [m/s]
+    double period;                   // between two measurements [s]
+    double along, integral;          // now; integral y [m]
 } moray_guidance;
 
 MORAY_API double moray_guidance_target(const moray_swim_sample *sample, void *guidance);         // of a moray_feedback

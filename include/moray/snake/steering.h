@@ -56,19 +56,14 @@ typedef struct moray_steering_spec {
 
 typedef struct moray_steering moray_steering;
 
-// Builds the problem: minimise sum weight_m q_m + weight_power x work + weight_time (tf - t0) + the task's own.
-// Error: MORAY_INPUT naming what is wrong, MORAY_MEMORY.
-MORAY_API moray_status moray_steering_new(moray_steering **problem, const moray_steering_spec *spec);
-MORAY_API void moray_steering_free(moray_steering *problem);
-MORAY_API const moray_ocp *moray_steering_ocp(const moray_steering *problem);
-MORAY_API const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem);
+// A problem with the task it owns; of a plan.
+typedef struct moray_steering_problem {
+    moray_steering *steering;
+    void *task;
+} moray_steering_problem;
 
-// The gait of a solution's or guess's parameters, offset 0, and back.
+// The gait of a solution's parameters, offset 0.
 MORAY_API moray_gait moray_steering_gait(const double s[MORAY_STEERING_PARAMETERS]);
-MORAY_API void moray_steering_parameters(const moray_gait *gait, double s[MORAY_STEERING_PARAMETERS]);
-
-// Joint work over the phase [J]; the task's integrals are the first of moray_solution_integrals.
-MORAY_API double moray_steering_work(const moray_steering *problem, const moray_solution *solution);
 
 // phi_0 at t, clamped to the phase; beyond its end the offset rests at its last value.
 MORAY_API moray_offset moray_steering_offset(const moray_solution *solution, double t);

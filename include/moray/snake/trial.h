@@ -5,7 +5,7 @@
 #define MORAY_SNAKE_TRIAL_H
 
 #include "moray/export.h"
-#include "moray/snake/gait_problem.h"
+#include "moray/snake/model.h"
 #include "moray/app/results.h"
 #include "moray/snake/swim.h"
 
@@ -35,7 +35,7 @@ typedef struct moray_gait_trial {
     moray_status why[2];
 } moray_gait_trial;
 
-// Tries the gait of `model` on both. Error: those of moray_swim_steady.
+// Tries the gait of `model` on both. Error: MORAY_INPUT (a series); those of moray_swim_steady.
 MORAY_API moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *gait, moray_model model,
                                             moray_gait_trial *trial);
 
@@ -48,7 +48,8 @@ MORAY_API moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_mo
 MORAY_API moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const moray_gait_trial *trial,
                                                moray_model model, double horizon, int n, double *time, double *speed);
 
-// theta_max 20 deg, omega 120 deg/s, delta 40 deg (Sec. V), as a gait of the control-oriented model.
+// The paper's gait for N links, theta_max 20 deg, omega 120 deg/s, delta = 2 pi/(N-1), 40 deg for its 10 (Assumption 2,
+// Sec. V), as a gait of the control-oriented model.
 MORAY_API moray_gait moray_gait_paper(const moray_robot *robot);
 
 // First-principles model: by how much the trial's gait beats the baseline's at the baseline's power (omega rescaled),

@@ -10,10 +10,9 @@
 
 MORAY_BEGIN
 
-// The problem of turning in the least time: at its end heading and turning are those of the straight straight, and the
+// The problem of turning in the least time: at its end heading and turning are those of the straight motion, and the
 // offset is back at rest. The heading swings with every stroke, and the stroke that the turn ends in is free: what is
 // to be reached is the heading without its undulation, factors of cos and sin of omega t at whatever time it ends.
-typedef struct moray_turn_task moray_turn_task;
 typedef struct moray_turn_spec {
     moray_robot robot;
     moray_model model;
@@ -29,28 +28,12 @@ typedef struct moray_turn_spec {
     double undulation[2];                // of the heading [rad]
 } moray_turn_spec;
 
-typedef struct moray_turn {
-    moray_steering *steering;
-    moray_turn_task *task;
-} moray_turn;
-
-// Error: those of moray_steering_new, and MORAY_INPUT. Free with moray_turn_free.
-MORAY_API moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec);
-MORAY_API void moray_turn_free(moray_turn *problem);
-
-// A plan from t = 0, p = 0 and mean heading 0 on, in the straight straight of its gait; see moray_heading_plan.
-typedef struct moray_turn_plan {
-    moray_turn problem;
-    moray_solution *solution;
-    moray_straight_motion straight;
-} moray_turn_plan;
-
-// `start`, `undulation` and the times of the spec are set by this; the rest as moray_heading_plan_make. `turn_rate`:
-// how fast the robot turns with its offset at the limit, for the guess and the longest time [rad/s].
-MORAY_API moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec,
+// A plan from p = 0 and mean heading 0 on. `start`, `undulation` and the times of the spec are set by this; the rest as
+// moray_heading_plan_make. `turn_rate`: how fast the robot turns with its offset at the limit, for the guess and the
+// longest time [rad/s].
+MORAY_API moray_status moray_turn_plan_make(moray_steering_plan *plan, const moray_turn_spec *spec,
                                             const moray_settings *settings, const moray_gait *gait, double turn_rate,
-                                            const moray_turn_plan *from, double stretch);
-MORAY_API void moray_turn_plan_free(moray_turn_plan *plan); // safe on a zeroed plan, and twice
+                                            const moray_steering_plan *from, double stretch);
 
 MORAY_END
 

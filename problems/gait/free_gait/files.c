@@ -36,6 +36,7 @@ static void json_motion(moray_json *json, const free_gait *run, const motion *m)
     json_swum(json, run, &m->at);
     moray_json_number(json, "prediction_off_by", free_gait_disagreement(m));
     json_gain(json, "gain", &m->at.gain);
+    gait_job_json_ladder(json, &m->at);
     json_gain(json, "gain_over_best_gait", &m->over_best);
     json_gain(json, "gain_over_gait_alike", &m->over_alike);
     moray_solver_to_json(json, m->at.solution);

@@ -113,6 +113,23 @@ static moray_status make_waves(const free_gait *run, struct waves *waves)
     return moray_ok();
 }
 
+// Gains on the ladder; a table has room for so many motions, the last are left out.
+static moray_table ladder_table(const free_gait *run, moray_table_row rows[MORAY_RUNGS])
+{
+    const moray_ladder_row *ladders[COLUMNS] = {last_stage(&run->job)->ladder};
+    const int n = run->n + 1 < COLUMNS ? run->n + 1 : COLUMNS;
+    moray_table table = {.title = "Gain in speed at the power of the paper's gait, on the ladder of models",
+                         .columns = {"best gait (25)"},
+                         .n_columns = n,
+                         .rows = rows};
+    for (int k = 1; k < n; k++) {
+        ladders[k] = run->motion[k - 1].at.ladder;
+        table.columns[k] = run->motion[k - 1].name;
+    }
+    table.n_rows = moray_ladder_rows(ladders, n, rows);
+    return table;
+}
+
 // ---- In words ------------------------------------------------------------------------------------------------------
 
 static void say_gain(const moray_gait_gain *gain, const char *whom, char *text)
@@ -145,6 +162,8 @@ static void find_words(const free_gait *run, char *text)
     say_gain(&m->over_best, "the best gait (25)", text);
     moray_text_add(text, TEXT, "; ");
     say_gain(&m->over_alike, "the gait (25) within the same limits", text);
+    moray_text_add(text, TEXT, ".\nIn speed at the power of the paper's gait the free motion ");
+    moray_ladder_verdict(m->at.ladder, m->at.found_on, text, TEXT);
     moray_text_add(
         text, TEXT, ".\nThe %s model itself predicted %+.2f %% speed on the gait (25) within the same limits.\n",
         moray_model_name(best->model), 100 * (m->at.prediction.speed / run->motion[0].at.prediction.speed - 1));
@@ -176,13 +195,13 @@ moray_status free_gait_report(gait_job *job)
 {
     const free_gait *run = (const free_gait *)job;
     char text[TEXT] = "";
-    moray_table_row rows[ROWS];
+    moray_table_row rows[ROWS], gains[MORAY_RUNGS];
     struct waves waves;
     MORAY_TRY(make_waves(run, &waves));
     find_words(run, text);
-    const moray_table tables[] = {motions_table(run, rows), waves.table};
+    const moray_table tables[] = {motions_table(run, rows), ladder_table(run, gains), waves.table};
     const moray_report report = {
-        .title = job->name, .text = text, .tables = tables, .n_tables = waves.table.n_columns > 0 ? 2 : 1};
+        .title = job->name, .text = text, .tables = tables, .n_tables = waves.table.n_columns > 0 ? 3 : 2};
     const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
                                                                               .found = run,
                                                                               .summary = free_gait_summary,

@@ -9,7 +9,9 @@ static const char *const joint_forms[] = {"on-gait", "closed-loop", NULL};
 static const moray_option shared[] = {
     GAIT_RANGE("theta_max_deg", theta_max, 0, 89, "deg", "link-angle amplitude of (24)"),
     GAIT_RANGE("omega_deg_s", omega, 1, 3600, "deg/s", "gait frequency"),
-    GAIT_RANGE("delta_deg", delta, 1, 179, "deg", "phase shift between joints"),
+    GAIT_RANGE("delta_deg", delta, 1, 179, "deg",
+               "phase shift between joints; by default from 0.375 to 2.25 times the paper's 2 pi/(N-1), and 15 to 90 deg at "
+               "least, 150 deg at most"),
     GAIT_RANGE("phi0_m", offset, -1, 1, "m", "joint offset of the control-oriented model"),
     GAIT_RANGE("phi0_deg", offset_angle, -90, 90, "deg", "joint offset of the first-principles model"),
     GAIT_RANGE("taper", taper, -1, 1, NULL,
@@ -18,7 +20,7 @@ static const moray_option shared[] = {
     GAIT_LIMIT("joint_rate", joint_rate, NULL,
                "rate amplitude of the joints (m/s; deg/s with the first-principles model)"),
     GAIT_LIMIT("joint_effort", joint_effort, NULL,
-               "peak joint force at the nodes of the mesh, which then has 60 intervals (N; torque in N m with the "
+               "peak joint force at the nodes of the mesh, which then has 80 intervals (N; torque in N m with the "
                "complex model)"),
     {.section = "problem",
      .key = "joints",
@@ -33,12 +35,19 @@ static const moray_option shared[] = {
      .min = 0,
      .max = 10000,
      .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"},
+    {.flag = "jobs",
+     .argument = "N",
+     .type = MORAY_OPTION_INT,
+     MORAY_AT(gait_job, jobs),
+     .min = 0,
+     .max = 1000,
+     .help = "processes for what can be done at the same time; 0: one a processor"},
 };
 
 static const moray_option continuation = MORAY_CONTINUE(gait_job, from_file);
 
 // A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
-enum { usual_intervals = 12, effort_intervals = 60 };
+enum { usual_intervals = 12, effort_intervals = 80 };
 
 gait_job gait_job_defaults(const gait_program *program)
 {
@@ -48,47 +57,82 @@ gait_job gait_job_defaults(const gait_program *program)
                     .goal = program->goal,
                     .theta_max = {1 * DEG, 20 * DEG},
                     .omega = {30 * DEG, 360 * DEG},
-                    .delta = {15 * DEG, 90 * DEG},
+                    .delta = {NAN, NAN},
                     .offset = {-0.02, 0.02},
                     .offset_angle = {-10 * DEG, 10 * DEG},
                     .power = program->power,
                     .speed = program->speed,
                     .joint_rate = INFINITY,
-                    .joint_effort = INFINITY};
+                    .joint_effort = INFINITY,
+                    .refinements = 3};
     job.snake.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "lobatto5");
     job.common.intervals = usual_intervals;
     return job;
 }
 
-// The speed asked for, which the paper's gait may not make at all.
-static moray_status speed_demand(const gait_job *job, stage *at)
+const char *gait_job_baseline(const gait_job *job, char text[64])
 {
-    at->speed = isinf(job->speed) ? 0 : job->speed;
-    if (!isnan(job->speed))
-        return moray_ok();
-    if (!job->paper.held[at->model])
-        return moray_error(MORAY_NOT_SOLVED,
-                           "speed_m_s: the paper's gait, whose speed is the default, fails: %.250s; give a speed",
-                           job->paper.why[at->model].text);
-    at->speed = moray_course_speed(&job->paper.steady[at->model], job->snake.course);
+    const int links = job->snake.robot.links;
+    if (links == moray_robot_paper().links)
+        snprintf(text, 64, "the paper's gait");
+    else
+        snprintf(text, 64, "the paper's gait for %d links", links);
+    return text;
+}
+
+// A number asked for, by default the paper's gait's, which may have none.
+static moray_status demand(const gait_job *job, moray_model model, const char *key, double given, double paper,
+                           double *value)
+{
+    char baseline[64];
+    *value = isnan(given) ? paper : given;
+    if (isnan(given) && !(paper > 0))
+        return moray_error(MORAY_NOT_SOLVED, "%s: its default is that of %s, which is left out: %.150s; give %s", key,
+                           gait_job_baseline(job, baseline), job->no_paper[model].text, key);
     return moray_ok();
 }
 
+// The user's limit of the power is that of the model asked for: the other one has another power at the same gait.
 moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at)
 {
+    const moray_steady *paper = &job->paper.steady[model];
+    const double power = model == job->snake.model || isinf(job->power) ? job->power : NAN;
     at->model = model;
+    at->found_on = gait_job_found_on(job, model);
     memcpy(at->taper, job->taper, sizeof at->taper);
-    at->power = isnan(job->power) ? job->paper.steady[model].power : job->power;
-    return speed_demand(job, at);
+    MORAY_TRY(demand(job, model, "power_W", power, paper->power, &at->power));
+    if (isinf(job->speed)) {
+        at->speed = 0;
+        return moray_ok();
+    }
+    const double speed = job->paper.held[model] ? moray_course_speed(paper, job->snake.course) : NAN;
+    return demand(job, model, "speed_m_s", job->speed, speed, &at->speed);
 }
 
-moray_status gait_job_prove(gait_job *job, stage *at)
+void gait_job_try(const gait_job *job, const moray_gait *gait, moray_model from, moray_gait_trial *trial)
 {
+    const moray_steady none = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, false, NAN, 0};
+    for (int model = 0; model < 2; model++) {
+        trial->gait[model] = moray_gait_map(&job->snake.robot, gait, from, (moray_model)model);
+        const moray_status status = moray_gait_trial_swim(&job->rig, (moray_model)model, trial);
+        if (!moray_failed(status))
+            continue;
+        trial->steady[model] = none;
+        trial->held[model] = false;
+        trial->why[model] = status;
+    }
+}
+
+void gait_job_prove(gait_job *job, stage *at)
+{
+    const moray_status no_paper = job->no_paper[MORAY_FIRST_PRINCIPLES];
     moray_ticker_show(&job->ticker, "%s: the optimised gait on both models", job->name);
-    MORAY_TRY(moray_gait_trial_run(&job->rig, &at->prediction.gait, at->model, &at->trial));
-    at->gain = moray_gait_gain_over(&job->rig, &at->trial, &job->paper);
-    return moray_ok();
+    gait_job_try(job, &at->prediction.gait, at->model, &at->trial);
+    if (moray_failed(no_paper))
+        at->gain = (moray_gait_gain){NAN, NAN, NAN, no_paper, no_paper};
+    else
+        at->gain = moray_gait_gain_over(&job->rig, &at->trial, &job->paper);
 }
 
 // Leaves the best solution so far for --continue.
@@ -109,7 +153,27 @@ static moray_status optimise_and_prove(gait_job *job, moray_model model, const g
     if (status.code == MORAY_INTERRUPTED && at->solution)
         return keep_iterate(job, at);
     MORAY_TRY(status);
-    return gait_job_prove(job, at);
+    gait_job_prove(job, at);
+    return moray_ok();
+}
+
+// By delta = 2 pi/(N-1) of the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and longer robots, and not
+// near 180 deg, where (33) has no amplitude.
+static void delta_range(double delta[2], double paper)
+{
+    const double least = 0.375, most = 2.25; // of it
+    if (isnan(delta[0]))
+        delta[0] = fmin(15 * DEG, least * paper);
+    if (isnan(delta[1]))
+        delta[1] = fmin(fmax(90 * DEG, most * paper), 150 * DEG);
+}
+
+// Why the paper's gait is no baseline on a model, where it is not.
+static moray_status baseline_check(const gait_job *job, moray_model model)
+{
+    if (!job->paper.held[model])
+        return job->paper.why[model];
+    return moray_makes_way(&job->snake.robot, &job->paper.gait[model], &job->paper.steady[model]);
 }
 
 moray_status gait_job_prepare(gait_job *job)
@@ -119,31 +183,86 @@ moray_status gait_job_prepare(gait_job *job)
     int stages;
     if (isfinite(job->joint_effort) && job->common.intervals == usual_intervals)
         job->common.intervals = effort_intervals;
+    delta_range(job->delta, paper.delta);
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     MORAY_TRY(moray_test_rig_new(&job->rig, &job->snake.robot, job->snake.current, job->snake.course));
     moray_ticker_show(&job->ticker, "%s: the paper's gait on both models", job->name);
-    return moray_gait_trial_run(&job->rig, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
+    gait_job_try(job, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
+    for (int model = 0; model < 2; model++)
+        job->no_paper[model] = baseline_check(job, (moray_model)model);
+    return moray_ok();
+}
+
+// Whether an error is one of the computation, which leaves a stage out, or ends the program.
+static bool leaves_out(moray_status status)
+{
+    return status.code == MORAY_NOT_SOLVED || status.code == MORAY_NUMERIC;
+}
+
+// The model that was not asked for, whose optimum is one more start and one more column.
+static moray_status work_on_other(gait_job *job)
+{
+    stage *at = &job->stage[MORAY_CONTROL_ORIENTED];
+    const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
+    const moray_status status = optimise_and_prove(job, MORAY_CONTROL_ORIENTED, &one);
+    if (job->snake.model == MORAY_CONTROL_ORIENTED || !leaves_out(status))
+        return status;
+    at->left_out = true;
+    at->why = status;
+    return moray_ok();
+}
+
+static moray_status work_on_ladder(gait_job *job)
+{
+    const gait_starts known = {{job->stage[MORAY_FIRST_PRINCIPLES].trial.gait[MORAY_FIRST_PRINCIPLES],
+                                job->paper.gait[MORAY_FIRST_PRINCIPLES]},
+                               2};
+    const moray_status status = gait_job_over(job, &known);
+    if (status.code == MORAY_INTERRUPTED)
+        return keep_iterate(job, last_stage(job));
+    if (!leaves_out(status))
+        return status;
+    job->ladder.left_out = true;
+    job->ladder.why = status;
+    return moray_ok();
 }
 
 moray_status gait_job_work(gait_job *job)
 {
+    rungs over;
+    MORAY_TRY(gait_job_rungs(job, &over));
     MORAY_TRY(gait_job_prepare(job));
-    const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
-    MORAY_TRY(optimise_and_prove(job, MORAY_CONTROL_ORIENTED, &one));
-    if (job->snake.model == MORAY_CONTROL_ORIENTED)
-        return moray_ok();
-    const gait_starts two = {{job->stage[MORAY_CONTROL_ORIENTED].trial.gait[MORAY_FIRST_PRINCIPLES],
-                              job->paper.gait[MORAY_FIRST_PRINCIPLES]},
-                             2};
-    return optimise_and_prove(job, MORAY_FIRST_PRINCIPLES, &two);
+    MORAY_TRY(work_on_other(job));
+    stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES) {
+        gait_starts known = {{job->paper.gait[MORAY_FIRST_PRINCIPLES]}, 1};
+        if (!control->left_out)
+            known = (gait_starts){{control->trial.gait[MORAY_FIRST_PRINCIPLES], known.gait[0]}, 2};
+        MORAY_TRY(optimise_and_prove(job, MORAY_FIRST_PRINCIPLES, &known));
+        if (over.n > 0)
+            MORAY_TRY(work_on_ladder(job));
+    }
+    return gait_job_climb(job, (stage *const[]){control, revolute, &job->ladder}, GAIT_STAGES);
 }
 
 bool gait_job_certified(const gait_job *job)
 {
+    const stage *at[GAIT_STAGES];
+    const int n = gait_job_stages(job, at);
     bool pass = true;
-    for (int model = 0; model <= (int)job->snake.model; model++)
-        pass = pass && job->stage[model].certificate.pass;
+    for (int k = 0; k < n; k++)
+        pass = pass && at[k]->certificate.pass;
     return pass;
+}
+
+int gait_job_stages(const gait_job *job, const stage *at[GAIT_STAGES])
+{
+    const stage *const all[GAIT_STAGES] = {&job->stage[0], &job->stage[1], &job->ladder};
+    int n = 0;
+    for (int k = 0; k < GAIT_STAGES; k++)
+        if (all[k]->solution && !all[k]->left_out)
+            at[n++] = all[k];
+    return n;
 }
 
 void gait_job_stage_free(stage *at)
@@ -151,14 +270,17 @@ void gait_job_stage_free(stage *at)
     moray_solution_free(at->solution);
     moray_solution_free(at->from);
     moray_gait_problem_free(at->problem);
+    moray_gait_over_free(at->over);
     at->solution = at->from = NULL;
     at->problem = NULL;
+    at->over = NULL;
 }
 
 void gait_job_free(gait_job *job)
 {
     for (int model = 0; model < 2; model++)
         gait_job_stage_free(&job->stage[model]);
+    gait_job_stage_free(&job->ladder);
     moray_test_rig_free(&job->rig);
 }
 

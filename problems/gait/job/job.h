@@ -19,14 +19,25 @@ typedef struct stage {
     double speed; // least speed along the course [m/s], or 0
     double taper[2];
     double link_angle; // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
-    moray_gait_problem *problem;
+    moray_gait_problem *problem;     // of the one, or
+    moray_gait_over *over;           // of the one gait for several models, of which
+    int phase;                       // this is the one whose prediction is shown
     moray_solution *solution, *from; // from: of --continue, where it is of this stage
     int starts, agreeing;            // how many, and how many of them ended at the best solution
     moray_certificate certificate;
     moray_gait_prediction prediction;
     moray_gait_trial trial;
     moray_gait_gain gain; // over the paper's gait
+    moray_ladder_row ladder[MORAY_RUNGS];
+    unsigned found_on; // rungs, as of moray_ladder_verdict
+    bool left_out;     // there is no such gait, because of
+    moray_status why;
 } stage;
+
+// The models of a gait that is optimised for several.
+typedef struct rungs {
+    int n, at[MORAY_RUNGS];
+} rungs;
 
 struct gait_job {
     moray_common common;
@@ -38,16 +49,27 @@ struct gait_job {
     double joint_rate, joint_effort;
     moray_joints joints;
     int random_starts, refinements;  // refinements: finer meshes tried where the first does not pass the certificate
+    char over[MORAY_PATH_SIZE];      // names of rungs, empty: none
+    int over_goal;                   // a moray_over_goal
+    int jobs;                        // processes; 0: one a processor
     char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
     moray_test_rig rig;
     moray_gait_trial paper;
-    stage stage[2]; // by model
+    moray_status no_paper[2]; // by model: why it cannot be swum; ok where it is
+    stage stage[2];           // by model
+    stage ladder;             // the gait optimised for job->over; used where `over` is
     moray_ticker ticker;
 };
 
 static inline const stage *last_stage(const gait_job *job)
 {
     return &job->stage[job->snake.model];
+}
+
+// The gait that the program recommends.
+static inline const stage *recommended(const gait_job *job)
+{
+    return job->ladder.solution && !job->ladder.left_out ? &job->ladder : last_stage(job);
 }
 
 #define GAIT_RANGE(name, field, low, high, in, text)                                                                   \
@@ -123,8 +145,6 @@ moray_settings gait_job_settings(gait_job *job);
 moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
                             moray_solution **solution);
 
-moray_settings gait_job_settings(gait_job *job); // of every solve
-
 // Keeps the better of a solution, which it takes over, and of what the stage has; counts how many agree.
 void gait_job_keep_best(stage *at, moray_solution *solution);
 
@@ -142,8 +162,32 @@ moray_gait gait_job_random(const gait_job *job, const stage *at); // by drand48,
 // Certificate of a stage's solution. Error: those of moray_certify.
 moray_status gait_job_certify(gait_job *job, stage *at);
 
-// Swims the predicted gait on both models, and compares it with the paper's. Error: those of moray_gait_trial_run.
-moray_status gait_job_prove(gait_job *job, stage *at);
+// Swims the gait of a model on both. Where it cannot be swum the numbers are NaN, the reason in trial->why.
+void gait_job_try(const gait_job *job, const moray_gait *gait, moray_model model, moray_gait_trial *trial);
+
+// The same of the predicted gait, and compares it with the paper's.
+void gait_job_prove(gait_job *job, stage *at);
+
+// Optimises job->ladder for the models of job->over, from the gaits known. Where that cannot be, or there is no
+// baseline on one of the models, it is left out, with its reason. Error: MORAY_INPUT (over), MORAY_MEMORY,
+// MORAY_INTERRUPTED.
+moray_status gait_job_over(gait_job *job, const gait_starts *known);
+
+// The names in job->over. Error: MORAY_INPUT.
+moray_status gait_job_rungs(const gait_job *job, rungs *over);
+
+// The rungs that are of the model on which a gait of the job is found.
+unsigned gait_job_found_on(const gait_job *job, moray_model model);
+
+// Ladders of the first-principles gaits of n stages over the paper's. Error: those of moray_ladder_climb.
+moray_status gait_job_climb(const gait_job *job, stage *const *at, int n);
+
+// "the paper's gait", with "for 5 links" where the robot has not the paper's 10.
+const char *gait_job_baseline(const gait_job *job, char text[64]);
+
+// The stages that have a gait, in the order in which they were found; returns how many.
+enum { GAIT_STAGES = 3 };
+int gait_job_stages(const gait_job *job, const stage *at[GAIT_STAGES]);
 
 // Problem, best solution from the starts and random ones, prediction and certificate of a stage whose model, power,
 // speed and taper are set. Error: MORAY_NOT_SOLVED saying why, MORAY_INTERRUPTED, and those of the above.
@@ -153,6 +197,13 @@ moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *know
 void gait_job_json_head(moray_json *json, const gait_job *job);
 void gait_job_json_prediction(moray_json *json, const moray_gait_prediction *prediction);
 void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at);
+
+// "ladder" and "verdict" of a stage that has climbed.
+enum { GAIT_TEXT = 1500 };
+void gait_job_json_ladder(moray_json *json, const stage *at);
+
+// Adds to text[GAIT_TEXT] which gait is recommended, and what the ladder says of it.
+void gait_job_headline(const gait_job *job, char *text);
 
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);

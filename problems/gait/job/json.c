@@ -37,6 +37,14 @@ static void json_solver(moray_json *json, const stage *at)
     moray_certificate_to_json(json, &at->certificate);
 }
 
+void gait_job_json_ladder(moray_json *json, const stage *at)
+{
+    char verdict[GAIT_TEXT] = "";
+    moray_ladder_verdict(at->ladder, at->found_on, verdict, sizeof verdict);
+    moray_ladder_to_json(json, at->ladder);
+    moray_json_text(json, "verdict", verdict);
+}
+
 void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
 {
     moray_json_number(json, "power_limit_W", at->power);
@@ -46,22 +54,58 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
     moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, job->snake.course);
     moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, job->snake.course);
     json_gain(json, &at->gain);
+    if (at->ladder[0].model)
+        gait_job_json_ladder(json, at);
     json_solver(json, at);
+}
+
+static void json_other(moray_json *json, const char *key, const gait_job *job, const stage *at)
+{
+    moray_json_open(json, key);
+    if (at->left_out)
+        moray_json_text(json, "left_out", at->why.text);
+    else
+        gait_job_json_stage(json, job, at);
+    moray_json_close(json);
+}
+
+// Which gait the first keys are of, and what it was optimised for.
+static void json_recommended(moray_json *json, const gait_job *job, const stage *best)
+{
+    const char *const kinds[] = {"control_oriented_optimum", "first_principles_optimum"};
+    moray_json_text(json, "recommended", best == &job->ladder ? "ladder_optimum" : kinds[job->snake.model]);
+    if (best != &job->ladder)
+        return;
+    moray_json_text(json, "over", job->over);
+    moray_json_text(json, "over_goal", job->over_goal == MORAY_OVER_WORST ? "worst" : "mean");
+    moray_json_number(json, "over_gain_percent", 100 * moray_gait_over_gain(best->solution));
+}
+
+static void json_baseline(moray_json *json, const gait_job *job)
+{
+    char name[64];
+    moray_json_open(json, "baseline");
+    moray_json_text(json, "name", gait_job_baseline(job, name));
+    moray_gait_to_json(json, "gait", &job->snake.robot, job->paper.gait);
+    moray_steady_to_json(json, "predicted", MORAY_CONTROL_ORIENTED, &job->paper, job->snake.course);
+    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
+    if (moray_failed(job->no_paper[MORAY_FIRST_PRINCIPLES]))
+        moray_json_text(json, "left_out", job->no_paper[MORAY_FIRST_PRINCIPLES].text);
+    moray_json_close(json);
 }
 
 void gait_job_summary(const void *found, moray_json *json)
 {
     const gait_job *job = found;
+    const stage *best = recommended(job);
     gait_job_json_head(json, job);
-    gait_job_json_stage(json, job, last_stage(job));
-    moray_json_open(json, "baseline");
-    moray_gait_to_json(json, "gait", &job->snake.robot, job->paper.gait);
-    moray_steady_to_json(json, "predicted", MORAY_CONTROL_ORIENTED, &job->paper, job->snake.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
-    moray_json_close(json);
-    if (job->snake.model == MORAY_FIRST_PRINCIPLES) {
-        moray_json_open(json, "control_oriented_optimum");
-        gait_job_json_stage(json, job, &job->stage[MORAY_CONTROL_ORIENTED]);
-        moray_json_close(json);
-    }
+    json_recommended(json, job, best);
+    gait_job_json_stage(json, job, best);
+    json_baseline(json, job);
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES)
+        json_other(json, "control_oriented_optimum", job, &job->stage[MORAY_CONTROL_ORIENTED]);
+    if (best == &job->ladder)
+        json_other(json, "first_principles_optimum", job, &job->stage[MORAY_FIRST_PRINCIPLES]);
+    else if (job->ladder.left_out)
+        json_other(json, "ladder_optimum", job, &job->ladder);
 }

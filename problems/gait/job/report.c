@@ -7,12 +7,19 @@
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
-enum { text_size = 1000 };
+enum { text_size = GAIT_TEXT };
 
 static double percent(double value, double reference)
 {
     const double change = 100 * (value / reference - 1);
     return fabs(change) < 0.005 ? 0 : change; // no -0.00
+}
+
+static const char *kind_of(const gait_job *job, const stage *at)
+{
+    if (at == &job->ladder)
+        return "gait optimised for the ladder";
+    return at->model == MORAY_CONTROL_ORIENTED ? "control-oriented optimum" : "first-principles optimum";
 }
 
 // "at the paper gait's power there (0.2646 W) it is 4.03 % faster" and "at its speed ... it needs 7.65 % less power",
@@ -38,15 +45,12 @@ static void judge(const gait_job *job, const stage *at, char *text)
     const double faster = at->gain.speed_percent_at_equal_power, less = -at->gain.power_percent_at_equal_speed;
     const double gain = fastest ? faster : less, other = fastest ? less : faster;
     const moray_steady *here = &job->paper.steady[at->model];
-    const char *name = moray_model_name(at->model);
-    text[0] = 0;
     if (isnan(gain)) {
-        moray_text_add(text, text_size,
-                       "The %s optimum: no comparison at equal %s on the first-principles model: %.250s", name,
+        moray_text_add(text, text_size, "no comparison at equal %s on the first-principles model: %.250s",
                        fastest ? "power" : "speed", fastest ? at->gain.why_no_speed.text : at->gain.why_no_power.text);
         return;
     }
-    moray_text_add(text, text_size, "The %s optimum %s on the first-principles model: ", name,
+    moray_text_add(text, text_size, "%s on the first-principles model: ",
                    gain < -0.05  ? "LOSES"
                    : gain > 0.05 ? "wins"
                                  : "neither wins nor loses");
@@ -55,45 +59,109 @@ static void judge(const gait_job *job, const stage *at, char *text)
         moray_text_add(text, text_size, ", ");
         say_gain(job, &at->gain, !fastest, false, text);
     }
-    moray_text_add(text, text_size, ". The %s model itself predicted %+.2f %% speed for %+.2f %% power.", name,
-                   percent(at->prediction.speed, here->speed), percent(at->prediction.power, here->power));
+    moray_text_add(text, text_size, ". The %s model itself predicted %+.2f %% speed for %+.2f %% power",
+                   moray_model_name(at->model), percent(at->prediction.speed, here->speed),
+                   percent(at->prediction.power, here->power));
+}
+
+void gait_job_headline(const gait_job *job, char *text)
+{
+    const double nothing = 5e-4;
+    const stage *at = recommended(job);
+    const moray_gait *gait = &at->trial.gait[MORAY_FIRST_PRINCIPLES];
+    const double theta_max = moray_theta_max_from_amplitude(&job->snake.robot, MORAY_FIRST_PRINCIPLES, gait->amplitude,
+                                                            gait->delta);
+    char baseline[64];
+    moray_text_add(text, text_size,
+                   "Recommended: the %s, theta_max %.4g deg, delta %.4g deg, omega %.4g deg/s. In speed at the power of "
+                   "%s it ",
+                   kind_of(job, at), theta_max / DEG, gait->delta / DEG, gait->omega / DEG,
+                   gait_job_baseline(job, baseline));
+    moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
+    moray_text_add(text, text_size, ".");
+    if (at == &job->ladder && moray_gait_over_gain(at->solution) < nothing)
+        moray_text_add(text, text_size, " No gait was found that gains on all of %.100s.", job->over);
+}
+
+static void say_stage(const gait_job *job, const stage *at, char *text)
+{
+    text[0] = 0;
+    moray_text_add(text, text_size, "The %s ", kind_of(job, at));
+    moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
+    moray_text_add(text, text_size, "; ");
+    judge(job, at, text);
+    moray_text_add(text, text_size, ".");
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
-enum { tables = 3 };
+enum { tables = 4, columns_most = 1 + GAIT_STAGES };
 
 struct tables {
     moray_table table[tables];
-    moray_table_row rows[tables][MORAY_TRIAL_ROWS];
+    moray_table_row rows[tables][MORAY_RUNGS];
 };
+_Static_assert((int)MORAY_RUNGS >= (int)MORAY_TRIAL_ROWS, "room for every table");
+
+static const char *column_of(const gait_job *job, const stage *at)
+{
+    if (at == &job->ladder)
+        return "ladder opt.";
+    return at->model == MORAY_CONTROL_ORIENTED ? "control opt." : "first-pr. opt.";
+}
+
+// The paper's gait and those found.
+static int make_columns(const gait_job *job, const moray_gait_trial *trials[columns_most],
+                        const moray_ladder_row *ladders[columns_most], const char *names[columns_most])
+{
+    const stage *at[GAIT_STAGES];
+    const int n = gait_job_stages(job, at);
+    trials[0] = &job->paper;
+    names[0] = "paper's";
+    for (int k = 0; k < n; k++) {
+        trials[k + 1] = &at[k]->trial;
+        ladders[k] = at[k]->ladder;
+        names[k + 1] = column_of(job, at[k]);
+    }
+    return n + 1;
+}
 
 static void make_tables(const gait_job *job, struct tables *t)
 {
-    const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
-    const int columns = 2 + (int)job->snake.model;
+    const moray_gait_trial *trials[columns_most];
+    const moray_ladder_row *ladders[columns_most];
+    const char *names[columns_most];
+    const int columns = make_columns(job, trials, ladders, names);
     const double course = job->snake.course;
     const int rows[tables] = {
         moray_gait_rows(&job->snake.robot, trials, columns, t->rows[0]),
         moray_steady_rows(MORAY_CONTROL_ORIENTED, trials, columns, course, t->rows[1]),
         moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, course, t->rows[2]),
+        moray_ladder_rows(ladders, columns - 1, t->rows[3]),
     };
     const char *const titles[tables] = {"Gait", "Swum on the control-oriented model",
-                                        "Swum on the first-principles model"};
-    for (int k = 0; k < tables; k++)
-        t->table[k] = (moray_table){.title = titles[k],
-                                    .columns = {"paper's", "control opt.", "first-pr. opt."},
-                                    .n_columns = columns,
-                                    .rows = t->rows[k],
-                                    .n_rows = rows[k]};
+                                        "Swum on the first-principles model",
+                                        "Gain in speed at the power of the paper's gait, on the ladder of models"};
+    for (int k = 0; k < tables; k++) {
+        const int first = k == tables - 1;
+        t->table[k] = (moray_table){
+            .title = titles[k], .n_columns = columns - first, .rows = t->rows[k], .n_rows = rows[k]};
+        for (int c = 0; c < columns - first; c++)
+            t->table[k].columns[c] = names[c + first];
+    }
 }
 
-// "; WHAT 1 UNIT (control-oriented model) and 2 UNIT (first-principles model)"
-static void print_demand(const gait_job *job, const char *what, double control, double revolute, const char *unit)
+// "; WHAT 1 UNIT (control-oriented model) and 2 UNIT (first-principles model)", by model
+static void print_demand(const gait_job *job, const char *what, const double by[2], const char *unit)
 {
-    printf("; %s %.4g %s (%s model)", what, control, unit, moray_model_name(MORAY_CONTROL_ORIENTED));
-    if (job->snake.model == MORAY_FIRST_PRINCIPLES)
-        printf(" and %.4g %s (%s model)", revolute, unit, moray_model_name(MORAY_FIRST_PRINCIPLES));
+    const char *before = "; ";
+    for (int model = 0; model <= (int)job->snake.model; model++) {
+        if (job->stage[model].left_out)
+            continue;
+        printf("%s%s%.4g %s (%s model)", before, what, by[model], unit, moray_model_name((moray_model)model));
+        before = " and ";
+        what = "";
+    }
 }
 
 void gait_job_print_head(const gait_job *job)
@@ -105,33 +173,59 @@ void gait_job_print_head(const gait_job *job)
 
 static void print_demands(const gait_job *job)
 {
-    const stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
+    const stage *asked = last_stage(job), *control = &job->stage[MORAY_CONTROL_ORIENTED];
     gait_job_print_head(job);
-    if (isfinite(control->power))
-        print_demand(job, "mean joint power at most", control->power, revolute->power, "W");
-    if (control->speed > 0)
-        print_demand(job, "speed along the course at least", control->speed, revolute->speed, "m/s");
+    if (isfinite(asked->power))
+        print_demand(job, "mean joint power at most ", (double[]){control->power, asked->power}, "W");
+    if (asked->speed > 0)
+        print_demand(job, "speed along the course at least ", (double[]){control->speed, asked->speed}, "m/s");
     printf("\n\n");
+}
+
+static void print_left_out(const gait_job *job)
+{
+    const stage *const all[GAIT_STAGES] = {&job->stage[0], &job->stage[1], &job->ladder};
+    char baseline[64];
+    for (int model = 0; model < 2; model++)
+        if (moray_failed(job->no_paper[model]))
+            printf("Left out as a baseline on the %s model: %s: %s\n\n", moray_model_name(model),
+                   gait_job_baseline(job, baseline), job->no_paper[model].text);
+    for (int k = 0; k < GAIT_STAGES; k++)
+        if (all[k]->left_out)
+            printf("Left out: the %s: %s\n\n", kind_of(job, all[k]), all[k]->why.text);
+}
+
+static void print_solver(const gait_job *job, const stage *at)
+{
+    char text[text_size];
+    moray_solver_line(at->solution, job->common.scheme, job->common.intervals, text, text_size);
+    if (at == &job->ladder)
+        printf("%s together, %s", job->over, text);
+    else
+        printf("%s model, %s", moray_model_name(at->model), text);
+    printf("; %d of %d starts end here, none better\n", at->agreeing, at->starts);
+    moray_certificate_line(&at->certificate, text, text_size);
+    printf("    %s\n", text);
 }
 
 static void print(const void *found, const moray_report *report)
 {
     const gait_job *job = found;
-    char text[text_size];
+    const stage *at[GAIT_STAGES];
+    const int n = gait_job_stages(job, at);
+    char text[text_size] = "";
     print_demands(job);
     moray_tables_print(report->tables, report->n_tables, stdout);
-    for (int model = 0; model <= (int)job->snake.model; model++) {
-        judge(job, &job->stage[model], text);
+    for (int k = 0; k < n; k++) {
+        say_stage(job, at[k], text);
         printf("%s\n\n", text);
     }
-    for (int model = 0; model <= (int)job->snake.model; model++) {
-        const stage *at = &job->stage[model];
-        moray_solver_line(at->solution, job->common.scheme, job->common.intervals, text, text_size);
-        printf("%s model, %s; %d of %d starts end here, none better\n", moray_model_name(model), text, at->agreeing,
-               at->starts);
-        moray_certificate_line(&at->certificate, text, text_size);
-        printf("    %s\n", text);
-    }
+    print_left_out(job);
+    text[0] = 0;
+    gait_job_headline(job, text);
+    printf("%s\n\n", text);
+    for (int k = 0; k < n; k++)
+        print_solver(job, at[k]);
 }
 
 // ---- Files ---------------------------------------------------------------------------------------------------------
@@ -154,11 +248,11 @@ moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_out
     char(*joint_names)[16] = calloc((size_t)joints, sizeof *joint_names);
     moray_status status = data && columns && joint_names ? moray_ok() : moray_error(MORAY_MEMORY, "no memory");
     double t0, tf, *x = data + samples * width, *phi = x + states;
-    moray_solution_times(at->solution, 0, &t0, &tf);
+    moray_solution_times(at->solution, at->phase, &t0, &tf);
     for (int k = 0; k < samples && !moray_failed(status); k++) {
         double *row = data + k * width;
         row[0] = t0 + (tf - t0) * k / (samples - 1);
-        moray_solution_at(at->solution, 0, row[0], x, NULL);
+        moray_solution_at(at->solution, at->phase, row[0], x, NULL);
         memcpy(row + 1, x + full, 3 * sizeof *row);
         memcpy(row + 4, x + states - 3, 3 * sizeof *row);
         moray_gait_reference(&at->prediction.gait, joints, row[0], phi, phi + joints, phi + 2 * joints);
@@ -189,23 +283,26 @@ moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_out
 static moray_status draw_start(const void *found, moray_output *output)
 {
     const gait_job *job = found;
-    enum { points = 301, most = 6 };
+    enum { points = 301, most = 2 * columns_most };
     const double horizon = 15;
-    const char *const labels[most] = {
-        "paper's gait, control-oriented model",      "control optimum, control-oriented model",
-        "first-pr. optimum, control-oriented model", "paper's gait, first-principles model",
-        "control optimum, first-principles model",   "first-pr. optimum, first-principles model"};
-    const int gaits = 2 + (int)job->snake.model;
-    const moray_gait_trial *const trials[] = {&job->paper, &job->stage[0].trial, &job->stage[1].trial};
+    const moray_gait_trial *trials[columns_most];
+    const moray_ladder_row *ladders[columns_most];
+    const char *names[columns_most];
+    const int gaits = make_columns(job, trials, ladders, names);
+    char labels[most][64];
     double *data = calloc((most + 1) * points, sizeof *data), *time = data + most * points;
     moray_curve curves[most];
     moray_status status = data ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a figure");
     int n = 0;
     for (int model = 0; model < 2; model++)
-        for (int k = 0; k < gaits && !moray_failed(status); k++, n++) {
+        for (int k = 0; k < gaits && !moray_failed(status); k++) {
             double *speed = data + n * points;
+            if (isnan(trials[k]->steady[model].speed))
+                continue;
             status = moray_gait_trial_speeds(&job->rig, trials[k], (moray_model)model, horizon, points, time, speed);
-            curves[n] = (moray_curve){.label = labels[3 * model + k], .x = time, .y = speed, .n = points};
+            snprintf(labels[n], sizeof *labels, "%s, %s model", names[k], moray_model_name((moray_model)model));
+            curves[n] = (moray_curve){.label = labels[n], .x = time, .y = speed, .n = points};
+            n++;
         }
     const moray_figure figure = {.name = "start",
                                  .title = "From rest: speed along the course, mean over the last period",
@@ -222,15 +319,15 @@ static moray_status draw_start(const void *found, moray_output *output)
 static moray_status write(const void *found, moray_output *output)
 {
     const gait_job *job = found;
-    return gait_job_trajectory(job, last_stage(job), output);
+    return gait_job_trajectory(job, recommended(job), output);
 }
 
 moray_status gait_job_report(gait_job *job)
 {
     struct tables t;
-    char text[text_size];
+    char text[text_size] = "";
     make_tables(job, &t);
-    judge(job, last_stage(job), text);
+    gait_job_headline(job, text);
     const moray_report report = {.title = job->name, .text = text, .tables = t.table, .n_tables = tables};
     return moray_app_show(&job->common, &(moray_results){.name = job->name,
                                                          .found = job,

@@ -183,6 +183,7 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
 {
     const int random = at->model == job->snake.model ? job->random_starts : 0;
     const int first = at->from ? known->n : 0;
+    moray_status first_failure = moray_ok();
     srand48(1);
     at->starts = (at->from ? 1 : known->n) + random;
     if (at->from)
@@ -193,10 +194,10 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
         if (!moray_failed(status))
             gait_job_keep_best(at, solution);
-        else if (k == 0)
-            return status;
+        else if (!moray_failed(first_failure))
+            first_failure = status;
     }
-    return moray_ok();
+    return at->solution ? moray_ok() : first_failure;
 }
 
 // ---- Explaining ----------------------------------------------------------------------------------------------------

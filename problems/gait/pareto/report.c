@@ -3,7 +3,7 @@
 
 #include "pareto.h"
 
-enum { text_size = 2400 };
+enum { text_size = 4000 };
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
@@ -94,6 +94,24 @@ static bool repeats(const pareto_front *front)
     return front->kind == 2 && pareto_is_lateral(front);
 }
 
+// How many gaits of a front win on every model of the ladder, and the range of all their gains.
+static void say_ladder(const pareto_front *front, char *text)
+{
+    double least = INFINITY, most = -INFINITY;
+    int win = 0;
+    for (int k = 0; k < front->n; k++) {
+        const moray_ladder_count count = moray_ladder_counted(front->at[k].ladder, front->at[k].found_on);
+        win += count.n > 0 && count.wins == count.n;
+        least = fmin(least, count.least);
+        most = fmax(most, count.most);
+    }
+    if (isfinite(least))
+        moray_text_add(text, text_size,
+                       "%s model, %s: on the ladder of models, at the power of the paper's gait, %d of %d gaits win on all "
+                       "models; gains from %+.1f to %+.1f %%.\n",
+                       moray_model_name(front->model), pareto_kinds[front->kind], win, front->n, least, most);
+}
+
 static void find_words(const pareto *run, char *text)
 {
     const int kinds = run->fronts / (1 + (int)run->job.snake.model);
@@ -110,6 +128,9 @@ static void find_words(const pareto *run, char *text)
     for (int kind = 0; kind < kinds && run->fronts > kinds; kind++)
         if (!repeats(&run->front[kind]))
             say_shortfall(run, &run->front[kind], &run->front[kinds + kind], text);
+    for (int f = 0; f < run->fronts; f++)
+        if (!repeats(&run->front[f]))
+            say_ladder(&run->front[f], text);
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
@@ -119,6 +140,30 @@ struct sheet {
     char title[120], label[PARETO_POINTS][32];
     moray_table_row row[PARETO_POINTS];
 };
+
+// Gains of a front's gaits on the ladder: some rungs, and how the others lie.
+static void fill_ladder(const pareto_front *front, const struct sheet *like, struct sheet *sheet)
+{
+    static const char *const shown[] = {"paper", "split3", "strip", "quadratic", "consistent"};
+    enum { n_shown = sizeof shown / sizeof *shown };
+    snprintf(sheet->title, sizeof sheet->title, "%s optima, %s: gain at the power of the paper's gait, %% of speed",
+             moray_model_name(front->model), pareto_kinds[front->kind]);
+    sheet->table = (moray_table){.title = sheet->title,
+                                 .columns = {shown[0], shown[1], shown[2], shown[3], shown[4], "least", "most", "wins"},
+                                 .n_columns = n_shown + 3,
+                                 .rows = sheet->row,
+                                 .n_rows = front->n};
+    for (int k = 0; k < front->n; k++) {
+        const moray_ladder_row *ladder = front->at[k].ladder;
+        const moray_ladder_count count = moray_ladder_counted(ladder, front->at[k].found_on);
+        sheet->row[k] = (moray_table_row){.label = like->label[k]};
+        for (int i = 0; i < n_shown; i++)
+            sheet->row[k].value[i] = ladder[moray_rung_named(shown[i])].gain_percent;
+        sheet->row[k].value[n_shown] = count.least;
+        sheet->row[k].value[n_shown + 1] = count.most;
+        sheet->row[k].value[n_shown + 2] = count.wins;
+    }
+}
 
 static void fill_sheet(const pareto *run, const pareto_front *front, struct sheet *sheet)
 {
@@ -149,7 +194,7 @@ static void print(const void *found, const moray_report *report)
     printf(": fastest gaits within ever less mean joint power; columns f.-p.: swum on the first-principles model\n\n");
     for (int f = 0; f < run->fronts; f++)
         if (!repeats(&run->front[f]))
-            moray_tables_print(&report->sections->tables[f], 1, stdout);
+            moray_tables_print(&report->sections->tables[2 * f], 2, stdout);
     printf("%s", report->sections->text);
 }
 
@@ -157,17 +202,19 @@ moray_status pareto_report(gait_job *job)
 {
     const pareto *run = (const pareto *)job;
     char text[text_size] = "";
-    moray_table tables[PARETO_FRONTS];
-    struct sheet *sheets = calloc(PARETO_FRONTS, sizeof *sheets);
+    moray_table tables[2 * PARETO_FRONTS];
+    struct sheet *sheets = calloc(2 * PARETO_FRONTS, sizeof *sheets);
     if (!sheets)
         return moray_error(MORAY_MEMORY, "no memory for a report");
     find_words(run, text);
     for (int f = 0; f < run->fronts; f++) {
-        fill_sheet(run, &run->front[f], &sheets[f]);
-        tables[f] = sheets[f].table;
+        fill_sheet(run, &run->front[f], &sheets[2 * f]);
+        fill_ladder(&run->front[f], &sheets[2 * f], &sheets[2 * f + 1]);
+        tables[2 * f] = sheets[2 * f].table;
+        tables[2 * f + 1] = sheets[2 * f + 1].table;
     }
     const moray_section section = {
-        .title = "Fronts", .text = text, .figures = "", .tables = tables, .n_tables = run->fronts};
+        .title = "Fronts", .text = text, .figures = "", .tables = tables, .n_tables = 2 * run->fronts};
     const moray_report report = {.title = job->name, .sections = &section, .n_sections = 1};
     const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
                                                                               .found = run,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <stdlib.h>
+#include <string.h>
 
 #include "search_gait.h"
 
@@ -22,7 +23,7 @@ static const char *unit_of(const search_gait *run)
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
-enum { TABLES = 3, ROWS = 10 };
+enum { TABLES = 4, ROWS = MORAY_RUNGS };
 
 struct tables {
     moray_table table[TABLES];
@@ -65,22 +66,27 @@ static int search_rows(const search_gait *run, moray_table_row *rows)
 static void make_tables(const search_gait *run, struct tables *t)
 {
     const moray_gait_trial *trials[1 + SEARCH_GAIT_SHOWN] = {&run->job.paper};
-    for (int k = 0; k < run->shown; k++)
+    const moray_ladder_row *ladders[SEARCH_GAIT_SHOWN];
+    for (int k = 0; k < run->shown; k++) {
         trials[k + 1] = &run->optimum[k].at.trial;
+        ladders[k] = run->optimum[k].at.ladder;
+    }
     const int columns = 1 + run->shown;
     const int rows[TABLES] = {
         moray_gait_rows(&run->spec.robot, trials, columns, t->rows[0]),
         search_rows(run, t->rows[1]),
         moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, run->spec.course, t->rows[2]),
+        moray_ladder_rows(ladders, run->shown, t->rows[3]),
     };
-    const char *const titles[TABLES] = {"Gait", "Found", "Swum on the first-principles model"};
-    for (int k = 0; k < TABLES; k++)
+    const char *const titles[TABLES] = {"Gait", "Found", "Swum on the first-principles model",
+                                        "Gain in speed at the power of the paper's gait, on the ladder of models"};
+    const char *const names[] = {"paper's", "optimum 1", "optimum 2", "optimum 3", "optimum 4", "optimum 5"};
+    for (int k = 0; k < TABLES; k++) {
+        const int first = k == TABLES - 1;
         t->table[k] =
-            (moray_table){.title = titles[k],
-                          .columns = {"paper's", "optimum 1", "optimum 2", "optimum 3", "optimum 4", "optimum 5"},
-                          .n_columns = columns,
-                          .rows = t->rows[k],
-                          .n_rows = rows[k]};
+            (moray_table){.title = titles[k], .n_columns = columns - first, .rows = t->rows[k], .n_rows = rows[k]};
+        memcpy(t->table[k].columns, names + first, (size_t)(columns - first) * sizeof *names);
+    }
 }
 
 // ---- In words ------------------------------------------------------------------------------------------------------
@@ -124,6 +130,16 @@ static void say_found(const search_gait *run, char *text)
     moray_text_add(text, TEXT, ".");
 }
 
+static void say_ladders(const search_gait *run, char *text)
+{
+    for (int k = 0; k < run->shown; k++) {
+        const stage *at = &run->optimum[k].at;
+        moray_text_add(text, TEXT, "Optimum %d ", k + 1);
+        moray_ladder_verdict(at->ladder, at->found_on, text, TEXT);
+        moray_text_add(text, TEXT, ".\n");
+    }
+}
+
 static double largest_difference(const search_gait *run)
 {
     double most = 0;
@@ -152,6 +168,7 @@ static void print(const void *found, const moray_report *report)
     moray_tables_print(report->tables, report->n_tables, stdout);
     say_found(run, text);
     moray_text_add(text, TEXT, "\n");
+    say_ladders(run, text);
     say_certificates(run, text);
     printf("%s\n", text);
 }
@@ -246,6 +263,7 @@ moray_status search_gait_report(search_gait *run)
     make_tables(run, &t);
     say_found(run, text);
     moray_text_add(text, TEXT, " ");
+    say_ladders(run, text);
     say_certificates(run, text);
     const moray_report report = {.title = "search_gait", .text = text, .tables = t.table, .n_tables = TABLES};
     return moray_app_show(&run->job.common, &(moray_results){.name = "search_gait",

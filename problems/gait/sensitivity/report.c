@@ -217,14 +217,16 @@ static void print(const void *found, const moray_report *report)
 {
     const sensitivity *run = found;
     const moray_section *section = report->sections;
-    char text[500];
+    char text[GAIT_TEXT] = "";
     gait_job_print_head(&run->job);
     if (isfinite(last_stage(&run->job)->power))
         printf("; mean joint power at most %.4g W whatever changes", last_stage(&run->job)->power);
     printf("\n\n");
     moray_tables_print(section->tables, section->n_tables, stdout);
-    moray_certificate_line(&last_stage(&run->job)->certificate, text, sizeof text);
+    gait_job_headline(&run->job, text);
     printf("%s%s\n", section->text, text);
+    moray_certificate_line(&last_stage(&run->job)->certificate, text, sizeof text);
+    printf("%s\n", text);
 }
 
 moray_status sensitivity_report(gait_job *job)

@@ -92,7 +92,7 @@ moray_status heading_fig8_prepare(heading_job *job)
 
 void heading_fig8_compare(const heading_job *job, moray_model model, double match[FIG8_VALUES])
 {
-    const moray_solution *solution = job->plan[model].solution;
+    const moray_solution *solution = job->steer.plan[model].solution;
     const int n = (int)ceil(per_second * job->horizon);
     int count[FIG8_VALUES] = {0};
     for (int i = 0; i < FIG8_VALUES; i++)
@@ -132,7 +132,7 @@ moray_status heading_fig8_draw(const heading_job *job)
         double *found = paper + n * points;
         const double scale = steer_offset_ratio(&job->steer, 1 + model, (moray_model)model, MORAY_FIRST_PRINCIPLES);
         for (int k = 0; k < points; k++)
-            found[k] = scale * moray_steering_offset(job->plan[model].solution, t[k]).value / DEG;
+            found[k] = scale * moray_steering_offset(job->steer.plan[model].solution, t[k]).value / DEG;
         curves[n++] = (moray_curve){.label = labels[model], .x = t, .y = found, .n = points};
     }
     const moray_status status =

@@ -8,7 +8,7 @@ typedef struct hunt {
     heading_job *job;
     moray_heading_spec spec;
     moray_orbit *orbit;
-    moray_heading_plan best; // from which the next begins
+    moray_steering_plan best; // from which the next begins
 } hunt;
 
 // The fastest gait of this theta_max and delta, within the limits of omega and straight-ahead power. False where even
@@ -42,7 +42,7 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
 {
     hunt *h = self;
     heading_job *job = h->job;
-    moray_heading_plan plan;
+    moray_steering_plan plan;
     moray_gait gait;
     (void)c, (void)gradient, (void)jacobian;
     if (!fastest_gait(h, x[0], x[1], &gait))
@@ -51,7 +51,7 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     settings.scheme = "radau3";
     settings.tolerance = 1e-5;
     settings.max_refinements = 0;
-    const moray_heading_plan *from = h->best.solution ? &h->best : &job->plan[MORAY_CONTROL_ORIENTED];
+    const moray_steering_plan *from = h->best.solution ? &h->best : &job->steer.plan[MORAY_CONTROL_ORIENTED];
     if (moray_failed(moray_heading_plan_make(&plan, &h->spec, &settings, &gait, from)))
         return false;
     job->gaits_tried++;
@@ -62,12 +62,12 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     if (solved && job->gaits_tried == 1)
         job->first_objective = *f;
     if (solved && *f < job->best_objective) {
-        const moray_heading_plan before = h->best;
+        const moray_steering_plan before = h->best;
         job->best_objective = *f;
         h->best = plan;
         plan = before;
     }
-    moray_heading_plan_free(&plan); // the worse of the two
+    moray_steering_plan_free(&plan); // the worse of the two
     return solved;
 }
 
@@ -94,7 +94,7 @@ static moray_status search(hunt *h, const moray_gait *start)
     return status;
 }
 
-moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_heading_plan *best)
+moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_steering_plan *best)
 {
     hunt h = {.job = job, .spec = heading_spec(job, MORAY_FIRST_PRINCIPLES, false)};
     job->first_objective = job->best_objective = INFINITY;

@@ -12,7 +12,6 @@ typedef struct heading_job {
     int gait_evaluations;
     // found along the way
     moray_reference reference;
-    moray_heading_plan averaged, plan[2];
     // by the search for the gait of the first-principles plan
     int gaits_tried;
     double first_objective, best_objective; // on its coarse mesh
@@ -51,7 +50,7 @@ moray_settings heading_settings(heading_job *job, bool averaged, double period);
 // The gait whose first-principles plan has the least objective on a coarse mesh, within the limits of gait and
 // straight-ahead power, from `start` on; its plan must be freed even after an error. Error: those of moray_search;
 // MORAY_NOT_SOLVED when no gait gets by with the power.
-moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_heading_plan *best);
+moray_status heading_search_gait(heading_job *job, const moray_gait *start, moray_steering_plan *best);
 
 // What keeps the robot from following more closely, in one paragraph.
 void heading_explain(const steer_job *job, char *text, size_t size);

@@ -61,7 +61,7 @@ void heading_explain(const steer_job *steer, char *text, size_t size)
             water, speed);
 }
 
-static moray_status why_not(const heading_job *job, const moray_heading_plan *plan)
+static moray_status why_not(const heading_job *job, const moray_steering_plan *plan)
 {
     const double jump = largest_jump(job), fastest = moray_reference_fastest(&job->reference, 0, job->horizon);
     const double sustained = fabs(job->steer.turn_rate[plan->straight.model]);
@@ -93,19 +93,19 @@ moray_settings heading_settings(heading_job *job, bool averaged, double period)
 }
 
 static moray_status make_plan(heading_job *job, moray_model model, const moray_gait *gait,
-                              const moray_heading_plan *from)
+                              const moray_steering_plan *from)
 {
     const moray_heading_spec spec = heading_spec(job, model, false);
     moray_settings settings = heading_settings(job, false, 2 * M_PI / gait->omega);
-    if (from->straight.model == model && from != &job->averaged)
+    if (from->straight.model == model && from != &job->steer.plan[STEER_AVERAGED])
         settings.barrier = 1e-6;
-    moray_heading_plan *plan = &job->plan[model];
+    moray_steering_plan *plan = &job->steer.plan[model];
     MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, gait, from));
     const moray_gait kept = moray_steering_gait(moray_solution_parameters(plan->solution));
     MORAY_TRY(steer_find_turn_rate(&job->steer, model, &kept));
     if (moray_solution_info(plan->solution)->outcome != MORAY_NLP_SOLVED)
         return why_not(job, plan);
-    MORAY_TRY(steer_take_plan(&job->steer, (int)model, plan->solution, &plan->straight));
+    MORAY_TRY(steer_take_plan(&job->steer, (int)model));
     return steer_straight_motions(&job->steer, 1 + (int)model, &plan->straight.gait, model);
 }
 
@@ -114,11 +114,12 @@ moray_status heading_plan_first(heading_job *job)
     steer_job *steer = &job->steer;
     const moray_gait paper = moray_gait_paper(&steer->snake.robot), first = steer_first_gait(steer);
     MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
+    moray_steering_plan *first_plan = &steer->plan[STEER_AVERAGED];
     const moray_heading_spec averaged = heading_spec(job, MORAY_CONTROL_ORIENTED, true);
     const moray_settings coarse = heading_settings(job, true, 2 * M_PI / first.omega);
-    MORAY_TRY(moray_heading_plan_make(&job->averaged, &averaged, &coarse, &first, NULL));
-    MORAY_TRY(steer_take_plan(steer, STEER_AVERAGED, job->averaged.solution, &job->averaged.straight));
-    return make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged.straight.gait, &job->averaged);
+    MORAY_TRY(moray_heading_plan_make(first_plan, &averaged, &coarse, &first, NULL));
+    MORAY_TRY(steer_take_plan(steer, STEER_AVERAGED));
+    return make_plan(job, MORAY_CONTROL_ORIENTED, &first_plan->straight.gait, first_plan);
 }
 
 moray_status heading_plan_last(heading_job *job)
@@ -127,11 +128,11 @@ moray_status heading_plan_last(heading_job *job)
     const moray_gait gait =
         moray_gait_map(&job->steer.snake.robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
     if (job->gait_evaluations == 0 || steer_gait_given(&job->steer))
-        return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->plan[MORAY_CONTROL_ORIENTED]);
-    moray_heading_plan best;
+        return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->steer.plan[MORAY_CONTROL_ORIENTED]);
+    moray_steering_plan best;
     moray_status status = heading_search_gait(job, &gait, &best);
     if (!moray_failed(status))
         status = make_plan(job, MORAY_FIRST_PRINCIPLES, &best.straight.gait, &best);
-    moray_heading_plan_free(&best);
+    moray_steering_plan_free(&best);
     return status;
 }

@@ -273,11 +273,7 @@ static moray_status work(steer_job *steer)
 
 static void release(steer_job *steer)
 {
-    heading_job *job = (heading_job *)steer;
-    moray_heading_plan_free(&job->averaged);
-    for (int model = 0; model < 2; model++)
-        moray_heading_plan_free(&job->plan[model]);
-    moray_reference_free(&job->reference);
+    moray_reference_free(&((heading_job *)steer)->reference);
 }
 
 const steer_program heading_steering = {

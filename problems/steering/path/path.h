@@ -15,7 +15,6 @@ typedef struct path_job {
     bool find_gait;
     // found along the way
     moray_path path;
-    moray_path_plan averaged, plan[2];
     double speed; // straight ahead through the water, by the model of the last plan made [m/s]
 } path_job;
 

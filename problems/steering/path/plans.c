@@ -51,7 +51,7 @@ static const moray_path_piece *tightest(const path_job *job)
 void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, double *planned)
 {
     enum { points = 4000 };
-    const steer_plan *plan = steer_last_plan(&job->steer);
+    const moray_steering_plan *plan = steer_last_plan(&job->steer);
     const double *V = job->steer.snake.current, speed = plan->straight.speed, course = leg->course;
     double t0, tf, x[MORAY_STEERING_STATES], u[2], sum = 0;
     int n = 0;
@@ -101,7 +101,7 @@ void path_explain(const steer_job *steer, char *text, size_t size)
     steer_say_saturation(steer, text, size);
 }
 
-static moray_status why_not(const path_job *job, const moray_path_plan *plan)
+static moray_status why_not(const path_job *job, const moray_steering_plan *plan)
 {
     char text[400] = "";
     const moray_path_piece *corner = tightest(job);
@@ -125,7 +125,7 @@ static moray_settings settings_of(path_job *job, bool averaged, const moray_stra
 }
 
 static moray_status solve(path_job *job, moray_model model, bool averaged, const moray_gait *gait,
-                          const moray_path_plan *from, moray_path_plan *plan)
+                          const moray_steering_plan *from, moray_steering_plan *plan)
 {
     const moray_path_spec spec = path_spec(job, model, averaged);
     moray_straight_motion straight;
@@ -138,13 +138,13 @@ static moray_status solve(path_job *job, moray_model model, bool averaged, const
     MORAY_TRY(steer_interruption());
     if (moray_solution_info(plan->solution)->outcome != MORAY_NLP_SOLVED)
         return why_not(job, plan);
-    return steer_take_plan(&job->steer, averaged ? STEER_AVERAGED : (int)model, plan->solution, &plan->straight);
+    return steer_take_plan(&job->steer, averaged ? STEER_AVERAGED : (int)model);
 }
 
-static moray_status make_plan(path_job *job, moray_model model, const moray_gait *gait, const moray_path_plan *from)
+static moray_status make_plan(path_job *job, moray_model model, const moray_gait *gait, const moray_steering_plan *from)
 {
-    MORAY_TRY(solve(job, model, false, gait, from, &job->plan[model]));
-    return steer_straight_motions(&job->steer, 1 + (int)model, &job->plan[model].straight.gait, model);
+    MORAY_TRY(solve(job, model, false, gait, from, &job->steer.plan[model]));
+    return steer_straight_motions(&job->steer, 1 + (int)model, &job->steer.plan[model].straight.gait, model);
 }
 
 moray_status path_make_plans(path_job *job)
@@ -155,12 +155,13 @@ moray_status path_make_plans(path_job *job)
     if (isnan(job->heading))
         job->heading = job->path.piece->course;
     MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
-    MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, true, &first, NULL, &job->averaged));
-    MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &job->averaged.straight.gait, &job->averaged));
+    MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, true, &first, NULL, &steer->plan[STEER_AVERAGED]));
+    MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &steer->plan[STEER_AVERAGED].straight.gait,
+                        &steer->plan[STEER_AVERAGED]));
     if (steer->snake.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
     moray_gait gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
     if (job->find_gait && !steer_gait_given(steer))
         MORAY_TRY(steer_fastest_gait(steer, steer_limits(steer, MORAY_FIRST_PRINCIPLES).power, &gait));
-    return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->plan[MORAY_CONTROL_ORIENTED]);
+    return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &steer->plan[MORAY_CONTROL_ORIENTED]);
 }

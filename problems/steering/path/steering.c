@@ -23,7 +23,7 @@ static moray_status set_guidance(steer_steersman *h)
     const bool planned = h->trial->law->kind == STEER_PLANNED;
     const double *number = h->trial->number;
     h->own.guidance = (moray_guidance){.path = &job->path,
-                                       .plan = planned ? &job->plan[h->trial->plan] : NULL,
+                                       .plan = planned ? &job->steer.plan[h->trial->plan] : NULL,
                                        .plan_scale = h->plan.scale,
                                        .lookahead = number[LOOKAHEAD],
                                        .ahead = planned ? 0 : number[AHEAD],
@@ -184,12 +184,9 @@ static void json_head(const steer_job *steer, moray_json *json)
         if (leg->curvature != 0)
             continue;
         path_crab(job, leg, &asked, &planned);
-        moray_json_open(json, NULL);
-        moray_json_number(json, "leg", leg->leg);
-        moray_json_number(json, "course_deg", leg->course / DEG);
-        moray_json_number(json, "crab_by_triangle_deg", asked / DEG);
-        moray_json_number(json, "crab_planned_deg", planned / DEG);
-        moray_json_close(json);
+        moray_json_object(json, NULL,
+                          MORAY_MEMBERS({"leg", leg->leg}, {"course_deg", leg->course / DEG},
+                                        {"crab_by_triangle_deg", asked / DEG}, {"crab_planned_deg", planned / DEG}));
     }
     moray_json_close(json);
 }
@@ -247,11 +244,7 @@ static moray_status work(steer_job *steer)
 
 static void release(steer_job *steer)
 {
-    path_job *job = (path_job *)steer;
-    moray_path_plan_free(&job->averaged);
-    for (int model = 0; model < 2; model++)
-        moray_path_plan_free(&job->plan[model]);
-    moray_path_free(&job->path);
+    moray_path_free(&((path_job *)steer)->path);
 }
 
 const steer_program path_steering = {

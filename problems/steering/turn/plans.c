@@ -15,7 +15,7 @@ static moray_turn_spec spec_of(const turn_job *job, moray_model model, bool aver
                              .steering = job->steer.weight_steering};
 }
 
-static moray_status why_not(const turn_job *job, const moray_turn_plan *plan)
+static moray_status why_not(const turn_job *job, const moray_steering_plan *plan)
 {
     const double *V = job->steer.snake.current, water = hypot(V[0], V[1]), speed = plan->straight.speed;
     const moray_status told = steer_not_solved(plan->solution);
@@ -34,21 +34,21 @@ static moray_status why_not(const turn_job *job, const moray_turn_plan *plan)
 }
 
 // With as many intervals as the plan before took periods; steering at its limits has kinks.
-static moray_settings settings_of(turn_job *job, const moray_turn_plan *from, double period)
+static moray_settings settings_of(turn_job *job, const moray_steering_plan *from, double period)
 {
     const int intervals =
         from ? (int)ceil(steer_duration(from->solution) / period * job->steer.intervals_per_period) : 30;
     return steer_settings(&job->steer, !from, intervals, 1e-4, 1e-3);
 }
 
-static bool solved(const moray_turn_plan *plan)
+static bool solved(const moray_steering_plan *plan)
 {
     return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED;
 }
 
 // From the plan `from` on times that end at several parts of a stroke; leaves the fastest turn.
-static moray_status solve(turn_job *job, moray_model model, const moray_gait *gait, const moray_turn_plan *from,
-                          moray_turn_plan *plan)
+static moray_status solve(turn_job *job, moray_model model, const moray_gait *gait, const moray_steering_plan *from,
+                          moray_steering_plan *plan)
 {
     enum { starts = 2 };
     const moray_turn_spec spec = spec_of(job, model, from == NULL);
@@ -58,32 +58,33 @@ static moray_status solve(turn_job *job, moray_model model, const moray_gait *ga
     for (int k = 0; k < (from ? starts : 1); k++) {
         const double seconds = from ? steer_duration(from->solution) : 1,
                      later = from ? period * (k - 0.5) / starts : 0;
-        moray_turn_plan next;
+        moray_steering_plan next;
         MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, *turn_rate, from, 1 + later / seconds));
         const bool better =
             !plan->solution || (solved(&next) && (!solved(plan) || moray_solution_objective(next.solution) <
                                                                        moray_solution_objective(plan->solution)));
-        moray_turn_plan_free(better ? plan : &next);
+        moray_steering_plan_free(better ? plan : &next);
         if (better)
             *plan = next;
         MORAY_TRY(steer_interruption());
     }
     if (!solved(plan))
         return why_not(job, plan);
-    return steer_take_plan(&job->steer, from ? (int)model : STEER_AVERAGED, plan->solution, &plan->straight);
+    return steer_take_plan(&job->steer, from ? (int)model : STEER_AVERAGED);
 }
 
 moray_status turn_make_plans(turn_job *job)
 {
     steer_job *steer = &job->steer;
     const moray_gait first = steer_first_gait(steer);
+    moray_steering_plan *averaged = &steer->plan[STEER_AVERAGED];
     MORAY_TRY(steer_straight_motions(steer, 0, &first, MORAY_CONTROL_ORIENTED));
-    MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, &first, NULL, &job->averaged));
-    MORAY_TRY(steer_straight_motions(steer, 0, &job->averaged.straight.gait, MORAY_CONTROL_ORIENTED));
-    const moray_turn_plan *from = &job->averaged;
+    MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, &first, NULL, averaged));
+    MORAY_TRY(steer_straight_motions(steer, 0, &averaged->straight.gait, MORAY_CONTROL_ORIENTED));
+    const moray_steering_plan *from = averaged;
     for (int model = 0; model <= (int)steer->snake.model; model++) {
-        MORAY_TRY(solve(job, (moray_model)model, &steer->straight[0][model].gait, from, &job->plan[model]));
-        from = &job->plan[model];
+        MORAY_TRY(solve(job, (moray_model)model, &steer->straight[0][model].gait, from, &steer->plan[model]));
+        from = &steer->plan[model];
     }
     return moray_ok();
 }

@@ -225,17 +225,8 @@ static moray_status work(steer_job *steer)
     return steer_run_trials(steer);
 }
 
-static void release(steer_job *steer)
-{
-    turn_job *job = (turn_job *)steer;
-    moray_turn_plan_free(&job->averaged);
-    for (int model = 0; model < 2; model++)
-        moray_turn_plan_free(&job->plan[model]);
-}
-
 const steer_program turn_steering = {
     .work = work,
-    .release = release,
     .one_gait = true,
     .laws = laws,
     .numbers = numbers,

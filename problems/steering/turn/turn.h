@@ -8,7 +8,6 @@ typedef struct turn_job {
     steer_job steer;
     double angle;        // change of the heading [rad]
     double end[2], band; // [m]; [rad]
-    moray_turn_plan averaged, plan[2];
 } turn_job;
 
 static inline bool turn_to_position(const turn_job *job)

@@ -174,7 +174,8 @@ static void fill_parameter_bounds(const moray_gait_problem *problem, moray_bound
     s[1 + 2 * n] = moray_fixed(0); // q_11
 }
 
-static moray_status make_ocp(moray_gait_problem *problem)
+// The period as a phase, its events and the parameters.
+static moray_status describe(moray_gait_problem *problem)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
     const int nx = problem->size.nx, nc = problem->size.nc, ne = moray_gait_events(&problem->endpoint),
@@ -193,7 +194,7 @@ static moray_status make_ocp(moray_gait_problem *problem)
     moray_gait_event_names(&problem->endpoint, problem->path_names + nc, problem->names);
     moray_gait_path_names(nc, path_efforts(problem), problem->spec.robot.links, problem->path_names,
                           problem->names + ne);
-    const moray_phase_spec phase = {
+    problem->phase = (moray_phase_spec){
         .name = "period",
         .nx = nx,
         .nc = nc,
@@ -207,15 +208,22 @@ static moray_status make_ocp(moray_gait_problem *problem)
         .c_names = problem->names + ne,
         .x_names = problem->spec.joints == MORAY_JOINTS_CLOSED_LOOP ? NULL : gait_states[problem->spec.model],
     };
+    problem->e = (moray_bounds_list){e, ne};
+    problem->s = (moray_bounds_list){s, ns};
+    return moray_ok();
+}
+
+static moray_status make_ocp(moray_gait_problem *problem)
+{
     return moray_ocp_new(&problem->ocp,
                          &(moray_ocp_spec){.name = goals[problem->spec.goal][problem->spec.model],
                                            .phases = 1,
-                                           .phase = &phase,
-                                           .ns = ns,
-                                           .s = {s, ns},
+                                           .phase = &problem->phase,
+                                           .ns = problem->s.n,
+                                           .s = problem->s,
                                            .s_names = on_series(problem) ? NULL : s_names[problem->spec.model],
-                                           .ne = ne,
-                                           .e = {e, ne},
+                                           .ne = problem->e.n,
+                                           .e = problem->e,
                                            .e_names = problem->names,
                                            .endpoint = moray_gait_ends,
                                            .data = &problem->endpoint});
@@ -231,6 +239,8 @@ moray_status moray_gait_problem_new(moray_gait_problem **result, const moray_gai
     problem->spec = *spec;
     moray_status status = make_plant(problem);
     make_endpoint(problem);
+    if (!moray_failed(status))
+        status = describe(problem);
     if (!moray_failed(status))
         status = make_ocp(problem);
     if (moray_failed(status))

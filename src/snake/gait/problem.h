@@ -12,7 +12,16 @@ struct moray_gait_problem {
     moray_bounds *block;   // x0, c, e, s in turn
     const char **names;    // of e, then of c
     gait_name *path_names; // that they point into
+    moray_phase_spec phase; // the period; refers to the above
+    moray_bounds_list e, s;
     moray_ocp *ocp;
 };
+
+// What a phase of a solution is for the problem, at its parameters s; power_price is left at 0.
+moray_gait_prediction moray_gait_problem_read(const moray_gait_problem *problem, const moray_solution *solution,
+                                              int phase, const double *s);
+
+// States x[orbit->n][nx] of the plant from the swimmer's.
+void moray_gait_problem_states(const moray_gait_problem *problem, const moray_swim_track *orbit, double *x);
 
 #endif

@@ -1,31 +1,39 @@
 // SPDX-License-Identifier: MIT
 #include "snake/gait/problem.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { most_states = MORAY_BODY_STATES + 2 * 512 };
+enum { most_states = MORAY_BODY_STATES + 2 * (MORAY_MOST_LINKS - 1) };
 
 static moray_gait gait_of(const moray_gait_problem *problem, const double *s)
 {
     return problem->spec.joints == MORAY_JOINTS_SERIES ? (moray_gait){.omega = s[0]} : moray_gait_from_parameters(s);
 }
 
-moray_gait_prediction moray_gait_problem_prediction(const moray_gait_problem *problem, const moray_solution *solution)
+moray_gait_prediction moray_gait_problem_read(const moray_gait_problem *problem, const moray_solution *solution,
+                                              int phase, const double *s)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
     const int at = problem->endpoint.position;
     double t0, tf, x[most_states];
-    const double *s = moray_solution_parameters(solution);
     moray_gait_prediction prediction = {.gait = gait_of(problem, s)};
-    moray_solution_times(solution, 0, &t0, &tf);
-    moray_solution_at(solution, 0, tf, x, NULL);
+    moray_solution_times(solution, phase, &t0, &tf);
+    moray_solution_at(solution, phase, tf, x, NULL);
     prediction.v_x = x[at] / tf;
     prediction.v_y = x[at + 1] / tf;
     prediction.speed = hypot(prediction.v_x - spec->current[0], prediction.v_y - spec->current[1]);
     prediction.course_speed = prediction.v_x * cos(spec->course) + prediction.v_y * sin(spec->course);
-    prediction.power = moray_solution_integrals(solution, 0)[0] / tf;
+    prediction.power = moray_solution_integrals(solution, phase)[0] / tf;
+    return prediction;
+}
+
+moray_gait_prediction moray_gait_problem_prediction(const moray_gait_problem *problem, const moray_solution *solution)
+{
+    moray_gait_prediction prediction =
+        moray_gait_problem_read(problem, solution, 0, moray_solution_parameters(solution));
     if (problem->endpoint.power)
         prediction.power_price = moray_solution_event_multipliers(solution)[moray_gait_power_event(&problem->endpoint)];
     return prediction;
@@ -58,15 +66,24 @@ static void plant_state(const moray_gait_problem *problem, const double *full, d
     moray_state_body(problem->spec.model, problem->spec.robot.links, full, x);
 }
 
+void moray_gait_problem_states(const moray_gait_problem *problem, const moray_swim_track *orbit, double *x)
+{
+    for (int k = 0; k < orbit->n; k++)
+        plant_state(problem, orbit->x + k * orbit->n_states, x + k * problem->size.nx);
+}
+
 moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const moray_settings *settings,
                                       const moray_gait *gait, const moray_swim_track *orbit, moray_solution **solution)
 {
     const int nx = problem->size.nx;
+    MORAY_TRY(moray_gait_without_series(gait, "the start of an optimisation"));
+    if (problem->size.ns != MORAY_GAIT_PARAMETERS)
+        return moray_error(MORAY_INPUT, "a problem of %d parameters does not start from a gait, which has %d",
+                           problem->size.ns, MORAY_GAIT_PARAMETERS);
     double s[MORAY_GAIT_PARAMETERS], *x = calloc((size_t)(orbit->n * nx) + 1, sizeof *x);
     if (!x)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", orbit->n);
-    for (int k = 0; k < orbit->n; k++)
-        plant_state(problem, orbit->x + k * orbit->n_states, x + k * nx);
+    moray_gait_problem_states(problem, orbit, x);
     moray_gait_to_parameters(gait, s);
     const moray_samples samples = {.n = orbit->n, .time = orbit->t, .x = x};
     const moray_guess guess = {.phase = &samples, .s = s};
@@ -79,9 +96,10 @@ moray_status moray_gait_problem_continue(const moray_gait_problem *problem, cons
                                          const moray_solution *from, const double *s, moray_solution **solution)
 {
     const int nx = problem->size.nx, n = 4 * settings->intervals + 1;
-    double *time = calloc((size_t)(n * (1 + nx)), sizeof *time), *x = time + n, t0, tf;
+    double *time = calloc((size_t)(n * (1 + nx)), sizeof *time), t0, tf;
     if (!time)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d samples", n);
+    double *x = time + n;
     moray_solution_times(from, 0, &t0, &tf);
     for (int k = 0; k < n; k++) {
         time[k] = t0 + (tf - t0) * k / (n - 1);

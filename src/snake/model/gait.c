@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/model.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -48,6 +49,15 @@ double moray_theta_max_of_link(const moray_robot *robot, moray_model model, cons
     const double s = (2.0 * link - N - 1) / (N - 2);
     const double factor = hypot(1 + gait->taper * s, gait->taper * across / (N - 2));
     return model == MORAY_FIRST_PRINCIPLES ? middle * factor : asin(sin(middle) * factor);
+}
+
+moray_status moray_gait_without_series(const moray_gait *gait, const char *what)
+{
+    if (!gait->series)
+        return moray_ok();
+    return moray_error(MORAY_INPUT,
+                       "gait with a series of %d harmonics in %d joints: %s takes a gait (25) without a series",
+                       gait->series->harmonics, gait->series->joints, what);
 }
 
 moray_gait moray_gait_map(const moray_robot *robot, const moray_gait *gait, moray_model from, moray_model to)

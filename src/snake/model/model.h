@@ -20,6 +20,9 @@ typedef struct snake_model {
     void (*links)(const moray_robot *robot, const double *x, double *x_i, double *y_i, double *angle_i);
 } snake_model;
 
+// Error: MORAY_INPUT where the gait has a series, which `what` ("an orbit") does not know.
+moray_status moray_gait_without_series(const moray_gait *gait, const char *what);
+
 extern const snake_model moray_control_model, moray_fp_model;
 
 #endif

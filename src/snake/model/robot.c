@@ -74,8 +74,9 @@ static moray_status check_hydrodynamics(const moray_hydrodynamics *hydro)
 
 moray_status moray_robot_check(const moray_robot *robot)
 {
-    if (robot->links < 2)
-        return moray_error(MORAY_INPUT, "links = %d: a robot needs at least 2 links", robot->links);
+    if (robot->links < 2 || robot->links > MORAY_MOST_LINKS)
+        return moray_error(MORAY_INPUT, "links = %d: a robot has at least 2 links and at most %d", robot->links,
+                           MORAY_MOST_LINKS);
     const struct {
         const char *name;
         double value;

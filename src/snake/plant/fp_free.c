@@ -218,11 +218,11 @@ static free_plant *plant_new(const moray_plant_spec *spec)
         return NULL;
     const int N = spec->robot.links, n = N - 1;
     *plant = (free_plant){.spec = *spec,
-                           .robot = moray_fp_robot_of(&spec->robot),
-                           .size = moray_plant_sizes(spec),
-                           .N = N,
-                           .n = n,
-                           .ubar = 2 * n + 6};
+                          .robot = moray_fp_robot_of(&spec->robot),
+                          .size = moray_plant_sizes(spec),
+                          .N = N,
+                          .n = n,
+                          .ubar = 2 * n + 6};
     plant->n_in = plant->size.nx + plant->size.nu + 1;
     plant->in = calloc((size_t)(2 * plant->n_in + 7 * N), sizeof *plant->in);
     plant->weight = calloc((size_t)(plant->size.nx + plant->size.nc + 1), sizeof *plant->weight);

@@ -255,9 +255,10 @@ static void place_rows(chain *self, int base_states)
 // While recording, any point does.
 static moray_status record(chain *self)
 {
-    self->at = calloc((size_t)self->n_in, sizeof *self->at);
-    if (!self->at)
+    double *at = calloc((size_t)self->n_in, sizeof *at);
+    if (!at)
         return moray_error(MORAY_MEMORY, "no memory for a plant of %d joints", self->n);
+    self->at = at;
     moray_triplets_record(&self->jac);
     moray_walk_jacobian(self, &self->jac);
     moray_status status = moray_triplets_close(&self->jac);
@@ -266,7 +267,8 @@ static moray_status record(chain *self)
         moray_walk_hessian(self, &self->hess);
         status = moray_triplets_close(&self->hess);
     }
-    free((double *)self->at);
+    free(at);
+    self->at = NULL;
     return status;
 }
 

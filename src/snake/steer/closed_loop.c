@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/closed_loop.h"
+#include "snake/steer/problems.h"
 
 #include <math.h>
 #include <stdlib.h>

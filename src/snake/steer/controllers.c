@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "moray/snake/orbit.h"
+#include "snake/steer/problems.h"
 
 // ---- Straight swimming ---------------------------------------------------------------------------------------------
 
@@ -100,6 +101,15 @@ double moray_straight_motion_heading(const moray_straight_motion *straight, doub
     return heading - straight->undulation[0] * cos(phase) - straight->undulation[1] * sin(phase);
 }
 
+// ---- Plans made ----------------------------------------------------------------------------------------------------
+
+void moray_steering_plan_free(moray_steering_plan *plan)
+{
+    moray_solution_free(plan->solution);
+    moray_steering_problem_free(&plan->problem);
+    *plan = (moray_steering_plan){0};
+}
+
 // ---- Plans carried out ---------------------------------------------------------------------------------------------
 
 moray_offset moray_plan_offset(const moray_plan *plan, double t)
@@ -116,9 +126,9 @@ static moray_offset blind(double t, const void *self)
     return moray_plan_offset(self, t);
 }
 
-moray_swim_controller moray_plan_controller(const moray_plan *plan)
+moray_swim_controller moray_plan_controller(moray_plan *plan)
 {
-    return (moray_swim_controller){.offset = blind, .self = (void *)plan};
+    return (moray_swim_controller){.offset = blind, .self = plan};
 }
 
 // ---- Feedback ------------------------------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "snake/steer/guess.h"
+#include "snake/steer/problems.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,20 +3,21 @@
 #include <stdlib.h>
 
 #include "moray/snake/heading.h"
+#include "snake/steer/problems.h"
 
-struct moray_heading_task {
+typedef struct heading_task {
     moray_heading_spec spec;
     double weight;         // of the integral
     moray_bounds error[1]; // allowed
     bool tube;
-};
+} heading_task;
 
 static const char *const error_names[] = {"heading error"};
 
 // [error where it is bounded, weighted sum of squares]
 static void extra(void *self, const double complex *in, double complex *out)
 {
-    const moray_heading_task *task = self;
+    const heading_task *task = self;
     const moray_heading_spec *spec = &task->spec;
     const double complex *s = in + MORAY_STEERING_STATES + 1, t = s[MORAY_STEERING_PARAMETERS];
     double rate;
@@ -41,7 +42,7 @@ static moray_status check(const moray_heading_spec *spec)
     return moray_ok();
 }
 
-static moray_steering_spec steering_spec(const moray_heading_spec *spec, moray_heading_task *task)
+static moray_steering_spec steering_spec(const moray_heading_spec *spec, heading_task *task)
 {
     moray_steering_spec steering = {.robot = spec->robot,
                                     .model = spec->model,
@@ -66,28 +67,21 @@ static moray_steering_spec steering_spec(const moray_heading_spec *spec, moray_h
     return steering;
 }
 
-moray_status moray_heading_new(moray_heading *problem, const moray_heading_spec *spec)
+moray_status moray_heading_new(moray_steering_problem *problem, const moray_heading_spec *spec)
 {
-    *problem = (moray_heading){0};
+    *problem = (moray_steering_problem){0};
     MORAY_TRY(check(spec));
-    moray_heading_task *task = calloc(1, sizeof *task);
+    heading_task *task = calloc(1, sizeof *task);
     if (!task)
         return moray_error(MORAY_MEMORY, "no memory for the heading problem");
-    *task = (moray_heading_task){.spec = *spec,
-                                 .weight = 1 / (spec->t1 - spec->t0),
-                                 .error = {moray_between(-spec->max_error, spec->max_error)},
-                                 .tube = spec->max_error < MORAY_INFINITY};
+    *task = (heading_task){.spec = *spec,
+                           .weight = 1 / (spec->t1 - spec->t0),
+                           .error = {moray_between(-spec->max_error, spec->max_error)},
+                           .tube = spec->max_error < MORAY_INFINITY};
     problem->task = task;
     const moray_steering_spec steering = steering_spec(spec, task);
     const moray_status status = moray_steering_new(&problem->steering, &steering);
     if (moray_failed(status))
-        moray_heading_free(problem);
+        moray_steering_problem_free(problem);
     return status;
-}
-
-void moray_heading_free(moray_heading *problem)
-{
-    moray_steering_free(problem->steering);
-    free(problem->task);
-    *problem = (moray_heading){0};
 }

@@ -5,6 +5,7 @@
 
 #include "snake/steer/guess.h"
 #include "moray/snake/heading.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES };
 
@@ -28,7 +29,7 @@ static void guess_from_reference(steering_guess *guess, const moray_heading_spec
 }
 
 // Begins in the plan's straight; averaged, without its undulation.
-static moray_status pose_problem(moray_heading_plan *plan, moray_heading_spec *spec)
+static moray_status pose_problem(moray_steering_plan *plan, moray_heading_spec *spec)
 {
     double rate;
     const double heading = moray_reference_at(spec->reference, 0, &rate);
@@ -42,8 +43,8 @@ static moray_status pose_problem(moray_heading_plan *plan, moray_heading_spec *s
     return moray_heading_new(&plan->problem, spec);
 }
 
-static moray_status solve(moray_heading_plan *plan, const moray_heading_spec *spec, const moray_settings *settings,
-                          const moray_heading_plan *from)
+static moray_status solve(moray_steering_plan *plan, const moray_heading_spec *spec, const moray_settings *settings,
+                          const moray_steering_plan *from)
 {
     const moray_ocp *ocp = moray_steering_ocp(plan->problem.steering);
     if (from && from->straight.model == spec->model) {
@@ -62,8 +63,8 @@ static moray_status solve(moray_heading_plan *plan, const moray_heading_spec *sp
     return status;
 }
 
-static moray_status make(moray_heading_plan *plan, moray_heading_spec *spec, const moray_settings *settings,
-                         const moray_gait *gait, const moray_heading_plan *from)
+static moray_status make(moray_steering_plan *plan, moray_heading_spec *spec, const moray_settings *settings,
+                         const moray_gait *gait, const moray_steering_plan *from)
 {
     MORAY_TRY(moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, gait));
     MORAY_TRY(pose_problem(plan, spec));
@@ -74,24 +75,17 @@ static moray_status make(moray_heading_plan *plan, moray_heading_spec *spec, con
     return moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, &found);
 }
 
-moray_status moray_heading_plan_make(moray_heading_plan *plan, const moray_heading_spec *spec,
+moray_status moray_heading_plan_make(moray_steering_plan *plan, const moray_heading_spec *spec,
                                      const moray_settings *settings, const moray_gait *gait,
-                                     const moray_heading_plan *from)
+                                     const moray_steering_plan *from)
 {
     moray_heading_spec own = *spec;
     own.t0 = 0;
     if (!own.averaged)
         moray_steering_keep_gait(&own.limits, &own.robot, own.model, gait);
-    *plan = (moray_heading_plan){0};
+    *plan = (moray_steering_plan){0};
     const moray_status status = make(plan, &own, settings, gait, from);
     if (moray_failed(status))
-        moray_heading_plan_free(plan);
+        moray_steering_plan_free(plan);
     return status;
-}
-
-void moray_heading_plan_free(moray_heading_plan *plan)
-{
-    moray_solution_free(plan->solution);
-    moray_heading_free(&plan->problem);
-    *plan = (moray_heading_plan){0};
 }

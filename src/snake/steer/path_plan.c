@@ -5,6 +5,7 @@
 
 #include "snake/steer/guess.h"
 #include "moray/snake/path.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES };
 
@@ -79,7 +80,8 @@ static moray_status guess_by_dot(steering_guess *guess, const moray_path_spec *s
 // ---- Plans ---------------------------------------------------------------------------------------------------------
 
 // Begins in the plan's straight at the position; averaged, without its undulation.
-static moray_status pose_problem(moray_path_plan *plan, moray_path_spec *spec, const double position[2], double heading)
+static moray_status pose_problem(moray_steering_plan *plan, moray_path_spec *spec, const double position[2],
+                                 double heading)
 {
     double across;
     moray_straight_motion_start(&plan->straight, heading, spec->current, spec->start);
@@ -97,8 +99,8 @@ static moray_status pose_problem(moray_path_plan *plan, moray_path_spec *spec, c
 }
 
 // On the same model and gait from the solution itself, else from samples of it at this plan's speed.
-static moray_status solve(moray_path_plan *plan, const moray_path_spec *spec, const moray_settings *settings,
-                          double heading, const moray_path_plan *from)
+static moray_status solve(moray_steering_plan *plan, const moray_path_spec *spec, const moray_settings *settings,
+                          double heading, const moray_steering_plan *from)
 {
     const moray_ocp *ocp = moray_steering_ocp(plan->problem.steering);
     const double *V = spec->current;
@@ -122,8 +124,9 @@ static moray_status solve(moray_path_plan *plan, const moray_path_spec *spec, co
     return status;
 }
 
-static moray_status make(moray_path_plan *plan, moray_path_spec *spec, const moray_settings *settings,
-                         const moray_gait *gait, const double position[2], double heading, const moray_path_plan *from)
+static moray_status make(moray_steering_plan *plan, moray_path_spec *spec, const moray_settings *settings,
+                         const moray_gait *gait, const double position[2], double heading,
+                         const moray_steering_plan *from)
 {
     MORAY_TRY(moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, gait));
     MORAY_TRY(moray_path_passable(spec->path, plan->straight.speed, spec->current));
@@ -135,25 +138,18 @@ static moray_status make(moray_path_plan *plan, moray_path_spec *spec, const mor
     return moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, &found);
 }
 
-moray_status moray_path_plan_make(moray_path_plan *plan, const moray_path_spec *spec, const moray_settings *settings,
-                                  const moray_gait *gait, const double position[2], double heading,
-                                  const moray_path_plan *from)
+moray_status moray_path_plan_make(moray_steering_plan *plan, const moray_path_spec *spec,
+                                  const moray_settings *settings, const moray_gait *gait, const double position[2],
+                                  double heading, const moray_steering_plan *from)
 {
     moray_path_spec own = *spec;
     if (!own.averaged)
         moray_steering_keep_gait(&own.limits, &own.robot, own.model, gait);
-    *plan = (moray_path_plan){0};
+    *plan = (moray_steering_plan){0};
     const moray_status status = make(plan, &own, settings, gait, position, heading, from);
     if (moray_failed(status))
-        moray_path_plan_free(plan);
+        moray_steering_plan_free(plan);
     return status;
-}
-
-void moray_path_plan_free(moray_path_plan *plan)
-{
-    moray_solution_free(plan->solution);
-    moray_path_problem_free(&plan->problem);
-    *plan = (moray_path_plan){0};
 }
 
 // ---- Receding horizon ----------------------------------------------------------------------------------------------
@@ -162,7 +158,7 @@ static moray_status make_again(void *self, double t, const double *state, void *
 {
     moray_path_replanner *r = self;
     double across;
-    moray_path_problem *path = calloc(1, sizeof *path);
+    moray_steering_problem *path = calloc(1, sizeof *path);
     if (!path)
         return moray_error(MORAY_MEMORY, "no memory for a plan");
     memcpy(r->spec.start, state, sizeof r->spec.start);
@@ -181,7 +177,7 @@ static moray_status make_again(void *self, double t, const double *state, void *
 
 static void free_again(void *problem)
 {
-    moray_path_problem_free(problem);
+    moray_steering_problem_free(problem);
     free(problem);
 }
 

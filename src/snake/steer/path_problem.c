@@ -4,10 +4,11 @@
 #include <tgmath.h>
 
 #include "moray/snake/path.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES };
 
-struct moray_path_task {
+typedef struct path_task {
     moray_path_spec spec;
     double first_across; // at the start
     double weight;       // of the integral
@@ -15,13 +16,13 @@ struct moray_path_task {
     bool tube;
     double ahead[2], way,
         rate; // of what is made good beyond the distance `way` along this unit vector, in the objective
-};
+} path_task;
 
 static const char *const control_names[] = {"distance along the path"};
 static const char *const path_names[] = {"nearest point of the path", "distance to the path in the tube"};
 
 // Width of the tube, wide enough for the start at first.
-static moray_num tube_at(const struct moray_path_task *task, moray_num along)
+static moray_num tube_at(const path_task *task, moray_num along)
 {
     const moray_path_spec *spec = &task->spec;
     const double excess = fabs(task->first_across) * 1.05 - spec->tube;
@@ -34,7 +35,7 @@ static moray_num tube_at(const struct moray_path_task *task, moray_num along)
 // [offset from the nearest point along the path, distance over tube], [weighted squares]
 static void extra(void *self, const double complex *in, double complex *out)
 {
-    const struct moray_path_task *task = self;
+    const path_task *task = self;
     const moray_path_spec *spec = &task->spec;
     const moray_num along = in[states + 1];
     const moray_path_point at = moray_path_at(spec->path, along);
@@ -50,7 +51,7 @@ static void extra(void *self, const double complex *in, double complex *out)
 // Time gained by what is made good.
 static void gain(const moray_ends *at, moray_end_values *out, const void *data)
 {
-    const struct moray_path_task *task = data;
+    const path_task *task = data;
     const moray_num *p = at->phase->xf + MORAY_STATE_P_X;
     out->objective = -task->rate * (task->ahead[0] * p[0] + task->ahead[1] * p[1] - task->way);
 }
@@ -72,7 +73,7 @@ static moray_status check(const moray_path_spec *spec)
 }
 
 // What is made good by the end of a plan of given length: along the course of the path where it would typically be.
-static void reward(struct moray_path_task *task, const moray_path_spec *spec)
+static void reward(path_task *task, const moray_path_spec *spec)
 {
     const moray_path_point end = moray_path_at(spec->path, spec->along + spec->speed * spec->duration);
     task->rate = spec->weight.time / spec->speed;
@@ -81,15 +82,15 @@ static void reward(struct moray_path_task *task, const moray_path_spec *spec)
     task->way = task->ahead[0] * creal(end.x) + task->ahead[1] * creal(end.y);
 }
 
-static void set_task(struct moray_path_task *task, const moray_path_spec *spec)
+static void set_task(path_task *task, const moray_path_spec *spec)
 {
     const double beyond = spec->duration == 0 ? 2 : 3 * spec->speed * spec->duration;
     double along = spec->along;
-    *task = (struct moray_path_task){.spec = *spec,
-                                     .weight = 1,
-                                     .along = {moray_between(spec->along - 2, spec->path->length + beyond)},
-                                     .c = {moray_fixed(0), moray_between(-1, 1)},
-                                     .tube = spec->tube < MORAY_INFINITY};
+    *task = (path_task){.spec = *spec,
+                        .weight = 1,
+                        .along = {moray_between(spec->along - 2, spec->path->length + beyond)},
+                        .c = {moray_fixed(0), moray_between(-1, 1)},
+                        .tube = spec->tube < MORAY_INFINITY};
     if (spec->duration > 0)
         reward(task, spec);
     moray_path_project(spec->path, spec->start[MORAY_STATE_P_X], spec->start[MORAY_STATE_P_Y], &along,
@@ -114,7 +115,7 @@ static void set_ends(moray_steering_spec *steering, const moray_path_spec *spec)
     steering->xf[MORAY_STATE_PHI_0] = steering->xf[MORAY_STATE_V_PHI_0] = moray_fixed(0); // steering done
 }
 
-static moray_steering_spec steering_spec(const moray_path_spec *spec, struct moray_path_task *task)
+static moray_steering_spec steering_spec(const moray_path_spec *spec, path_task *task)
 {
     const bool to_end = spec->duration == 0;
     moray_steering_spec steering = {.robot = spec->robot,
@@ -139,24 +140,17 @@ static moray_steering_spec steering_spec(const moray_path_spec *spec, struct mor
     return steering;
 }
 
-moray_status moray_path_problem_new(moray_path_problem *problem, const moray_path_spec *spec)
+moray_status moray_path_problem_new(moray_steering_problem *problem, const moray_path_spec *spec)
 {
-    *problem = (moray_path_problem){0};
+    *problem = (moray_steering_problem){0};
     MORAY_TRY(check(spec));
-    problem->task = calloc(1, sizeof *problem->task);
+    problem->task = calloc(1, sizeof(path_task));
     if (!problem->task)
         return moray_error(MORAY_MEMORY, "no memory for the path problem");
     set_task(problem->task, spec);
     const moray_steering_spec steering = steering_spec(spec, problem->task);
     const moray_status status = moray_steering_new(&problem->steering, &steering);
     if (moray_failed(status))
-        moray_path_problem_free(problem);
+        moray_steering_problem_free(problem);
     return status;
-}
-
-void moray_path_problem_free(moray_path_problem *problem)
-{
-    moray_steering_free(problem->steering);
-    free(problem->task);
-    *problem = (moray_path_problem){0};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/receding_horizon.h"
+#include "snake/steer/problems.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -126,7 +127,7 @@ static moray_status make_heading(void *self, double t, const double *state, void
     moray_heading_replanner *r = self;
     moray_heading_spec spec = r->spec;
     double rate;
-    moray_heading *heading = calloc(1, sizeof *heading);
+    moray_steering_problem *heading = calloc(1, sizeof *heading);
     if (!heading)
         return moray_error(MORAY_MEMORY, "no memory for a plan");
     memcpy(spec.start, state, sizeof spec.start);
@@ -158,7 +159,7 @@ static bool heading_changed(const void *self, double t)
 
 static void free_heading(void *problem)
 {
-    moray_heading_free(problem);
+    moray_steering_problem_free(problem);
     free(problem);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/numeric_map.h"
 #include "snake/swim/limits.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2 };
 
@@ -272,6 +273,13 @@ void moray_steering_free(moray_steering *problem)
     free(problem->block);
     free(problem->names);
     free(problem);
+}
+
+void moray_steering_problem_free(moray_steering_problem *problem)
+{
+    moray_steering_free(problem->steering);
+    free(problem->task);
+    *problem = (moray_steering_problem){0};
 }
 
 // ---- Reading -------------------------------------------------------------------------------------------------------

@@ -7,20 +7,21 @@
 #include <tgmath.h>
 
 #include "snake/steer/guess.h"
+#include "snake/steer/problems.h"
 
 enum { states = MORAY_STEERING_STATES };
 
-struct moray_turn_task {
+typedef struct turn_task {
     moray_turn_spec spec;
     double weight;
     moray_bounds e[2];
-};
+} turn_task;
 
 static const char *const event_names[] = {"heading at the end", "turning at the end"};
 
 static void extra(void *self, const double complex *in, double complex *out)
 {
-    const moray_turn_task *task = self;
+    const turn_task *task = self;
     const moray_num steering = in[states] / task->spec.limits.offset;
     *out = steering * steering;
 }
@@ -28,7 +29,7 @@ static void extra(void *self, const double complex *in, double complex *out)
 // Heading and its rate without the undulation, in whatever stroke the turn ends.
 static void events(const moray_ends *at, moray_end_values *out, const void *data)
 {
-    const moray_turn_task *task = data;
+    const turn_task *task = data;
     const double *factor = task->spec.undulation;
     const moray_num omega = at->s[MORAY_STEERING_OMEGA], c = cos(omega * at->phase->tf), s = sin(omega * at->phase->tf);
     out->e[0] = at->phase->xf[MORAY_STATE_THETA] - factor[0] * c - factor[1] * s;
@@ -49,7 +50,7 @@ static moray_status check(const moray_turn_spec *spec)
     return moray_ok();
 }
 
-static moray_steering_spec steering_spec(const moray_turn_spec *spec, moray_turn_task *task)
+static moray_steering_spec steering_spec(const moray_turn_spec *spec, turn_task *task)
 {
     moray_steering_spec steering = {.robot = spec->robot,
                                     .model = spec->model,
@@ -77,27 +78,19 @@ static moray_steering_spec steering_spec(const moray_turn_spec *spec, moray_turn
     return steering;
 }
 
-moray_status moray_turn_new(moray_turn *problem, const moray_turn_spec *spec)
+moray_status moray_turn_new(moray_steering_problem *problem, const moray_turn_spec *spec)
 {
-    *problem = (moray_turn){0};
+    *problem = (moray_steering_problem){0};
     MORAY_TRY(check(spec));
-    problem->task = calloc(1, sizeof *problem->task);
-    if (!problem->task)
+    turn_task *task = problem->task = calloc(1, sizeof *task);
+    if (!task)
         return moray_error(MORAY_MEMORY, "no memory for the turn");
-    *problem->task =
-        (moray_turn_task){.spec = *spec, .weight = spec->steering, .e = {moray_fixed(spec->heading), moray_fixed(0)}};
-    const moray_steering_spec steering = steering_spec(spec, problem->task);
+    *task = (turn_task){.spec = *spec, .weight = spec->steering, .e = {moray_fixed(spec->heading), moray_fixed(0)}};
+    const moray_steering_spec steering = steering_spec(spec, task);
     const moray_status status = moray_steering_new(&problem->steering, &steering);
     if (moray_failed(status))
-        moray_turn_free(problem);
+        moray_steering_problem_free(problem);
     return status;
-}
-
-void moray_turn_free(moray_turn *problem)
-{
-    moray_steering_free(problem->steering);
-    free(problem->task);
-    *problem = (moray_turn){0};
 }
 
 // ---- Plans ---------------------------------------------------------------------------------------------------------
@@ -139,7 +132,7 @@ static void guess_steady(steering_guess *guess, const moray_turn_spec *spec, con
     moray_steering_parameters(&straight->gait, guess->s);
 }
 
-static moray_status pose_problem(moray_turn_plan *plan, moray_turn_spec *spec, double turn_rate)
+static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spec, double turn_rate)
 {
     const double seconds = likely(spec, plan->straight.speed, turn_rate);
     moray_straight_motion_start(&plan->straight, 0, spec->current, spec->start);
@@ -152,8 +145,8 @@ static moray_status pose_problem(moray_turn_plan *plan, moray_turn_spec *spec, d
     return moray_turn_new(&plan->problem, spec);
 }
 
-static moray_status make(moray_turn_plan *plan, moray_turn_spec *spec, const moray_settings *settings,
-                         const moray_gait *gait, double turn_rate, const moray_turn_plan *from, double stretch)
+static moray_status make(moray_steering_plan *plan, moray_turn_spec *spec, const moray_settings *settings,
+                         const moray_gait *gait, double turn_rate, const moray_steering_plan *from, double stretch)
 {
     steering_guess samples;
     MORAY_TRY(moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, gait));
@@ -174,22 +167,16 @@ static moray_status make(moray_turn_plan *plan, moray_turn_spec *spec, const mor
     return moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, &found);
 }
 
-moray_status moray_turn_plan_make(moray_turn_plan *plan, const moray_turn_spec *spec, const moray_settings *settings,
-                                  const moray_gait *gait, double turn_rate, const moray_turn_plan *from, double stretch)
+moray_status moray_turn_plan_make(moray_steering_plan *plan, const moray_turn_spec *spec,
+                                  const moray_settings *settings, const moray_gait *gait, double turn_rate,
+                                  const moray_steering_plan *from, double stretch)
 {
     moray_turn_spec own = *spec;
     if (!own.averaged)
         moray_steering_keep_gait(&own.limits, &own.robot, own.model, gait);
-    *plan = (moray_turn_plan){0};
+    *plan = (moray_steering_plan){0};
     const moray_status status = make(plan, &own, settings, gait, turn_rate, from, stretch);
     if (moray_failed(status))
-        moray_turn_plan_free(plan);
+        moray_steering_plan_free(plan);
     return status;
-}
-
-void moray_turn_plan_free(moray_turn_plan *plan)
-{
-    moray_solution_free(plan->solution);
-    moray_turn_free(&plan->problem);
-    *plan = (moray_turn_plan){0};
 }

@@ -108,15 +108,15 @@ typedef struct {
     const moray_swim_setup *setup;
     double course;
     moray_orbit *orbit; // NULL: simulated
+    moray_orbit_result found;
     double heading;     // where the last simulation began
 } trier;
 
 static moray_status try_gait(trier *by, const moray_gait *gait, moray_steady *steady)
 {
     if (by->orbit) {
-        moray_orbit_result found;
-        MORAY_TRY(moray_orbit_solve(by->orbit, gait, &found));
-        *steady = found.steady;
+        MORAY_TRY(moray_orbit_solve(by->orbit, gait, &by->found));
+        *steady = by->found.steady;
         return moray_ok();
     }
     MORAY_TRY(hold(by->setup, gait, by->course, by->heading, steady));
@@ -142,6 +142,14 @@ static moray_status match_by(trier *by, moray_gait *gait, const aim *to, moray_s
     }
     return moray_error(MORAY_NOT_SOLVED, "no omega found at which the %s is %.6g %s: it is %.6g at omega = %.6g rad/s",
                        to->name, to->target, to->unit, to->is_power ? steady->power : steady->speed, gait->omega);
+}
+
+moray_status moray_orbit_match_power(moray_orbit *orbit, moray_gait *gait, double power, moray_orbit_result *result)
+{
+    trier by = {.orbit = orbit};
+    MORAY_TRY(match_by(&by, gait, &(aim){"mean power", "W", power, 2, true}, &result->steady));
+    *result = by.found;
+    return moray_ok();
 }
 
 static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,

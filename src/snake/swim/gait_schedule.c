@@ -16,16 +16,11 @@ typedef struct {
 } line_values;
 
 static const moray_option columns[] = {
-    {.section = "gait",
-     .key = "t_s",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(line_values, t),
-     .max = INFINITY,
-     .unit = "s"},
+    MORAY_ROW(REAL, line_values, t, "gait", "t_s", .max = INFINITY, .unit = "s"),
     MORAY_GAIT_OPTIONS(line_values, gait),
 };
 _Static_assert(sizeof columns / sizeof *columns <= MOST_COLUMNS, "a column each");
-static const moray_options table = {.row = (moray_option *)columns, .n = sizeof columns / sizeof *columns};
+static const moray_options table = {.row = columns, .n = sizeof columns / sizeof *columns};
 
 typedef struct {
     moray_csv csv;

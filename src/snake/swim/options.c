@@ -34,20 +34,10 @@ static const moray_option robot_rows[] = {
      .argument = "FILE",
      .type = MORAY_OPTION_INI,
      .help = "INI file with the robot and any other keys"},
-    {.section = "robot",
-     .key = "links",
-     .flag = "links",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(moray_snake_options, robot.links),
-     SPAN(2, 1000),
-     .help = "number of links N"},
-    {.section = "problem",
-     .key = "model",
-     .flag = "model",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(moray_snake_options, model),
-     .choices = models,
-     .help = "control-oriented or first-principles (fp, also called complex) model"},
+    MORAY_ROW(INT, moray_snake_options, robot.links, "robot", "links", .flag = "links", SPAN(2, MORAY_MOST_LINKS),
+              .help = "number of links N"),
+    MORAY_ROW(CHOICE, moray_snake_options, model, "problem", "model", .flag = "model", .choices = models,
+              .help = "control-oriented or first-principles (fp, also called complex) model"),
     {.section = "problem",
      .key = "current",
      .flag = "current",
@@ -68,7 +58,7 @@ static const moray_option robot_rows[] = {
     {LINK("C_M", C_M), AT_LEAST(0), .help = "added inertia constant"},
     {ROBOT("l_m", l), ABOVE(0), .unit = "m", .help = "half the length of a link" FROM_GEOMETRY},
     {ROBOT("m_kg", m), ABOVE(0), .unit = "kg", .help = "mass of a link" FROM_GEOMETRY},
-    {ROBOT("J_kg_m2", J), ABOVE(0), .unit = "kg m^2", .help = "moment of inertia of a link" FROM_GEOMETRY},
+    {ROBOT("J_kg_m2", J), ABOVE(0), .unit = "kg m^2", .help = "moment of inertia of a link; from mass and geometry unless given"},
     {ROBOT("c_t", c_t), AT_LEAST(0), .unit = "kg/s", .help = "tangential drag of a link" FROM_GEOMETRY},
     {ROBOT("c_n", c_n), AT_LEAST(0), .unit = "kg/s", .help = "normal drag of a link" FROM_GEOMETRY},
     {ROBOT("mu_n", mu_n), AT_LEAST(0), .unit = "kg", .help = "normal added mass of a link" FROM_GEOMETRY},
@@ -84,23 +74,14 @@ static const moray_option robot_rows[] = {
      .help = "gain from joint offset to turning in the control-oriented model, second constant of (20)"},
     {ROBOT("k_p", k_p), AT_LEAST(0), .unit = "1/s^2", .help = "proportional gain of the joint controller (34)"},
     {ROBOT("k_d", k_d), AT_LEAST(0), .unit = "1/s", .help = "derivative gain of the joint controller (34)"},
-    {.section = "robot",
-     .key = "hydrodynamics",
-     .flag = "hydrodynamics",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(moray_snake_options, hydrodynamics),
-     .choices = hydrodynamics,
-     .help = "the paper's, or strips, both drags, invariant added mass and frame"},
+    MORAY_ROW(CHOICE, moray_snake_options, hydrodynamics, "robot", "hydrodynamics", .flag = "hydrodynamics",
+              .choices = hydrodynamics, .help = "the paper's, or strips, both drags, invariant added mass and frame"),
     {HYDRO(rotation, rotations), .help = "drag and added mass at a link's centre or along it, fp model" BY_WORD},
     {HYDRO(drag, drags), .help = "growth of the drag with velocity, fp model" BY_WORD},
     {HYDRO(added_mass, added_masses), .help = "form of the added mass in a current, fp model" BY_WORD},
     {HYDRO(frame, frames), .help = "form of (15) where the robot turns, control-oriented model" BY_WORD},
-    {.section = "robot",
-     .key = "pieces",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(moray_snake_options, robot.hydro.pieces),
-     SPAN(1, 1000),
-     .help = "rigid pieces a link is cut into for drag and added mass, fp model without strips"},
+    MORAY_ROW(INT, moray_snake_options, robot.hydro.pieces, "robot", "pieces", SPAN(1, 1000),
+              .help = "rigid pieces a link is cut into for drag and added mass, fp model without strips"),
 };
 
 moray_snake_options moray_snake_options_default(void)
@@ -134,6 +115,8 @@ static moray_status make_robot(void *settings)
                           &made.mu_n, &made.lambda_1, &made.lambda_2, &made.lambda_3};
     const double from[] = {given->l,    given->m,        given->J,        given->c_t,     given->c_n,
                            given->mu_n, given->lambda_1, given->lambda_2, given->lambda_3};
+    if (!isnan(given->m))
+        made.J *= given->m / made.m; // of the same shape
     for (unsigned i = 0; i < sizeof from / sizeof *from; i++)
         if (!isnan(from[i]))
             *to[i] = from[i];
@@ -148,8 +131,6 @@ const moray_option_table moray_snake_option_table = {
 void moray_snake_to_json(moray_json *json, const moray_snake_options *options)
 {
     moray_json_text(json, "model", moray_model_key(options->model));
-    moray_json_open(json, "robot");
-    moray_json_number(json, "links", options->robot.links);
-    moray_json_close(json);
+    moray_json_object(json, "robot", MORAY_MEMBERS({"links", options->robot.links}));
     moray_json_numbers(json, "current_m_s", options->current, 2);
 }

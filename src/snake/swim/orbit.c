@@ -2,6 +2,7 @@
 //
 // The discrete orbit is to the last digit the one of the optimal-gait problem on the same mesh.
 #include "snake/swim/orbit.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -114,6 +115,7 @@ static void glide(double t, double *x, const void *self)
 
 static moray_status check_gait(const moray_gait *gait)
 {
+    MORAY_TRY(moray_gait_without_series(gait, "an orbit"));
     if (!(gait->omega > 0 && isfinite(gait->omega)))
         return moray_error(MORAY_INPUT, "omega = %g: an orbit needs a finite omega above 0", gait->omega);
     if (!isfinite(gait->amplitude) || !isfinite(gait->delta) || !isfinite(gait->offset) || !isfinite(gait->taper))

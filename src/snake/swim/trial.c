@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/trial.h"
+#include "snake/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,7 +38,7 @@ moray_swim_setup moray_test_rig_setup(const moray_test_rig *rig, moray_model mod
 
 moray_gait moray_gait_paper(const moray_robot *robot)
 {
-    const double delta = 40 * MORAY_DEGREE;
+    const double delta = 2 * M_PI / (robot->links - 1);
     return (moray_gait){.amplitude =
                             moray_amplitude_from_theta_max(robot, MORAY_CONTROL_ORIENTED, 20 * MORAY_DEGREE, delta),
                         .omega = 120 * MORAY_DEGREE,
@@ -57,6 +58,7 @@ moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_model model,
 moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *gait, moray_model from,
                                   moray_gait_trial *trial)
 {
+    MORAY_TRY(moray_gait_without_series(gait, "a trial on both models"));
     for (int model = 0; model < 2; model++) {
         const moray_robot *robot = moray_swimmer_robot(rig->swimmer[model]);
         trial->gait[model] = moray_gait_map(robot, gait, from, (moray_model)model);
@@ -117,9 +119,10 @@ moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const moray_gait
     const moray_gait_change change = {0, trial->gait[model]};
     const double period = 2 * M_PI / change.gait.omega;
     const int states = moray_swimmer_states(rig->swimmer[model]);
-    double *times = calloc((size_t)(4 * n + states), sizeof *times), *along = times + 2 * n, *x = along + 2 * n;
+    double *times = calloc((size_t)(4 * n + states), sizeof *times);
     if (!times)
         return moray_error(MORAY_MEMORY, "no memory for %d samples", n);
+    double *along = times + 2 * n, *x = along + 2 * n;
     for (int k = 0; k < n; k++) {
         time[k] = times[2 * k] = horizon * k / (n - 1);
         times[2 * k + 1] = fmax(time[k] - period, 0);

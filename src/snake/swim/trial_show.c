@@ -17,16 +17,12 @@ static double end_angle(const moray_robot *robot, const moray_gait *gait, int li
 void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *robot, const moray_gait gait[2])
 {
     const moray_gait *control = &gait[MORAY_CONTROL_ORIENTED], *revolute = &gait[MORAY_FIRST_PRINCIPLES];
-    moray_json_open(json, key);
-    moray_json_number(json, "a_m", control->amplitude);
-    moray_json_number(json, "alpha_deg", revolute->amplitude / MORAY_DEGREE);
-    moray_json_number(json, "theta_max_deg", theta_max_of(robot, control) / MORAY_DEGREE);
-    moray_json_number(json, "omega_deg_s", control->omega / MORAY_DEGREE);
-    moray_json_number(json, "delta_deg", control->delta / MORAY_DEGREE);
-    moray_json_number(json, "phi0_m", control->offset);
-    moray_json_number(json, "phi0_deg", revolute->offset / MORAY_DEGREE);
-    moray_json_number(json, "taper", control->taper);
-    moray_json_close(json);
+    moray_json_object(json, key,
+                      MORAY_MEMBERS({"a_m", control->amplitude}, {"alpha_deg", revolute->amplitude / MORAY_DEGREE},
+                                    {"theta_max_deg", theta_max_of(robot, control) / MORAY_DEGREE},
+                                    {"omega_deg_s", control->omega / MORAY_DEGREE},
+                                    {"delta_deg", control->delta / MORAY_DEGREE}, {"phi0_m", control->offset},
+                                    {"phi0_deg", revolute->offset / MORAY_DEGREE}, {"taper", control->taper}));
 }
 
 // Joint work per distance along the course.
@@ -42,13 +38,13 @@ void moray_steady_to_json(moray_json *json, const char *key, moray_model model, 
     const bool control = model == MORAY_CONTROL_ORIENTED;
     moray_json_open(json, key);
     moray_json_text(json, "model", control ? "control" : "fp");
-    moray_json_number(json, "speed_m_s", steady->speed);
-    moray_json_number(json, "course_speed_m_s", trial->held[model] ? moray_course_speed(steady, course) : NAN);
-    moray_json_number(json, "power_W", steady->power);
-    moray_json_number(json, "cost_of_transport_J_m", steady->cost_of_transport);
-    moray_json_number(json, "course_cost_J_m", course_cost(&trial->steady[model], trial->held[model], course));
-    moray_json_number(json, control ? "peak_force_N" : "peak_torque_N_m", steady->peak_effort);
-    moray_json_number(json, "max_link_angle_deg", steady->peak_link_angle / MORAY_DEGREE);
+    moray_json_members(
+        json, MORAY_MEMBERS({"speed_m_s", steady->speed},
+                            {"course_speed_m_s", trial->held[model] ? moray_course_speed(steady, course) : NAN},
+                            {"power_W", steady->power}, {"cost_of_transport_J_m", steady->cost_of_transport},
+                            {"course_cost_J_m", course_cost(&trial->steady[model], trial->held[model], course)},
+                            {control ? "peak_force_N" : "peak_torque_N_m", steady->peak_effort},
+                            {"max_link_angle_deg", steady->peak_link_angle / MORAY_DEGREE}));
     if (!trial->held[model])
         moray_json_text(json, "course_not_held", trial->why[model].text);
     moray_json_close(json);

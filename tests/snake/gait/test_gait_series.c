@@ -152,6 +152,23 @@ static void test_neighbours(const moray_gait_problem_spec *spec, const moray_tes
     }
 }
 
+// What knows only the gait (25) says so.
+static void test_series_refused(const struct optimum *gait, const struct optimum *series, const moray_test_rig *rig)
+{
+    const moray_settings settings = moray_settings_default();
+    moray_gait more = gait->prediction.gait;
+    moray_gait_trial trial;
+    moray_solution *solution = NULL;
+    moray_swim_track track = {0};
+    moray_status status = moray_gait_problem_solve(series->problem, &settings, &more, &track, &solution);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "does not start from a gait"), "%s", status.text);
+    more.series = &series->series;
+    status = moray_gait_problem_solve(gait->problem, &settings, &more, &track, &solution);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "the start of an optimisation takes"), "%s", status.text);
+    status = moray_gait_trial_run(rig, &more, MORAY_FIRST_PRINCIPLES, &trial);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "a trial on both models takes"), "%s", status.text);
+}
+
 static void test_optima(moray_model model)
 {
     moray_gait_problem_spec spec = spec_of(model);
@@ -167,6 +184,7 @@ static void test_optima(moray_model model)
           series.prediction.speed, gait.prediction.speed);
     CHECK_NEAR(series.prediction.power, spec.limits.power, 1e-7, "at the same power");
     test_derivatives(series.problem);
+    test_series_refused(&gait, &series, &rig);
     spec.limits.theta_max.upper = 80 * DEG;
     solve_series(&spec, &rig, &gait, &wide);
     CHECK(wide.prediction.speed > series.prediction.speed && wide.swum.peak_link_angle < 79 * DEG,

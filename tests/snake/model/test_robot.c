@@ -27,6 +27,9 @@ static void test_bad_robots(void)
     robot.links = 1;
     moray_status status = moray_robot_check(&robot);
     CHECK(status.code == MORAY_INPUT && strstr(status.text, "links = 1"), "N = 1: %s", status.text);
+    robot.links = MORAY_MOST_LINKS + 1; // for which a few arrays of fixed size are made
+    status = moray_robot_check(&robot);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "links = 1001"), "too many: %s", status.text);
     robot = moray_robot_paper();
     robot.m = -1;
     status = moray_robot_check(&robot);

@@ -30,10 +30,10 @@ static bool rates(double t, const double *x, double *dx, void *self)
 }
 
 // Least and largest mean speed through the water over periods of the gait, in a full turn after `start` periods.
-static void turn_speeds(const turn *on, int start, double speed[2])
+static void turn_speeds(turn *on, int start, double speed[2])
 {
     const double T = 2 * M_PI / on->gait.omega;
-    const moray_ode ode = {.n = STATES + 1, .rhs = rates, .self = (void *)on};
+    const moray_ode ode = {.n = STATES + 1, .rhs = rates, .self = on};
     int steps = 200;
     const moray_integrator rk4 = {.run = rk4_run, .self = &steps};
     double x[STATES + 1] = {0}, heading = 0;

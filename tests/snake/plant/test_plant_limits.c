@@ -193,13 +193,13 @@ static bool swim_rhs(double t, const double *x, double *dx, void *self)
 }
 
 // From rest at the origin for 45 s; displacement [m] and joint work [J] of the last five periods of 3 s.
-static void swim_five_periods(const swim *self, double moved[2], double *work)
+static void swim_five_periods(swim *self, double moved[2], double *work)
 {
     enum { per_second = 100, before = 30 * per_second, total = 45 * per_second };
     int steps = 1;
     const double h = 1.0 / per_second;
     const moray_integrator rk4 = {.run = rk4_run, .self = &steps};
-    const moray_ode ode = {.n = 6, .rhs = swim_rhs, .self = (void *)self};
+    const moray_ode ode = {.n = 6, .rhs = swim_rhs, .self = self};
     double x[6] = {0}, out[7], start[2] = {0};
     *work = 0;
     for (int k = 0; k < total; k++) {
@@ -224,7 +224,7 @@ static void test_paper_gaits(void)
     for (int k = 0; k < 4; k++) {
         const double a =
             moray_amplitude_from_theta_max(&spec.robot, MORAY_CONTROL_ORIENTED, theta_max_deg[k] * MORAY_DEGREE, delta);
-        const swim self = {.map = &map, .gait = {a, 120 * MORAY_DEGREE, delta, 0}};
+        swim self = {.map = &map, .gait = {a, 120 * MORAY_DEGREE, delta, 0}};
         double moved[2], work;
         swim_five_periods(&self, moved, &work);
         CHECK_NEAR(moved[0] / 15, v_x[k], 5e-5, "mean v_x of the paper's gaits");

@@ -12,6 +12,7 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/closed_loop.h"
+#include "snake/steer/problems.h"
 
 // ---- References ----------------------------------------------------------------------------------------------------
 
@@ -93,9 +94,9 @@ static void test_refused(const char *folder)
 {
     static const struct {
         const char *text, *says;
-    } files[] = {{"time,heading\n0,1\n", "t_s,heading_deg"}, {"t_s,heading_deg\n0,1\n1;2\n", ":3:"},
-                 {"t_s,heading_deg\n2,1\n1,2\n", "ascend"},  {"t_s,heading_deg\n0,1,2\n", ":2:"},
-                 {"t_s,heading_deg\n\n", "a line of values"},       {"t_s,heading_deg\n0,nan\n", "finite"}};
+    } files[] = {{"time,heading\n0,1\n", "t_s,heading_deg"},  {"t_s,heading_deg\n0,1\n1;2\n", ":3:"},
+                 {"t_s,heading_deg\n2,1\n1,2\n", "ascend"},   {"t_s,heading_deg\n0,1,2\n", ":2:"},
+                 {"t_s,heading_deg\n\n", "a line of values"}, {"t_s,heading_deg\n0,nan\n", "finite"}};
     char name[200];
     refuse("steps:", MORAY_INPUT, "no points");
     refuse("steps:2", MORAY_INPUT, "'2'");
@@ -173,13 +174,13 @@ static moray_gait paper_gait(moray_model model)
     return moray_gait_map(&robot, &paper, MORAY_CONTROL_ORIENTED, model);
 }
 
-static bool moray_is_solved(const moray_heading_plan *plan)
+static bool moray_is_solved(const moray_steering_plan *plan)
 {
     return plan->solution && moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED;
 }
 
 // Mean of (phi_0'' / limit)^2, by the midpoint rule.
-static double steering_effort(const moray_heading_plan *plan, double limit)
+static double steering_effort(const moray_steering_plan *plan, double limit)
 {
     enum { n = 200000 };
     double sum = 0;
@@ -191,9 +192,9 @@ static double steering_effort(const moray_heading_plan *plan, double limit)
 }
 
 // The objective of the plan is that of the swimmer, all joints controlled by (34), who steers by it.
-static void test_objective(const moray_heading_plan *plan, const moray_heading_spec *spec)
+static void test_objective(const moray_steering_plan *plan, const moray_heading_spec *spec)
 {
-    const moray_plan steer = {plan->solution, 1};
+    moray_plan steer = {plan->solution, 1};
     const moray_swim_controller controller = moray_plan_controller(&steer);
     moray_swim_closed_loop closed_loop;
     const moray_swim_closed_loop_spec how = {.robot = &spec->robot,
@@ -214,12 +215,12 @@ static void test_objective(const moray_heading_plan *plan, const moray_heading_s
     moray_swim_closed_loop_free(&closed_loop);
 }
 
-static void test_plan(moray_model model, const moray_reference *reference, const moray_heading_plan *from)
+static void test_plan(moray_model model, const moray_reference *reference, const moray_steering_plan *from)
 {
     const moray_heading_spec spec = spec_of(model, reference);
     const moray_settings settings = settings_of(24);
     const moray_gait gait = paper_gait(model);
-    moray_heading_plan plan, again;
+    moray_steering_plan plan, again;
     CHECK_OK(moray_heading_plan_make(&plan, &spec, &settings, &gait, NULL), "plan from the reference");
     CHECK_OK(moray_heading_plan_make(&again, &spec, &settings, &gait, from), "from another plan");
     CHECK(moray_is_solved(&plan) && moray_is_solved(&again), "both are solved");
@@ -232,12 +233,12 @@ static void test_plan(moray_model model, const moray_reference *reference, const
             CHECK(false, "t = %g s: offset %g, rate %g", HORIZON * k / 100.0, offset.value, offset.rate);
     }
     test_objective(&plan, &spec);
-    moray_heading_plan_free(&again);
-    moray_heading_plan_free(&plan);
+    moray_steering_plan_free(&again);
+    moray_steering_plan_free(&plan);
 }
 
 // On the averaged plant the gait is free, and comes to the limit of the power.
-static void test_averaged(moray_heading_plan *averaged, const moray_reference *reference)
+static void test_averaged(moray_steering_plan *averaged, const moray_reference *reference)
 {
     moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
     const moray_settings settings = settings_of(12);
@@ -254,7 +255,7 @@ static void test_averaged(moray_heading_plan *averaged, const moray_reference *r
 static void test_limits(const moray_reference *reference)
 {
     moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
-    moray_heading problem;
+    moray_steering_problem problem;
     moray_status status;
     spec.t1 = 0;
     status = moray_heading_new(&problem, &spec);
@@ -275,7 +276,7 @@ static void test_tube(const moray_reference *reference)
     moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
     const moray_settings settings = settings_of(24);
     const moray_gait gait = paper_gait(MORAY_CONTROL_ORIENTED);
-    moray_heading_plan plan;
+    moray_steering_plan plan;
     spec.max_error = 12 * DEG; // of 20: either side of the jump has to be within it
     CHECK_OK(moray_heading_plan_make(&plan, &spec, &settings, &gait, NULL), "plan in a tube");
     CHECK(moray_is_solved(&plan), "is solved");
@@ -288,7 +289,7 @@ static void test_tube(const moray_reference *reference)
         largest = fmax(largest, fabs(error));
     }
     CHECK(largest < 12.05 * DEG && largest > 9.9 * DEG, "largest error %g deg", largest / DEG);
-    moray_heading_plan_free(&plan);
+    moray_steering_plan_free(&plan);
 }
 
 int main(void)
@@ -303,13 +304,13 @@ int main(void)
     test_intervals();
     rmdir(folder);
     moray_reference step = read_ok("steps:6=20");
-    moray_heading_plan averaged;
+    moray_steering_plan averaged;
     test_averaged(&averaged, &step);
     test_plan(MORAY_CONTROL_ORIENTED, &step, &averaged);
     test_plan(MORAY_FIRST_PRINCIPLES, &step, &averaged);
     test_limits(&step);
     test_tube(&step);
-    moray_heading_plan_free(&averaged);
+    moray_steering_plan_free(&averaged);
     moray_reference_free(&step);
     return tap_done();
 }

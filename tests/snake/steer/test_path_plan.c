@@ -9,6 +9,7 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/path.h"
 #include "moray/snake/closed_loop.h"
+#include "snake/steer/problems.h"
 
 // ---- The problem ---------------------------------------------------------------------------------------------------
 
@@ -36,7 +37,7 @@ static moray_path_spec spec_of(const moray_path *path, int links)
 static void test_derivatives(moray_model model, bool averaged, int links, double duration, double tube)
 {
     moray_path path;
-    moray_path_problem problem;
+    moray_steering_problem problem;
     moray_ocp_derivative_report report;
     CHECK_OK(moray_path_read(&path, "0,0 2,0 2,4 6,4", 1.9), "a path");
     moray_path_spec spec = spec_of(&path, links);
@@ -52,14 +53,14 @@ static void test_derivatives(moray_model model, bool averaged, int links, double
     CHECK_OK(moray_ocp_check_derivatives(moray_steering_ocp(problem.steering), &report), "check");
     CHECK(report.jacobian_error < 1e-7 && report.hessian_error < 1e-5, "%d links, model %d: %s (%.1e); %s (%.1e)",
           links, model, report.jacobian, report.jacobian_error, report.hessian, report.hessian_error);
-    moray_path_problem_free(&problem);
+    moray_steering_problem_free(&problem);
     moray_path_free(&path);
 }
 
 static void test_refusals(void)
 {
     moray_path path;
-    moray_path_problem problem;
+    moray_steering_problem problem;
     CHECK_OK(moray_path_read(&path, "0,0 3,0", 1), "a path");
     moray_path_spec good = spec_of(&path, 5), bad[5] = {good, good, good, good, good};
     bad[0].tube = 0;
@@ -91,7 +92,7 @@ static void test_crab(void)
 {
     const double position[2] = {0, 0.5}, end[2] = {1e-3, 1e-3};
     moray_path path;
-    moray_path_plan plan;
+    moray_steering_plan plan;
     moray_settings settings = moray_settings_default();
     CHECK_OK(moray_path_read(&path, "0,0 12,0", 1), "a leg");
     moray_path_spec spec = spec_of(&path, 10);
@@ -121,7 +122,7 @@ static void test_crab(void)
     CHECK_NEAR(x[2], 0, end[1], "of the leg");
     const double closed = moray_path_duration(&path, 0, plan.straight.speed, V);
     CHECK(tf > 0.99 * closed && tf < 1.1 * closed, "%.2f s, of the triangle %.2f s", tf, closed);
-    moray_path_plan_free(&plan);
+    moray_steering_plan_free(&plan);
     const double strong[2] = {0, 0.4};
     memcpy(spec.current, strong, sizeof strong);
     const moray_status status = moray_path_plan_make(&plan, &spec, &settings, gait, position, 0, NULL);

@@ -11,6 +11,7 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/receding_horizon.h"
 #include "moray/snake/closed_loop.h"
+#include "snake/steer/problems.h"
 
 // ---- Steering problems ---------------------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@
 
 #include "moray/snake/trial.h"
 #include "moray/snake/turn.h"
+#include "snake/steer/problems.h"
 
 static moray_turn_spec spec_of(moray_model model, bool averaged, int links)
 {
@@ -35,13 +36,13 @@ static moray_turn_spec spec_of(moray_model model, bool averaged, int links)
 static void test_derivatives(moray_model model, bool averaged, int links)
 {
     moray_turn_spec spec = spec_of(model, averaged, links);
-    moray_turn problem;
+    moray_steering_problem problem;
     moray_ocp_derivative_report report;
     CHECK_OK(moray_turn_new(&problem, &spec), "problem");
     CHECK_OK(moray_ocp_check_derivatives(moray_steering_ocp(problem.steering), &report), "check");
     CHECK(report.jacobian_error < 1e-8 && report.hessian_error < 1e-5, "%d links, model %d: %s (%.1e); %s (%.1e)",
           links, model, report.jacobian, report.jacobian_error, report.hessian, report.hessian_error);
-    moray_turn_free(&problem);
+    moray_steering_problem_free(&problem);
 }
 
 static void test_refusals(void)
@@ -54,7 +55,7 @@ static void test_refusals(void)
     bad[2].steering = -1;
     bad[3].longest = 1;
     for (int k = 0; k < 4; k++) {
-        moray_turn problem;
+        moray_steering_problem problem;
         const moray_status status = moray_turn_new(&problem, &bad[k]);
         CHECK(status.code == MORAY_INPUT && strstr(status.text, words[k]), "%s", status.text);
         CHECK(!problem.steering && !problem.task, "nothing is left");
@@ -72,7 +73,7 @@ static void test_turn(void)
     settings.tolerance = 1e-7;
     for (int side = 0; side < 2; side++) {
         moray_turn_spec spec = spec_of(MORAY_CONTROL_ORIENTED, true, 10);
-        moray_turn_plan plan;
+        moray_steering_plan plan;
         moray_gait gait = moray_gait_paper(&spec.robot), turning = gait;
         spec.current[0] = spec.current[1] = 0;
         spec.heading *= side ? -1 : 1;
@@ -86,7 +87,7 @@ static void test_turn(void)
         CHECK_NEAR(x[0], spec.heading, 1e-7, "heading at the end");
         CHECK_NEAR(x[3], 0, 1e-7, "turning at the end");
         CHECK_NEAR(x[MORAY_STATE_PHI_0], 0, 1e-7, "offset at the end");
-        moray_turn_plan_free(&plan);
+        moray_steering_plan_free(&plan);
     }
     CHECK_RELATIVE(took[0], took[1], 1e-4, "as long to the right as to the left");
     const double steady = 90 * DEG / fabs(rate);

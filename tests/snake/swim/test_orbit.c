@@ -251,6 +251,9 @@ static void test_refusals(void)
     refuses_gait(orbit, gait, MORAY_NOT_SOLVED, "in a current of (0, 0.5) m/s");
     gait.taper = NAN;
     refuses_gait(orbit, gait, MORAY_INPUT, "taper = nan");
+    const moray_series series = {9, 1, (const double[27]){0}};
+    gait = (moray_gait){.amplitude = 0.1, .omega = 1, .series = &series};
+    refuses_gait(orbit, gait, MORAY_INPUT, "a series of 1 harmonics in 9 joints: an orbit takes");
     gait = (moray_gait){.amplitude = 0.1, .omega = -1};
     refuses_gait(orbit, gait, MORAY_INPUT, "omega = -1");
     gait = (moray_gait){.amplitude = INFINITY, .omega = 1};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "arguments.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -19,13 +20,11 @@ static char path[] = "/tmp/moray-robot-XXXXXX";
 
 static moray_status parse(settings *s, const char *const arguments[8])
 {
-    char *argv[10] = {"test"};
-    int argc = 1;
-    for (int i = 0; i < 8 && arguments[i]; i++)
-        argv[argc++] = (char *)arguments[i];
+    command_line line;
+    command_set(&line, "test", arguments, 8);
     moray_request request;
     *s = (settings){.common = moray_common_default(), .snake = moray_snake_options_default()};
-    return moray_app_parse(&program, argc, argv, s, &request);
+    return moray_app_parse(&program, line.argc, line.argv, s, &request);
 }
 #define PARSE(s, ...) parse((s), (const char *const[8]){__VA_ARGS__})
 
@@ -53,6 +52,7 @@ static void test_robot(void)
     CHECK_NEAR(s.snake.robot.c_n, 1000 * 1 * 2 * 0.03 * 0.1, 1e-12, "c_n = rho C_D 2 b_e l from the geometry");
     CHECK(s.snake.robot.l == 0.1, "l is half of length_m: %g", s.snake.robot.l);
     CHECK(s.snake.robot.m == 3 && s.snake.robot.c_t == 0, "direct keys override the geometry");
+    CHECK_NEAR(s.snake.robot.J, 3 * (0.2 * 0.2 / 12 + 0.05 * 0.05 / 4), 1e-15, "J is that of the mass given");
     write_file("[robot]\nlinks=3\nl_m=0.1\nm_kg=1\nJ_kg_m2=2\nc_t=3\nc_n=4\nmu_n=5\nlambda_1=6\nlambda_2=7\n"
                "lambda_3=8\nrot_damping=9\nrot_gain=10\nk_p=11\nk_d=12\n");
     CHECK_OK(PARSE(&s, "--robot", path), "all direct keys");

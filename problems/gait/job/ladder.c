@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+//
+// The ladder of a job: every gait on models that it was not found on, and a gait that is optimised for several.
+#include <stdlib.h>
+#include <string.h>
+
+#include "job.h"
+
+moray_status gait_job_rungs(const gait_job *job, rungs *over)
+{
+    char text[MORAY_PATH_SIZE], *rest = NULL;
+    *over = (rungs){0};
+    if (strcmp(job->over, "none") == 0)
+        return moray_ok();
+    strcpy(text, job->over);
+    for (char *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+        const int rung = moray_rung_named(name);
+        if (rung < 0)
+            return moray_error(MORAY_INPUT,
+                               "over = %.40s: must be none or names of rungs with commas between: paper, split2, split3, "
+                               "split5, strip, quadratic, consistent, c_n+20, c_n-20, c_t+20, c_t-20, mu_n+20, mu_n-20, "
+                               "lambda+20, lambda-20",
+                               name);
+        for (int k = 0; k < over->n; k++)
+            if (over->at[k] == rung)
+                return moray_error(MORAY_INPUT, "over = %.200s: %s stands there twice", job->over, name);
+        over->at[over->n++] = rung;
+    }
+    return moray_ok();
+}
+
+unsigned gait_job_found_on(const gait_job *job, moray_model model)
+{
+    const unsigned own = moray_rung_of(&job->snake.robot);
+    return model == MORAY_FIRST_PRINCIPLES && own ? own | MORAY_RUNG_CHANGES : 0;
+}
+
+moray_status gait_job_climb(const gait_job *job, stage *const *at, int n)
+{
+    enum { most = 128 };
+    moray_gait gait[most];
+    int gaits = 0;
+    for (int k = 0; k < n && gaits < most; k++)
+        if (at[k]->solution && !at[k]->left_out)
+            gait[gaits++] = at[k]->trial.gait[MORAY_FIRST_PRINCIPLES];
+    const moray_ladder_spec spec = {.robot = job->snake.robot,
+                                    .current = {job->snake.current[0], job->snake.current[1]},
+                                    .course = job->snake.course,
+                                    .baseline = job->paper.gait[MORAY_FIRST_PRINCIPLES],
+                                    .gait = gait,
+                                    .gaits = gaits,
+                                    .settings = job->rig.settings,
+                                    .jobs = job->jobs};
+    moray_ticker_show(&job->ticker, "%s: %d gaits on the ladder of models", job->name, gaits);
+    moray_ladder_row *row = calloc((size_t)gaits * MORAY_RUNGS + 1, sizeof *row), *next = row;
+    if (!row)
+        return moray_error(MORAY_MEMORY, "no memory for %d ladders", gaits);
+    const moray_status status = moray_ladder_climb(&spec, row);
+    for (int k = 0; k < n && next < row + gaits * MORAY_RUNGS; k++) {
+        if (!at[k]->solution || at[k]->left_out)
+            continue;
+        memcpy(at[k]->ladder, next, sizeof at[k]->ladder);
+        next += MORAY_RUNGS;
+    }
+    free(row);
+    return status;
+}
+
+// ---- One gait for several models -------------------------------------------------------------------------------------
+
+// The models, with an orbit on each and what the baseline makes there.
+typedef struct {
+    rungs over;
+    moray_rung rung[MORAY_RUNGS]; // the whole ladder
+    moray_orbit *orbit[MORAY_RUNGS];
+    moray_gait_scenario scenario[MORAY_RUNGS];
+} scenarios;
+
+static void scenarios_free(scenarios *set)
+{
+    for (int k = 0; k < set->over.n; k++)
+        moray_orbit_free(set->orbit[k]);
+}
+
+static moray_status make_scenario(gait_job *job, scenarios *set, int k)
+{
+    const moray_rung *rung = &set->rung[set->over.at[k]];
+    moray_orbit_spec spec = moray_orbit_spec_default(&rung->robot, MORAY_FIRST_PRINCIPLES);
+    moray_orbit_result baseline;
+    stage at = {.model = MORAY_FIRST_PRINCIPLES};
+    memcpy(spec.current, job->snake.current, sizeof spec.current);
+    spec.course = job->snake.course;
+    spec.scheme = job->common.scheme;
+    spec.intervals = job->common.intervals;
+    MORAY_TRY(moray_orbit_new(&set->orbit[k], &spec));
+    const moray_status status =
+        moray_orbit_solve(set->orbit[k], &job->paper.gait[MORAY_FIRST_PRINCIPLES], &baseline);
+    if (moray_failed(status))
+        return moray_error(status.code, "the baseline on %s: %.250s", rung->name, status.text);
+    at.power = baseline.steady.power;
+    memcpy(at.taper, job->taper, sizeof at.taper);
+    set->scenario[k] = (moray_gait_scenario){rung->name,
+                                             gait_job_spec(job, &at, MORAY_GAIT_FASTEST, job->snake.current),
+                                             baseline.steady.speed};
+    set->scenario[k].problem.robot = rung->robot;
+    return moray_ok();
+}
+
+// From the orbits of a gait, on each model at the baseline's power.
+static moray_status solve_from(gait_job *job, scenarios *set, const moray_gait *from, stage *at)
+{
+    const moray_settings settings = gait_job_settings(job);
+    moray_gait gait[MORAY_RUNGS];
+    moray_swim_track orbit[MORAY_RUNGS] = {0};
+    moray_solution *solution = NULL;
+    moray_status status = moray_ok();
+    for (int k = 0; k < set->over.n && !moray_failed(status); k++) {
+        moray_orbit_result found;
+        gait[k] = *from;
+        status = moray_orbit_match_power(set->orbit[k], &gait[k], set->scenario[k].problem.limits.power, &found);
+        if (!moray_failed(status))
+            status = moray_orbit_track(set->orbit[k], 101, &orbit[k]);
+        if (!moray_failed(status))
+            gait[k] = found.gait;
+    }
+    if (!moray_failed(status))
+        status = moray_gait_over_solve(at->over, &settings, gait, orbit, &solution);
+    for (int k = 0; k < set->over.n; k++)
+        moray_swim_track_free(&orbit[k]);
+    if (!moray_failed(status))
+        gait_job_keep_best(at, solution);
+    return status;
+}
+
+static moray_status solve_all(gait_job *job, scenarios *set, const gait_starts *known, stage *at)
+{
+    moray_status first_failure = moray_ok();
+    srand48(1);
+    at->starts = known->n + job->random_starts;
+    for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
+        const moray_gait gait = k < known->n ? known->gait[k] : gait_job_random(job, at);
+        const moray_status status = solve_from(job, set, &gait, at);
+        if (moray_failed(status) && !moray_failed(first_failure))
+            first_failure = status;
+    }
+    if (moray_interrupted())
+        return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");
+    if (!at->solution)
+        return first_failure;
+    if (moray_solution_info(at->solution)->outcome != MORAY_NLP_SOLVED)
+        return moray_error(MORAY_NOT_SOLVED, "%.280s", moray_solution_diagnosis(at->solution));
+    return moray_ok();
+}
+
+// omega is that of the user's own model, where it is one of them, and else that which uses the power allowed there.
+static void choose_omega(const gait_job *job, const scenarios *set, stage *at)
+{
+    const unsigned own = moray_rung_of(&job->snake.robot);
+    at->phase = 0;
+    for (int k = 0; k < set->over.n; k++)
+        if (own >> set->over.at[k] & 1)
+            at->phase = k;
+    at->prediction = moray_gait_over_prediction(at->over, at->solution, at->phase);
+    const bool is_own = own >> set->over.at[at->phase] & 1;
+    if ((is_own && isnan(job->power)) || !isfinite(at->power))
+        return;
+    const moray_swim_setup setup = moray_test_rig_setup(&job->rig, MORAY_FIRST_PRINCIPLES);
+    moray_gait gait = at->prediction.gait;
+    moray_steady steady;
+    if (!moray_failed(moray_swim_match_power(&setup, &gait, job->snake.course, at->power, &steady)))
+        at->prediction.gait.omega = fmin(fmax(gait.omega, job->omega[0]), job->omega[1]);
+}
+
+static moray_status optimise(gait_job *job, scenarios *set, const gait_starts *known)
+{
+    stage *at = &job->ladder;
+    moray_ladder(&job->snake.robot, set->rung);
+    for (int k = 0; k < set->over.n; k++)
+        MORAY_TRY(make_scenario(job, set, k));
+    MORAY_TRY(moray_gait_over_new(&at->over, set->scenario, set->over.n, (moray_over_goal)job->over_goal));
+    MORAY_TRY(solve_all(job, set, known, at));
+    choose_omega(job, set, at);
+    return gait_job_certify(job, at);
+}
+
+moray_status gait_job_over(gait_job *job, const gait_starts *known)
+{
+    stage *at = &job->ladder;
+    scenarios set = {0};
+    MORAY_TRY(gait_job_rungs(job, &set.over));
+    *at = (stage){.model = MORAY_FIRST_PRINCIPLES,
+                  .power = last_stage(job)->power,
+                  .speed = last_stage(job)->speed,
+                  .taper = {job->taper[0], job->taper[1]}};
+    for (int k = 0; k < set.over.n; k++)
+        at->found_on |= 1u << set.over.at[k];
+    if (at->found_on & moray_rung_of(&job->snake.robot))
+        at->found_on |= MORAY_RUNG_CHANGES;
+    if (moray_failed(job->no_paper[MORAY_FIRST_PRINCIPLES]))
+        return moray_error(MORAY_NOT_SOLVED, "there is no baseline to gain over: %.250s",
+                           job->no_paper[MORAY_FIRST_PRINCIPLES].text);
+    const moray_status status = optimise(job, &set, known);
+    scenarios_free(&set);
+    if (!moray_failed(status))
+        gait_job_prove(job, at);
+    return status;
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#ifndef SRC_OCP_COLUMNS_H
+#define SRC_OCP_COLUMNS_H
+
+#include "moray/map.h"
+
+// Differences the outputs of a map at in[n_in], each input by steps that begin at a fiftieth of its size and shrink
+// until rounding tells: jac[n_in][n_out] and how far each entry may be off, doubt[n_in][n_out] (infinite where nothing
+// converges). Where the functions end on one side, those of the other are taken. Error: MORAY_MEMORY.
+moray_status moray_difference_columns(const moray_map *map, const double *in, const double *size, double *jac,
+                                      double *doubt);
+
+#endif

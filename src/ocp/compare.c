@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "ocp/differences.h"
+#include "ocp/names.h"
+
+static const double certain = 4; // doubts that a disagreement is to exceed
+enum { name_size = 120 };
+
+// The worst entry so far: p < 0 for the endpoint.
+struct worst {
+    double error, given, found;
+    int p, node, row, col;
+};
+
+static void compare(const struct witness *w, int p, int n, const double *in_use, struct worst *worst)
+{
+    const struct transcription *t = w->solution->transcription;
+    const moray_map *map = p < 0 ? t->endpoint : t->phase[p].map;
+    const int block = map->n_in * map->n_out;
+    const double *jac = p < 0 ? w->end_jac : w->phase[p].jac + n * block;
+    const double *doubt = p < 0 ? w->end_doubt : w->phase[p].doubt + n * block;
+    const double *size = p < 0 ? w->end_size : w->phase[p].size;
+    const double *out_size = p < 0 ? w->end_out_size : w->phase[p].out_size;
+    const bool timeless = p >= 0 && t->layout.phase[p].t0 < 0 && t->layout.phase[p].tf < 0; // no variable moves t
+    for (int k = 0; k < block - (timeless ? map->n_out : 0); k++) {
+        const int row = k % map->n_out, col = k / map->n_out;
+        const double far = (fabs(in_use[k] - jac[k]) - certain * doubt[k]) * size[col];
+        const double error = isfinite(doubt[k]) && out_size[row] > 0 ? far / out_size[row] : 0;
+        if (error > worst->error)
+            *worst = (struct worst){error, in_use[k], jac[k], p, n, row, col};
+    }
+}
+
+static void say_where(const struct witness *w, const struct worst *worst, char *where, int size)
+{
+    const struct transcription *t = w->solution->transcription;
+    char out[name_size], in[name_size], place[name_size] = "";
+    if (worst->p < 0) {
+        moray_endpoint_output_name(t->ocp, worst->row, out, name_size);
+        moray_endpoint_input_name(t->ocp, worst->col, in, name_size);
+    } else {
+        moray_phase_output_name(t->ocp, worst->p, worst->row, out, name_size);
+        moray_phase_input_name(t->ocp, worst->p, worst->col, in, name_size);
+        snprintf(place, sizeof place, " in phase %.60s at t = %.6g", t->ocp->phase[worst->p].name,
+                 moray_layout_time(&t->layout, t->ocp, w->solution->iterate.x, worst->p,
+                                   t->layout.phase[worst->p].node[worst->node].tau));
+    }
+    snprintf(where, (size_t)size, "d (%s) / d (%s) is %.6g, by differences %.6g%s", out, in, worst->given, worst->found,
+             place);
+}
+
+moray_status moray_compare_columns(const struct witness *w, double *worst, char *where, int size)
+{
+    const struct transcription *t = w->solution->transcription;
+    size_t room = (size_t)t->endpoint->n_in * (size_t)t->endpoint->n_out;
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const size_t block = (size_t)t->phase[p].map->n_in * (size_t)t->phase[p].map->n_out;
+        room = block > room ? block : room;
+    }
+    double *in_use = calloc(room, sizeof *in_use);
+    if (!in_use)
+        return moray_error(MORAY_MEMORY, "no memory for the certificate");
+    struct worst found = {.p = -1};
+    moray_witness_in_use(w, -1, 0, in_use);
+    compare(w, -1, 0, in_use, &found);
+    for (int p = 0; p < t->ocp->phases; p++)
+        for (int n = 0; n < t->layout.phase[p].nodes; n++)
+            if (t->layout.phase[p].node[n].collocated) {
+                moray_witness_in_use(w, p, n, in_use);
+                compare(w, p, n, in_use, &found);
+            }
+    *worst = found.error;
+    where[0] = 0;
+    if (found.error > 0)
+        say_where(w, &found, where, size);
+    free(in_use);
+    return moray_ok();
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// What the certificate knows by itself: derivatives of the user's functions at a solution by differences of whole
+// columns, so that they trust neither the derivatives nor the patterns in use, and sizes of everything, so that no unit
+// matters.
+#ifndef SRC_OCP_WITNESS_H
+#define SRC_OCP_WITNESS_H
+
+#include "ocp/solution.h"
+
+struct phase_witness {
+    double *size;        // [n_in] of x, u, s, t: how far each moves in the phase
+    double *out_size;    // [n_out] of f, c, g: how far each moves where an input moves by its size
+    double *integral;    // [nq] size of q
+    double *jac, *doubt; // [nodes][n_in][n_out]; doubt: how far off rounding and bends may have led
+};
+
+struct witness {
+    const moray_solution *solution;
+    struct phase_witness *phase;
+    double *end_size, *end_out_size, *end_jac, *end_doubt; // [n_in], [n_out], [n_in][n_out] of the endpoint
+    double duration;                                       // of the longest phase
+};
+
+// Error: MORAY_MEMORY. Free with moray_witness_free, which is safe after an error.
+moray_status moray_witness_new(struct witness *e, const moray_solution *solution);
+void moray_witness_free(struct witness *e);
+
+// Rows of dense derivatives that differences of this quality say nothing about keep those in use: whether it is one.
+bool moray_witness_speaks(double doubt, double size, double out_size);
+
+// size[columns] and size[rows] of the programme.
+void moray_witness_columns(const struct witness *e, double *size);
+void moray_witness_rows(const struct witness *e, double *size);
+
+// How far the objective moves where what it depends on moves by its size; 1 where it does not.
+double moray_witness_objective(const struct witness *e);
+
+// Derivatives in use at a node of phase p, or at the endpoint (p < 0), as [n_in][n_out].
+void moray_witness_in_use(const struct witness *e, int p, int node, double *jac);
+
+#endif

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+//
+// One wrong solution for each number of the certificate, which it alone, or it first, must refuse.
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "ocp/solution.h"
+#include "rk4.h"
+
+static const int rk4_steps = 40;
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
+
+// ---- A cart with cubic drag, x' = v, v' = u - v^3, from rest to rest over 1 m in 2 s; J = integral of u^2 + v^4 / 4.
+//      Derivatives by hand, with a fault ----
+
+enum fault { none, wrong_jacobian, wrong_hessian, missing_entry };
+
+static void value(void *self, const double *in, double *out)
+{
+    (void)self;
+    const double v = in[1], u = in[2];
+    out[0] = v;
+    out[1] = u - v * v * v;
+    out[2] = v;
+    out[3] = u * u + v * v * v * v / 4;
+}
+
+static void jacobian(void *self, const double *in, double *values)
+{
+    const enum fault fault = *(const enum fault *)self;
+    const double v = in[1], u = in[2];
+    values[0] = 1;
+    values[1] = -3 * v * v * (fault == wrong_jacobian ? 1.001 : 1);
+    values[2] = 1;
+    values[3] = 1;
+    values[4] = 2 * u;
+    if (fault != missing_entry)
+        values[5] = v * v * v;
+}
+
+static void hessian(void *self, const double *in, const double *weight, double *values)
+{
+    const enum fault fault = *(const enum fault *)self;
+    values[0] = -6 * in[1] * weight[1] * (fault == wrong_hessian ? 1.1 : 1) +
+                (fault == missing_entry ? 0 : 3 * in[1] * in[1] * weight[3]);
+    values[1] = 2 * weight[3];
+}
+
+static void total(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+struct cart {
+    const char *scheme;
+    int intervals;
+    enum fault fault;
+    double barrier,
+        fastest; // where the solver's barrier ends, 0: at nothing; bound of the path constraint v <= fastest
+};
+
+static moray_solution *solve_cart(struct cart *cart, moray_ocp **ocp)
+{
+    static int row[] = {0, 1, 1, 2, 3, 3}, col[] = {1, 1, 2, 1, 2, 1}, hess_row[] = {1, 2}, hess_col[] = {1, 2};
+    const moray_map map = {.n_in = 4,
+                           .n_out = 4,
+                           .jac = {.nnz = cart->fault == missing_entry ? 5 : 6, .row = row, .col = col},
+                           .hess = {.nnz = 2, .row = hess_row, .col = hess_col},
+                           .value = value,
+                           .jacobian = jacobian,
+                           .hessian = hessian,
+                           .self = &cart->fault};
+    static moray_map kept; // must outlive the problem
+    kept = map;
+    const moray_phase_spec track = {.name = "track",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nc = 1,
+                                    .nq = 1,
+                                    .map = &kept,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(2),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0)),
+                                    .c = MORAY_BOUNDS(moray_at_most(cart->fastest))};
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution = NULL;
+    settings.scheme = cart->scheme;
+    settings.intervals = cart->intervals;
+    char target[20];
+    snprintf(target, sizeof target, "%g", cart->barrier);
+    const moray_key_value end = {"mu_target", target};
+    settings.ipopt = &end;
+    settings.n_ipopt = cart->barrier > 0;
+    CHECK_OK(moray_ocp_new(ocp, &(moray_ocp_spec){.phases = 1, .phase = &track, .endpoint = total}), "cart");
+    CHECK_OK(moray_solve(*ocp, &settings, NULL, &solution), "solved");
+    if (!solution)
+        exit(1);
+    return solution;
+}
+
+static moray_certificate certify(const moray_solution *solution)
+{
+    moray_certificate certificate;
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    return certificate;
+}
+
+static moray_certificate certificate_of(struct cart cart)
+{
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = solve_cart(&cart, &ocp);
+    const moray_certificate certificate = certify(solution);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    return certificate;
+}
+
+static const struct cart right = {"radau5", 10, none, 0, 10};
+
+static void test_right_solution(void)
+{
+    const moray_certificate c = certificate_of(right);
+    CHECK(c.pass && !c.why[0], "the right solution passes: KKT %.1e, gap %.1e, curvature %.1e, Hamiltonian %.1e %s",
+          c.kkt, c.gap, c.curvature, c.hamiltonian, c.why);
+}
+
+static void test_wrong_derivatives(void)
+{
+    struct cart cart = right;
+    cart.fault = wrong_jacobian;
+    moray_certificate c = certificate_of(cart);
+    CHECK(!c.pass && c.derivatives > MORAY_LIMIT_DERIVATIVES && strstr(c.why, "d (dynamics of state x[1])"),
+          "Jacobian: %s", c.why);
+    CHECK(c.kkt > MORAY_LIMIT_KKT, "and the optimum that it led to is none: %.1e", c.kkt);
+    cart.fault = missing_entry;
+    c = certificate_of(cart);
+    CHECK(!c.pass && c.derivatives > MORAY_LIMIT_DERIVATIVES && strstr(c.why, "d (integrand g[0]) / d (state x[1])"),
+          "pattern: %s", c.why);
+    cart.fault = wrong_hessian;
+    c = certificate_of(cart);
+    CHECK(!c.pass && c.derivatives <= MORAY_LIMIT_DERIVATIVES && c.directions > MORAY_LIMIT_DIRECTIONS, "Hessian: %s",
+          c.why);
+}
+
+static void test_wrong_meshes(void)
+{
+    struct cart cart = {"trapezoid", 6, none, 0, 10};
+    moray_certificate c = certificate_of(cart);
+    CHECK(!c.pass && c.mesh_error > 1e-6 && c.resimulation > 1e-6 && strstr(c.why, "phase track near t ="),
+          "coarse mesh: %s", c.why);
+    cart = (struct cart){"radau5", 3, none, 0, 0.6};
+    c = certificate_of(cart);
+    CHECK(!c.pass && c.between_nodes > 1e-4, "a limit passed between the nodes: %.1e, %s", c.between_nodes, c.why);
+}
+
+static void test_stopped_early(void)
+{
+    struct cart cart = right;
+    cart.barrier = 1e-4;
+    cart.fastest = 0.7;
+    const moray_certificate c = certificate_of(cart);
+    CHECK(!c.pass && c.gap > MORAY_LIMIT_GAP, "a solver that stops inside: gap %.1e, %s", c.gap, c.why);
+}
+
+// Spoils the multipliers or the states of a right solution.
+static void test_spoiled(void)
+{
+    moray_ocp *ocp = NULL;
+    struct cart cart = right;
+    moray_solution *solution = solve_cart(&cart, &ocp);
+    const int m = solution->transcription->nlp.m, middle = solution->transcription->layout.phase[0].node[20].x;
+    for (int i = 0; i < m; i++)
+        solution->iterate.lambda[i] *= 1 + 1e-3 * (i % 7 - 3);
+    moray_certificate c = certify(solution);
+    CHECK(!c.pass && c.kkt > MORAY_LIMIT_KKT && strstr(c.why, "could still improve"), "multipliers: %s", c.why);
+    for (int i = 0; i < m; i++)
+        solution->iterate.lambda[i] *= 1 + 0.2 * (i % 7 - 3);
+    c = certify(solution);
+    CHECK(c.hamiltonian > MORAY_LIMIT_HAMILTONIAN, "which the Hamiltonian sees too: %.1e", c.hamiltonian);
+    solution->iterate.x[middle] += 1e-4;
+    c = certify(solution);
+    CHECK(!c.pass && c.kkt > MORAY_LIMIT_KKT && strstr(c.why, "constraints are violated") && strstr(c.why, "defect"),
+          "a state: %s", c.why);
+    CHECK(c.resimulation > 1e-5, "and by shooting: %.1e", c.resimulation);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- A saddle: minimise -x(1)^2 at x = u = 0 ----
+
+static void drift(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+}
+
+static void far_away(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = -at->phase[0].xf[0] * at->phase[0].xf[0];
+}
+
+static void test_saddle(void)
+{
+    const moray_phase_spec line = {.name = "line",
+                                   .nx = 1,
+                                   .nu = 1,
+                                   .continuous = drift,
+                                   .t0 = moray_fixed(0),
+                                   .tf = moray_fixed(1),
+                                   .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                   .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &line, .endpoint = far_away}), "a maximum");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    const size_t n = (size_t)solution->transcription->nlp.n, m = (size_t)solution->transcription->nlp.m;
+    memset(solution->iterate.x, 0, n * sizeof(double));
+    memset(solution->iterate.z_lower, 0, n * sizeof(double));
+    memset(solution->iterate.z_upper, 0, n * sizeof(double));
+    memset(solution->iterate.lambda, 0, m * sizeof(double));
+    const moray_certificate c = certify(solution);
+    CHECK(!c.pass && c.kkt < 1e-12 && c.curvature > MORAY_LIMIT_CURVATURE, "stationary, but %s", c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+int main(void)
+{
+    test_right_solution();
+    test_wrong_derivatives();
+    test_wrong_meshes();
+    test_stopped_early();
+    test_spoiled();
+    test_saddle();
+    return tap_done();
+}

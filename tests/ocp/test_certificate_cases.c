@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+//
+// Problems whose wrong answers once passed, and right ones that were refused.
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <tgmath.h>
+
+#include "moray/ocp.h"
+#include "rk4.h"
+
+static const int rk4_steps = 40;
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
+
+static moray_solution *solve(const moray_ocp *ocp, const moray_settings *settings, moray_certificate *certificate)
+{
+    moray_solution *solution = NULL;
+    CHECK_OK(moray_solve(ocp, settings, NULL, &solution), "solved");
+    if (!solution)
+        exit(1);
+    CHECK_OK(moray_certify(solution, &rk4, certificate), "certificate");
+    return solution;
+}
+
+// ---- A maximum: minimise -x(1)^2, x' = u, |u| <= 1, from the symmetric start; the optimum is -1 ----
+
+static void drift(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+}
+
+static void far_away(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = -at->phase[0].xf[0] * at->phase[0].xf[0];
+}
+
+static void test_maximum(void)
+{
+    const moray_phase_spec line = {.name = "line",
+                                   .nx = 1,
+                                   .nu = 1,
+                                   .continuous = drift,
+                                   .t0 = moray_fixed(0),
+                                   .tf = moray_fixed(1),
+                                   .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                   .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    const char *schemes[] = {"hermite-simpson", "radau3", "gauss2"};
+    moray_ocp *ocp = NULL;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &line, .endpoint = far_away}), "a maximum");
+    for (unsigned k = 0; k < sizeof schemes / sizeof *schemes; k++) {
+        moray_settings settings = moray_settings_default();
+        moray_certificate certificate;
+        settings.scheme = schemes[k];
+        moray_solution *solution = solve(ocp, &settings, &certificate);
+        CHECK_NEAR(moray_solution_objective(solution), -1, 1e-6, "the saddle of the start is left");
+        CHECK(certificate.pass && certificate.curvature == 0, "%s: passes %s", schemes[k], certificate.why);
+        moray_solution_free(solution);
+    }
+    moray_ocp_free(ocp);
+}
+
+// ---- A kink: g = 0.05 u^2 + |u| by fabs, whose complex step is 0; x' = u - 0.3 x, from 0 to 1 in 5 s ----
+
+static void kinked(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num u = at->u[0];
+    out->f[0] = u - 0.3 * at->x[0];
+    out->g[0] = 0.05 * u * u + fabs(u);
+}
+
+static void total(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static void test_kink(void)
+{
+    const moray_phase_spec tank = {.name = "tank",
+                                   .nx = 1,
+                                   .nu = 1,
+                                   .nq = 1,
+                                   .continuous = kinked,
+                                   .t0 = moray_fixed(0),
+                                   .tf = moray_fixed(5),
+                                   .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                   .xf = MORAY_BOUNDS(moray_fixed(1)),
+                                   .u = MORAY_BOUNDS(moray_between(-5, 5))};
+    moray_ocp *ocp = NULL;
+    moray_settings settings = moray_settings_default();
+    moray_certificate certificate;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &tank, .endpoint = total}), "a kink");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    CHECK(!certificate.pass && certificate.derivatives > 0.1 && strstr(certificate.why, "control u[0]"),
+          "fabs fails: %s", certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- Least time over a distance d from rest to rest, |u| <= a: 2 sqrt(d / a) after t0 ----
+
+struct dash {
+    double distance, push, start;
+};
+
+static void run_dash(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = at->u[0];
+}
+
+static void soon(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].tf;
+}
+
+// A wrong time is told; a right one passes.
+static void test_dash(const struct dash *dash)
+{
+    const double least = 2 * sqrt(dash->distance / dash->push);
+    const moray_phase_spec track = {.name = "track",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .continuous = run_dash,
+                                    .t0 = moray_fixed(dash->start),
+                                    .tf = moray_between(dash->start, dash->start + 10 * least),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(dash->distance), moray_fixed(0)),
+                                    .u = MORAY_BOUNDS(moray_between(-dash->push, dash->push))};
+    moray_ocp *ocp = NULL;
+    moray_settings settings = moray_settings_default();
+    moray_certificate certificate;
+    settings.scheme = "gauss2"; // whose control may jump between intervals
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &track, .endpoint = soon}), "least time");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    const double found = (moray_solution_objective(solution) - dash->start) / least;
+    CHECK(fabs(found - 1) < 1e-4 ? certificate.pass : !certificate.pass,
+          "%g m at %g m/s^2 from t = %g: %.6g of the least time, %s %s", dash->distance, dash->push, dash->start, found,
+          certificate.pass ? "passes" : "fails:", certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- A phase without length ----
+
+static void keep_still(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[1].xf[0] * at->phase[1].xf[0];
+    out->e[0] = at->phase[1].x0[0] - at->phase[0].xf[0];
+    out->e[1] = at->phase[1].t0 - at->phase[0].tf;
+}
+
+static void test_no_length(void)
+{
+    const moray_phase_spec phases[] = {{.name = "way",
+                                        .nx = 1,
+                                        .nu = 1,
+                                        .continuous = drift,
+                                        .t0 = moray_fixed(0),
+                                        .tf = moray_fixed(1),
+                                        .x0 = MORAY_BOUNDS(moray_fixed(1)),
+                                        .u = MORAY_BOUNDS(moray_between(-1, 1))},
+                                       {.name = "rest",
+                                        .nx = 1,
+                                        .nu = 1,
+                                        .continuous = drift,
+                                        .t0 = moray_fixed(1),
+                                        .tf = moray_fixed(1),
+                                        .u = MORAY_BOUNDS(moray_between(-1, 1))}};
+    moray_ocp *ocp = NULL;
+    moray_settings settings = moray_settings_default();
+    moray_certificate certificate;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 2,
+                                                   .phase = phases,
+                                                   .ne = 2,
+                                                   .e = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                                   .endpoint = keep_still}),
+             "a phase without length");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    CHECK(!certificate.pass && strstr(certificate.why, "phase rest has no length"), "%s", certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+int main(void)
+{
+    const struct dash dashes[] = {{1, 1, 0},     {1e-6, 1e-6, 0}, {1e-9, 1e-9, 0}, {1e-9, 1, 0},
+                                  {1e6, 1e6, 0}, {1e9, 1e3, 0},   {1, 1, 1e4},     {1, 1, 1e6}};
+    test_maximum();
+    test_kink();
+    for (unsigned k = 0; k < sizeof dashes / sizeof *dashes; k++)
+        test_dash(&dashes[k]);
+    test_no_length();
+    return tap_done();
+}
