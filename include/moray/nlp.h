@@ -50,11 +50,12 @@ typedef enum { MORAY_LINEAR_MORAY, MORAY_LINEAR_MUMPS, MORAY_LINEAR_MA57 } moray
 MORAY_API const char *moray_linear_solver_text(moray_linear_solver solver); // "moray", "mumps", "ma57"
 
 typedef struct moray_nlp_settings {
-    double tolerance;   // 1e-8: scaled KKT error at which the solver stops
-    int max_iterations; // 1000
-    double barrier;     // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
-    bool warm;          // false: true starts from the multipliers of the iterate too, and close to its bounds
-    int print_level;    // 0: Ipopt's own log on standard error, 0..12
+    double tolerance;       // 1e-8: scaled KKT error at which the solver stops
+    int max_iterations;     // 1000
+    double max_cpu_seconds; // 0, no limit: processor time of the solve
+    double barrier;  // 0.1: barrier parameter to start with; less when the start is nearly feasible and nearly right
+    bool warm;       // false: true starts from the multipliers of the iterate too, and close to its bounds
+    int print_level; // 0: Ipopt's own log on standard error, 0..12
     moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false: true has MUMPS or MA57 timed
     // Options of Ipopt by their names, {"mu_strategy", "adaptive"}, after all that moray sets; not option_file_name,

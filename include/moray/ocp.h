@@ -224,15 +224,17 @@ MORAY_API moray_status moray_guess_simulate(moray_guess *guess, const moray_ocp 
 // ---- Solving -------------------------------------------------------------------------------------------------------
 
 typedef struct moray_settings {
-    const char *scheme;    // "hermite-simpson"
-    int intervals;         // 20, of equal length, in every phase; 0: the meshes and the scheme of guess->from
-    double tolerance;      // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
-    double mesh_tolerance; // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
-    int max_refinements;   // 0: finer meshes tried while the certificate would not accept what is between the nodes
-    int max_iterations;    // 1000
-    double barrier;        // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
-    bool own_scaling;      // true; false leaves scaling to Ipopt
-    int print_level;       // 0: Ipopt's log on standard error
+    const char *scheme;     // "hermite-simpson"
+    int intervals;          // 20, of equal length, in every phase; 0: the meshes and the scheme of guess->from
+    double tolerance;       // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
+    double mesh_tolerance;  // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
+    int max_refinements;    // 0: finer meshes tried while the certificate would not accept what is between the nodes
+    int max_iterations;     // 1000
+    double max_cpu_seconds; // 0, no limit: processor time of all meshes, after which the best solution so far stays
+    int max_variables;      // 0, no limit: of a finer mesh
+    double barrier;         // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
+    bool own_scaling;       // true; false leaves scaling to Ipopt
+    int print_level;        // 0: Ipopt's log on standard error
     moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
     const moray_key_value *ipopt;      // [n_ipopt] further options of Ipopt, which must outlive the solution

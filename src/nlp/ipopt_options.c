@@ -39,6 +39,8 @@ bool moray_ipopt_set_options(IpoptProblem problem, const moray_nlp *nlp, const m
     // 3.11 declares its option texts as char * but only reads them.
     bool ok = AddIpoptNumOption(problem, (char *)"tol", settings->tolerance);
     ok = ok && AddIpoptIntOption(problem, (char *)"max_iter", settings->max_iterations);
+    if (settings->max_cpu_seconds > 0)
+        ok = ok && AddIpoptNumOption(problem, (char *)"max_cpu_time", settings->max_cpu_seconds);
     ok = ok && AddIpoptIntOption(problem, (char *)"print_level", 0);               // standard output is the caller's
     ok = ok && AddIpoptStrOption(problem, (char *)"option_file_name", (char *)""); // none, not even ./ipopt.opt
     ok = ok && AddIpoptStrOption(problem, (char *)"sb", (char *)"yes");            // no banner

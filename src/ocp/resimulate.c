@@ -66,7 +66,11 @@ moray_status moray_resimulate(struct examiner *e, const moray_integrator *integr
     struct finding whole = {0};
     moray_solution_nodes(e->solution, e->p, time, NULL);
     moray_status status = run(e, integrator, true, x, time, shooting);
-    if (!moray_failed(status)) {
+    if (status.code == MORAY_NUMERIC) { // the found controls lead out of where the functions are defined
+        moray_find(shooting, INFINITY, e->p, time[0]);
+        *composed = INFINITY;
+        status = moray_ok();
+    } else if (!moray_failed(status)) {
         const moray_status composition = run(e, integrator, false, x, time, &whole);
         if (composition.code == MORAY_MEMORY)
             status = composition;

@@ -8,7 +8,8 @@
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-3;
-enum { most_escapes = 2 };   // from saddles
+static const double least_seconds = 1e-3; // of a solve that is begun
+enum { most_escapes = 2 };                // from saddles
 enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
 
 moray_settings moray_settings_default(void)
@@ -33,6 +34,10 @@ static moray_status check_settings(const moray_settings *settings, const moray_g
         return moray_error(MORAY_INPUT, "mesh_tolerance = %g: must be positive", settings->mesh_tolerance);
     if (settings->max_iterations < 0)
         return moray_error(MORAY_INPUT, "max_iterations = %d: must not be negative", settings->max_iterations);
+    if (!(settings->max_cpu_seconds >= 0))
+        return moray_error(MORAY_INPUT, "max_cpu_seconds = %g: must not be negative", settings->max_cpu_seconds);
+    if (settings->max_variables < 0)
+        return moray_error(MORAY_INPUT, "max_variables = %d: must not be negative", settings->max_variables);
     if (settings->max_refinements < 0)
         return moray_error(MORAY_INPUT, "max_refinements = %d: must not be negative", settings->max_refinements);
     return moray_ok();
@@ -47,6 +52,7 @@ struct campaign {
     struct mesh *meshes;
     moray_mesh_record *history; // becomes the solution's
     int tried, widenings, escapes;
+    double spent; // of the processor, in the solver
 };
 
 static void free_meshes(struct campaign *c)
@@ -92,6 +98,7 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
 {
     return (moray_nlp_settings){.tolerance = settings->tolerance,
                                 .max_iterations = settings->max_iterations,
+                                .max_cpu_seconds = settings->max_cpu_seconds,
                                 .barrier = warm ? settings->tolerance : settings->barrier,
                                 .warm = warm,
                                 .print_level = settings->print_level,
@@ -167,16 +174,19 @@ static moray_status transcribe_at_guess(const struct campaign *c, const moray_gu
 
 // A warm start lowers the barrier only where the interpolated point is nearly right: elsewhere it would start in a
 // corner.
-static moray_status solve_once(const struct campaign *c, const moray_guess *guess, moray_solution **result)
+static moray_status solve_once(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     *result = NULL;
     moray_solution *solution = calloc(1, sizeof *solution);
     if (!solution)
         return moray_error(MORAY_MEMORY, "no memory for a solution");
     solution->settings = *c->settings;
+    if (c->settings->max_cpu_seconds > 0)
+        solution->settings.max_cpu_seconds = fmax(c->settings->max_cpu_seconds - c->spent, least_seconds);
     moray_status status = transcribe_at_guess(c, guess, solution);
     if (!moray_failed(status))
         status = run(solution, guess);
+    c->spent += solution->info.cpu_seconds;
     if (moray_failed(status))
         moray_solution_free(solution);
     else
@@ -281,6 +291,18 @@ static moray_status solve_mesh(struct campaign *c, const moray_guess *guess, mor
     return moray_ok();
 }
 
+// Whether the finer meshes in c may be solved: the variables of a mesh are those of its points.
+static bool within_limits(const struct campaign *c)
+{
+    const moray_settings *settings = c->settings;
+    double variables = c->ocp->ns;
+    for (int p = 0; p < c->ocp->phases; p++)
+        for (int k = 0; k < c->meshes[p].intervals; k++)
+            variables += c->meshes[p].stages[k] * (double)(c->ocp->phase[p].nx + c->ocp->phase[p].nu);
+    return (settings->max_variables == 0 || variables <= settings->max_variables) &&
+           (settings->max_cpu_seconds <= 0 || c->spent < settings->max_cpu_seconds);
+}
+
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
 static moray_status record_and_refine(struct campaign *c, moray_solution *solution, bool *again)
 {
@@ -290,7 +312,7 @@ static moray_status record_and_refine(struct campaign *c, moray_solution *soluti
     if (moray_is_solved(solution))
         MORAY_TRY(moray_refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
     record(c, solution, error, 0);
-    *again = more && error > c->settings->mesh_tolerance;
+    *again = more && error > c->settings->mesh_tolerance && within_limits(c);
     return moray_ok();
 }
 

@@ -18,6 +18,10 @@ static const moray_option own_rows[] = {
               .help = "finer meshes tried while the error between nodes is above mesh_tol"),
     MORAY_ROW(INT, app_run, max_iterations, "solver", "max_iterations", .max = 1000000,
               .help = "limit of the solver's iterations"),
+    MORAY_ROW(REAL, app_run, max_cpu_seconds, "solver", "max_cpu_seconds", .max = INFINITY, .unit = "s",
+              .help = "limit of the processor time of all meshes, after which the best so far stays; 0: none"),
+    MORAY_ROW(INT, app_run, max_variables, "solver", "max_variables", .max = 1000000000,
+              .help = "limit of the variables of a finer mesh; 0: none"),
     MORAY_ROW(REAL, app_run, barrier, "solver", "barrier", .max = INFINITY, .open = true,
               .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"),
     MORAY_CONTINUE(app_run, from_file),
@@ -53,6 +57,8 @@ static void start_from_defaults(app_run *run)
     run->mesh_tol = settings.mesh_tolerance;
     run->refinements = settings.max_refinements;
     run->max_iterations = settings.max_iterations;
+    run->max_variables = settings.max_variables;
+    run->max_cpu_seconds = settings.max_cpu_seconds;
     run->barrier = settings.barrier;
     for (int i = 0; i < app->n_constants; i++)
         run->constant[i] = *app->constants[i].value;
@@ -80,6 +86,8 @@ static moray_settings settings_of(app_run *run)
     settings.mesh_tolerance = run->mesh_tol;
     settings.max_refinements = run->refinements;
     settings.max_iterations = run->max_iterations;
+    settings.max_variables = run->max_variables;
+    settings.max_cpu_seconds = run->max_cpu_seconds;
     settings.barrier = run->barrier;
     settings.progress = show_iteration;
     settings.observer = run;

@@ -9,7 +9,8 @@
 typedef struct app_run {
     moray_common common;
     double mesh_tol, barrier;
-    int refinements, max_iterations;
+    int refinements, max_iterations, max_variables;
+    double max_cpu_seconds;
     bool check;
     char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
     double constant[MORAY_APP_CONSTANTS];

@@ -374,6 +374,35 @@ static void test_path_constraint_between_nodes(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Limits: the best solution stays ----
+
+static void test_limits(void)
+{
+    moray_ocp *ocp = hypersensitive(1000, &one);
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution = NULL;
+    int meshes;
+    settings.max_refinements = 10;
+    settings.max_variables = 150;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "limit of the variables");
+    const moray_mesh_record *mesh = moray_solution_history(solution, &meshes);
+    CHECK(mesh[meshes - 1].error > settings.mesh_tolerance && mesh[meshes - 1].variables <= 150 &&
+              moray_solution_info(solution)->outcome == MORAY_NLP_SOLVED,
+          "150 variables at most: %d, mesh error %.1e", mesh[meshes - 1].variables, mesh[meshes - 1].error);
+    moray_solution_free(solution);
+    settings.max_variables = 0;
+    settings.max_cpu_seconds = 1e-9;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "limit of the time");
+    moray_solution_history(solution, &meshes);
+    CHECK(meshes == 1 && moray_solution_info(solution)->cpu_seconds < 1, "no time: %d mesh, %s", meshes,
+          moray_nlp_outcome_text(moray_solution_info(solution)->outcome));
+    moray_solution_free(solution);
+    settings.max_cpu_seconds = -1;
+    const moray_status status = moray_solve(ocp, &settings, NULL, &solution);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "max_cpu_seconds = -1"), "%s", status.text);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     const char *schemes[] = {"trapezoid", "hermite-simpson", "radau3", "gauss2"};
@@ -391,5 +420,6 @@ int main(void)
     test_guess_from_solution();
     test_path_constraint_between_nodes();
     test_interrupted();
+    test_limits();
     return tap_done();
 }
