@@ -37,13 +37,14 @@ static moray_status allocate_phase(struct witness *e, int p)
                  nq = (size_t)e->solution->transcription->ocp->phase[p].nq;
     const size_t entries = (size_t)layout_of(e, p)->nodes * n_in * n_out;
     struct phase_witness *phase = &e->phase[p];
-    phase->size = calloc(n_in + n_out + nq + 2 * entries, sizeof *phase->size);
+    phase->size = calloc(n_in + n_out + nq + 3 * entries, sizeof *phase->size);
     if (!phase->size)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     phase->out_size = phase->size + n_in;
     phase->integral = phase->out_size + n_out;
     phase->jac = phase->integral + nq;
     phase->doubt = phase->jac + entries;
+    phase->kink = phase->doubt + entries;
     return moray_ok();
 }
 
@@ -52,12 +53,13 @@ static moray_status allocate(struct witness *e)
     const struct transcription *t = e->solution->transcription;
     const size_t n_in = (size_t)t->endpoint->n_in, n_out = (size_t)t->endpoint->n_out;
     e->phase = calloc((size_t)t->ocp->phases, sizeof *e->phase);
-    e->end_size = calloc(n_in + n_out + 2 * n_in * n_out, sizeof *e->end_size);
+    e->end_size = calloc(n_in + n_out + 3 * n_in * n_out, sizeof *e->end_size);
     if (!e->phase || !e->end_size)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     e->end_out_size = e->end_size + n_in;
     e->end_jac = e->end_out_size + n_out;
     e->end_doubt = e->end_jac + n_in * n_out;
+    e->end_kink = e->end_doubt + n_in * n_out;
     for (int p = 0; p < t->ocp->phases; p++)
         MORAY_TRY(allocate_phase(e, p));
     return moray_ok();
@@ -129,11 +131,11 @@ static moray_status difference_phase(struct witness *e, int p)
         step[i] = fmax(e->phase[p].size[i], 0.1 * least_part * width_of(bounds_of(e, p, (int)i)));
         step[i] = step[i] > 0 ? step[i] : 1;
     }
-    for (int n = 0; n < layout_of(e, p)->nodes && !moray_failed(status); n++)
+    const struct phase_witness *w = &e->phase[p];
+    for (size_t n = 0; n < (size_t)layout_of(e, p)->nodes && !moray_failed(status); n++)
         if (layout_of(e, p)->node[n].collocated)
-            status =
-                moray_difference_columns(cache->map, cache->in + (size_t)n * n_in, step,
-                                         e->phase[p].jac + (size_t)n * block, e->phase[p].doubt + (size_t)n * block);
+            status = moray_difference_columns(cache->map, cache->in + n * n_in, step, w->jac + n * block,
+                                              w->doubt + n * block, w->kink + n * block);
     free(step);
     return status;
 }
@@ -301,7 +303,7 @@ static moray_status gather(struct witness *e)
     }
     size_ends(e);
     MORAY_TRY(size_end_outputs(e));
-    return moray_difference_columns(t->endpoint, t->end_in, e->end_size, e->end_jac, e->end_doubt);
+    return moray_difference_columns(t->endpoint, t->end_in, e->end_size, e->end_jac, e->end_doubt, e->end_kink);
 }
 
 moray_status moray_witness_new(struct witness *e, const moray_solution *solution)
@@ -313,9 +315,9 @@ moray_status moray_witness_new(struct witness *e, const moray_solution *solution
     return status;
 }
 
-bool moray_witness_speaks(double doubt, double size, double out_size)
+bool moray_witness_speaks(double doubt, double kink, double size, double out_size)
 {
-    return doubt * size <= silent * out_size;
+    return (doubt + fabs(kink)) * size <= silent * out_size;
 }
 
 void moray_witness_in_use(const struct witness *e, int p, int node, double *jac)
