@@ -121,6 +121,15 @@ static void take_ranges(struct witness *e, int p)
 
 // ---- Derivatives ----
 
+// Without differences, those in use.
+static void take_in_use(struct witness *e, int p)
+{
+    const moray_map *map = cache_of(e, p)->map;
+    for (int n = 0; n < layout_of(e, p)->nodes; n++)
+        if (layout_of(e, p)->node[n].collocated)
+            moray_witness_in_use(e, p, n, e->phase[p].jac + n * map->n_in * map->n_out);
+}
+
 static moray_status difference_phase(struct witness *e, int p)
 {
     const struct phase_cache *cache = cache_of(e, p);
@@ -284,13 +293,16 @@ double moray_witness_objective(const struct witness *e)
 
 // ---- All of it ----
 
-static moray_status gather(struct witness *e)
+static moray_status gather(struct witness *e, bool differences)
 {
     const struct transcription *t = e->solution->transcription;
     MORAY_TRY(allocate(e));
     for (int p = 0; p < t->ocp->phases; p++) {
         take_ranges(e, p);
-        MORAY_TRY(difference_phase(e, p));
+        if (differences)
+            MORAY_TRY(difference_phase(e, p));
+        else
+            take_in_use(e, p);
         raise_by_effect(e, p);
         size_integrals(e, p);
     }
@@ -303,16 +315,28 @@ static moray_status gather(struct witness *e)
     }
     size_ends(e);
     MORAY_TRY(size_end_outputs(e));
+    if (!differences)
+        return moray_ok();
     return moray_difference_columns(t->endpoint, t->end_in, e->end_size, e->end_jac, e->end_doubt, e->end_kink);
+}
+
+static moray_status create(struct witness *e, const moray_solution *solution, bool differences)
+{
+    *e = (struct witness){.solution = solution};
+    const moray_status status = gather(e, differences);
+    if (moray_failed(status))
+        moray_witness_free(e);
+    return status;
 }
 
 moray_status moray_witness_new(struct witness *e, const moray_solution *solution)
 {
-    *e = (struct witness){.solution = solution};
-    const moray_status status = gather(e);
-    if (moray_failed(status))
-        moray_witness_free(e);
-    return status;
+    return create(e, solution, true);
+}
+
+moray_status moray_witness_of_sizes(struct witness *e, const moray_solution *solution)
+{
+    return create(e, solution, false);
 }
 
 bool moray_witness_speaks(double doubt, double kink, double size, double out_size)

@@ -28,6 +28,10 @@ struct witness {
 moray_status moray_witness_new(struct witness *e, const moray_solution *solution);
 void moray_witness_free(struct witness *e);
 
+// The same sizes but for what derivatives in use and differences differ by, at the cost of an iteration: for the
+// refinement, which asks mesh by mesh. The derivatives of phases are those in use; the endpoint has none.
+moray_status moray_witness_of_sizes(struct witness *e, const moray_solution *solution);
+
 // Entries that differences of this quality, or a kink, say nothing about keep the derivatives in use: whether they do
 // not.
 bool moray_witness_speaks(double doubt, double kink, double size, double out_size);
