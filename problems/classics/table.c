@@ -15,6 +15,7 @@
     X(hypersensitive)                                                                                                  \
     X(rayleigh)                                                                                                        \
     X(catalyst_mixing)                                                                                                 \
+    X(jackson)                                                                                                         \
     X(van_der_pol)                                                                                                     \
     X(two_link_arm)                                                                                                    \
     X(obstacle)                                                                                                        \

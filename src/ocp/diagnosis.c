@@ -138,15 +138,45 @@ static void say_active(moray_solution *solution)
         moray_diagnosis_say(solution, "And %d more at their bounds.\n", list.lines - most_lines);
 }
 
+static void say_ringing(moray_solution *solution, const moray_mesh_record *mesh)
+{
+    const moray_ocp *ocp = solution->transcription->ocp;
+    int p = 0, control = mesh->ringing - 1;
+    while (control >= ocp->phase[p].nu)
+        control -= ocp->phase[p++].nu;
+    char name[200];
+    moray_phase_input_name(ocp, p, ocp->phase[p].nx + control, name, sizeof name);
+    moray_diagnosis_say(solution,
+                        "On %d intervals the %s of phase %.100s went to and fro from node to node, as on fewer: a "
+                        "singular arc, on which this scheme rings; changed to radau3.\n",
+                        mesh->intervals, name, ocp->phase[p].name);
+}
+
+static void say_meshes(moray_solution *solution, const moray_mesh_record *tried)
+{
+    const bool solved = tried->outcome == MORAY_NLP_SOLVED || tried->outcome == MORAY_NLP_ACCEPTABLE;
+    for (int k = 0; k < solution->meshes; k++)
+        if (solution->history[k].ringing > 0)
+            say_ringing(solution, &solution->history[k]);
+    if (tried->objective == solution->iterate.objective)
+        return;
+    if (solved)
+        moray_diagnosis_say(solution,
+                            "The error did not fall any more with finer meshes, the last of %d intervals; "
+                            "this is the best.\n",
+                            tried->intervals);
+    else
+        moray_diagnosis_say(solution, "A finer mesh of %d intervals was not solved (%s); this is the best that was.\n",
+                            tried->intervals, moray_nlp_outcome_text(tried->outcome));
+}
+
 void moray_diagnose(moray_solution *solution)
 {
     const moray_mesh_record *tried = &solution->history[solution->meshes - 1];
     solution->diagnosis[0] = 0;
     moray_diagnosis_say(solution, "%s after %d iterations.\n", moray_nlp_outcome_text(solution->info.outcome),
                         solution->info.iterations);
-    if (tried->variables != solution->transcription->layout.columns)
-        moray_diagnosis_say(solution, "A finer mesh of %d intervals was not solved (%s); this is the last that was.\n",
-                            tried->intervals, moray_nlp_outcome_text(tried->outcome));
+    say_meshes(solution, tried);
     for (int k = 0; k < solution->meshes; k++)
         if (solution->history[k].dependences > 0)
             moray_diagnosis_say(

@@ -4,12 +4,16 @@
 #include <string.h>
 
 #include "ocp/refine.h"
+#include "ocp/ringing.h"
 #include "ocp/saddle.h"
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-3;
 static const double least_seconds = 1e-3; // of a solve that is begun
+static const double falls = 0.9;          // of the least error before: what counts as less
+enum { patience = 8 };                    // meshes in a row whose error is no less
 enum { most_escapes = 2 };                // from saddles
+enum { smooth_stages = 3 };               // of Radau, where Lobatto rings
 enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
 
 moray_settings moray_settings_default(void)
@@ -52,7 +56,10 @@ struct campaign {
     struct mesh *meshes;
     moray_mesh_record *history; // becomes the solution's
     int tried, widenings, escapes;
-    double spent; // of the processor, in the solver
+    double spent;         // of the processor, in the solver
+    moray_solution *best; // of the solved ones that of the least error; often the last
+    double best_error;
+    int vain; // meshes since
 };
 
 static void free_meshes(struct campaign *c)
@@ -303,6 +310,31 @@ static bool within_limits(const struct campaign *c)
            (settings->max_cpu_seconds <= 0 || c->spent < settings->max_cpu_seconds);
 }
 
+static int intervals_at_first(const struct campaign *c)
+{
+    const int intervals =
+        c->settings->intervals > 0 ? c->settings->intervals : c->history[0].intervals / c->ocp->phases;
+    return intervals > 1 ? intervals : 1;
+}
+
+// Where a control rings on this mesh as on the one before, the meshes in c become those of the start, with Radau.
+static moray_status leave_ringing(struct campaign *c, const moray_solution *solution)
+{
+    const int ringing = moray_is_solved(solution) ? moray_find_ringing(solution) : 0;
+    const bool again = c->family == MORAY_LOBATTO && ringing > 0 && c->tried > 1 && c->history[c->tried - 2].seen > 0;
+    c->history[c->tried - 1].seen = ringing;
+    if (!again)
+        return moray_ok();
+    c->history[c->tried - 1].ringing = ringing;
+    c->family = MORAY_RADAU;
+    c->stages = smooth_stages;
+    c->vain = 0;
+    free_meshes(c);
+    for (int p = 0; p < c->ocp->phases; p++)
+        MORAY_TRY(moray_mesh_uniform(&c->meshes[p], intervals_at_first(c), c->stages));
+    return moray_ok();
+}
+
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
 static moray_status record_and_refine(struct campaign *c, moray_solution *solution, bool *again)
 {
@@ -312,8 +344,28 @@ static moray_status record_and_refine(struct campaign *c, moray_solution *soluti
     if (moray_is_solved(solution))
         MORAY_TRY(moray_refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
     record(c, solution, error, 0);
-    *again = more && error > c->settings->mesh_tolerance && within_limits(c);
+    *again = more && error > c->settings->mesh_tolerance;
+    if (*again)
+        MORAY_TRY(leave_ringing(c, solution));
+    *again = *again && within_limits(c);
     return moray_ok();
+}
+
+// Takes the last solution over. Of what came before, what is not the best goes.
+static void take(struct campaign *c, moray_solution *last, moray_solution *old)
+{
+    const double error = c->history[c->tried - 1].error;
+    c->vain = !c->best || error < falls * c->best_error ? 0 : c->vain + 1;
+    if (!c->best || error < c->best_error) {
+        if (c->best && c->best != old)
+            drop(c->best);
+        if (old)
+            drop(old);
+        c->best = last;
+        c->best_error = error;
+    } else if (old != c->best) {
+        drop(old);
+    }
 }
 
 // Solves on the finer meshes in c. Keeps the old solution where the new one is not solved.
@@ -323,26 +375,49 @@ static moray_status solve_finer(struct campaign *c, moray_solution **solution, b
     const moray_guess guess = moray_guess_from_solution(old);
     MORAY_TRY(solve_mesh(c, &guess, &finer));
     moray_status status = record_and_refine(c, finer, again);
-    moray_solution *kept = moray_is_solved(finer) ? finer : old, *dropped = moray_is_solved(finer) ? old : finer;
     if (finer->info.outcome == MORAY_NLP_INTERRUPTED)
-        old->info.outcome = MORAY_NLP_INTERRUPTED;
-    kept->history = c->history, kept->meshes = c->tried;
-    drop(dropped);
-    *solution = kept;
+        c->best->info.outcome = MORAY_NLP_INTERRUPTED;
+    if (moray_is_solved(finer) && !moray_failed(status)) {
+        take(c, finer, old);
+        *solution = finer;
+    } else {
+        drop(finer);
+    }
+    *again = *again && c->vain < patience;
     return status;
+}
+
+static moray_status refine_until_good(struct campaign *c, moray_solution **solution)
+{
+    bool again;
+    MORAY_TRY(record_and_refine(c, *solution, &again));
+    take(c, *solution, NULL);
+    while (again)
+        MORAY_TRY(solve_finer(c, solution, &again));
+    return moray_ok();
+}
+
+// Of the last and the best solution, leaves the best.
+static void keep_best(struct campaign *c, moray_solution **solution)
+{
+    if (c->best && c->best != *solution) {
+        drop(*solution);
+        *solution = c->best;
+    }
+    (*solution)->history = c->history;
+    (*solution)->meshes = c->tried;
 }
 
 static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
 {
-    bool again;
     const int room = c->settings->max_refinements + 1 + most_widenings + most_escapes;
     c->history = calloc((size_t)room, sizeof *c->history);
     if (!c->history)
         return moray_error(MORAY_MEMORY, "no memory for a history of %d meshes", room);
     MORAY_TRY(solve_mesh(c, guess, solution));
-    MORAY_TRY(record_and_refine(c, *solution, &again));
-    while (again)
-        MORAY_TRY(solve_finer(c, solution, &again));
+    const moray_status status = refine_until_good(c, solution);
+    keep_best(c, solution);
+    MORAY_TRY(status);
     moray_diagnose(*solution);
     return moray_ok();
 }

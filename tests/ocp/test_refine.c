@@ -322,7 +322,7 @@ static void test_interrupted(void)
     CHECK(moray_solution_size(solution).variables == history[0].variables, "the solution is of the first");
     CHECK(strstr(moray_solution_diagnosis(solution), "A finer mesh of ") &&
               strstr(moray_solution_diagnosis(solution),
-                     "intervals was not solved (interrupted); this is the last that "
+                     "intervals was not solved (interrupted); this is the best that "
                      "was."),
           "which the diagnosis says");
     moray_solution_free(solution);

@@ -62,6 +62,22 @@ static void test_mesh_history(void)
     CHECK(result.seconds > 0, "%.3f s of the processor", result.seconds);
 }
 
+// Hermite-Simpson's control rings on the singular arc, mesh after mesh.
+static void test_ringing(void)
+{
+    struct classic_result result;
+    char diagnosis[600];
+    const struct classic *classic = classic_find("jackson");
+    const moray_settings settings = classic_settings(classic);
+    int changes = 0;
+    CHECK_OK(classic_solve(classic, &settings, &rk4, &result, diagnosis, (int)sizeof diagnosis), classic->name);
+    for (int k = 0; k < result.meshes; k++)
+        changes += result.mesh[k].ringing == 1;
+    CHECK(changes == 1 && result.mesh[1].ringing == 1, "the second mesh shows the first control to ring");
+    CHECK(strstr(diagnosis, "this scheme rings; changed to radau3"), "which is told: %s", diagnosis);
+    CHECK(result.mesh[result.meshes - 1].nodes < 200, "%d nodes resolve it", result.mesh[result.meshes - 1].nodes);
+}
+
 static void test_unsolved(void)
 {
     struct classic_result result;
@@ -102,6 +118,7 @@ int main(void)
             test_one(*c);
     CHECK(n >= 20, "%d problems in the table", n);
     test_mesh_history();
+    test_ringing();
     test_unsolved();
     test_judgement();
     return tap_done();
