@@ -77,6 +77,12 @@ run --links 3 --set power_W=0.02
 check "no baseline that makes way: $code $(cat err)" eval '[ $code -eq 0 ] && grep -q "^Left out as a baseline on the first-principles model: the paper.s gait for 3 links" out'
 check "and so no ladder" grep -q 'is compared on none of 15' out
 
+fit='paper fit --set write_ini=FILE'
+run --links 6 --over none --current 0,0.05
+check "constants tuned for another robot leave the control-oriented optimum out: $(grep '^Left out: the control' out)" \
+    eval '[ $code -eq 0 ] && grep "^Left out: the control-oriented optimum: rot_damping" out | grep -q "$fit"'
+refuse "$fit" --links 6 --current 0,0.05 --model control
+
 run --quiet --model control --set taper=-0.8
 check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
 

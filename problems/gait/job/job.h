@@ -134,7 +134,11 @@ typedef struct gait_starts {
 moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
                                       const double current[2]);
 
-// Builds it. Error: those of moray_gait_problem_new.
+// Whether a model may be used where gaits have to turn. Error: that of moray_snake_turning; MORAY_NOT_SOLVED with the same
+// text where the model is not the one asked for, which is then left out.
+moray_status gait_job_turning(const gait_job *job, moray_model model);
+
+// Builds it. Error: those of gait_job_turning and moray_gait_problem_new.
 moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
                               moray_gait_problem **problem);
 
