@@ -18,7 +18,8 @@ static const moray_option options[] = {
      .type = MORAY_OPTION_TEXT,
      MORAY_AT(gait_job, over),
      .help = "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of the paper's "
-             "gait on each; none: the first-principles optimum is recommended"},
+             "gait on each; with @VX,VY behind a name in that current [m/s]: paper,consistent@0.1,0.1; none: the "
+             "first-principles optimum is recommended"},
     {.section = "problem",
      .key = "over_goal",
      .type = MORAY_OPTION_CHOICE,

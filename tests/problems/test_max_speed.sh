@@ -67,6 +67,16 @@ check "without --over that is what is recommended" [ "$(number recommended)" = '
 fi
 refuse 'over = strips: must be none or names of rungs' --over paper,strips
 refuse 'paper stands there twice' --over paper,paper
+refuse 'paper@0,0.0 stands there twice' --over paper,paper@0,0.0
+refuse 'over = strip@0.1,: must be none' --over strip@0.1
+refuse 'over = strip@0.1,paper: must be none' --over strip@0.1,paper
+run --json --over paper,consistent@0.1,0.1
+check "a gait for two models in two currents" [ $code -eq 0 ]
+gain_on() {
+    grep -A 6 "\"model\":[^a-z]*\"$1\"" out | sed -n 's/.*"gain_percent_at_equal_power":[^-0-9]*\([-0-9.e]*\).*/\1/p' | head -n 1
+}
+check "the invariant model's gain is that in still water: $(gain_on consistent@0.1,0.1), $(gain_on consistent)" \
+    near "$(gain_on consistent@0.1,0.1)" "$(gain_on consistent)" 1e-3
 
 # ---- Other robots: their paper's gait, and what is left out
 run --json --links 5 --over none

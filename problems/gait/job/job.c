@@ -249,8 +249,8 @@ static moray_status work_on_ladder(gait_job *job)
 
 moray_status gait_job_work(gait_job *job)
 {
-    rungs over;
-    MORAY_TRY(gait_job_rungs(job, &over));
+    scenarios over;
+    MORAY_TRY(gait_job_scenarios(job, &over));
     MORAY_TRY(gait_job_prepare(job));
     MORAY_TRY(work_on_other(job));
     stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
