@@ -39,6 +39,7 @@ moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_g
                               moray_gait_problem **problem)
 {
     const moray_gait_problem_spec spec = gait_job_spec(job, at, goal, current);
+    MORAY_TRY(gait_job_turning(job, at->model));
     return moray_gait_problem_new(problem, &spec);
 }
 
