@@ -10,22 +10,12 @@
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
                "mean joint power; by default what the paper's gait uses in the same model and current"),
-    {.section = "problem",
-     .key = "harmonics",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(free_gait, harmonics),
-     .min = 1,
-     .max = FREE_GAIT_HARMONICS,
-     .help = "of the Fourier series in every joint; those of fewer are found on the way"},
-    {.section = "problem",
-     .key = "link_angle_deg",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(free_gait, link_angle),
-     .min = 1,
-     .max = 89,
-     .unit = "deg",
-     .help = "largest angle of every link from the heading; by default the larger of theta_max_deg and of what the "
-             "best gait within it reaches"},
+    MORAY_ROW(INT, free_gait, harmonics, "problem", "harmonics", .min = 1, .max = FREE_GAIT_HARMONICS,
+              .help = "of the Fourier series in every joint; those of fewer are found on the way"),
+    MORAY_ROW(
+        REAL, free_gait, link_angle, "problem", "link_angle_deg", .min = 1, .max = 89, .unit = "deg",
+        .help = "largest angle of every link from the heading; by default the larger of theta_max_deg and of what the "
+                "best gait within it reaches"),
 };
 
 // ---- One motion ----------------------------------------------------------------------------------------------------

@@ -11,21 +11,12 @@ static const char *const over_goals[] = {[MORAY_OVER_WORST] = "worst", [MORAY_OV
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
                "mean joint power; by default what the paper's gait uses in the same model and current"),
-    {.section = "problem",
-     .key = "over",
-     .flag = "over",
-     .argument = "MODELS",
-     .type = MORAY_OPTION_TEXT,
-     MORAY_AT(gait_job, over),
-     .help = "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of the paper's "
-             "gait on each; with @VX,VY behind a name in that current [m/s]: paper,consistent@0.1,0.1; none: the "
-             "first-principles optimum is recommended"},
-    {.section = "problem",
-     .key = "over_goal",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(gait_job, over_goal),
-     .choices = over_goals,
-     .help = "what of the gains over these is maximised"},
+    MORAY_ROW(TEXT, gait_job, over, "problem", "over", .flag = "over", .argument = "MODELS",
+              .help = "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of "
+                      "the paper's gait on each; with @VX,VY behind a name in that current [m/s]: "
+                      "paper,consistent@0.1,0.1; none: the first-principles optimum is recommended"),
+    MORAY_ROW(CHOICE, gait_job, over_goal, "problem", "over_goal", .choices = over_goals,
+              .help = "what of the gains over these is maximised"),
 };
 
 static const gait_program program = {

@@ -10,27 +10,12 @@
 const char *const pareto_kinds[PARETO_KINDS] = {"lateral", "eel-like", "free taper"};
 
 static const moray_option options[] = {
-    {.section = "problem",
-     .key = "points",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(pareto, points),
-     .min = 2,
-     .max = PARETO_POINTS,
-     .help = "gaits of a front, at powers in equal ratios"},
-    {.section = "problem",
-     .key = "least_share",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(pareto, least_share),
-     .min = 1e-4,
-     .max = 0.9,
-     .help = "least power, as a share of what the fastest lateral gait of the same model uses"},
-    {.section = "problem",
-     .key = "eel_taper",
-     .type = MORAY_OPTION_REAL,
-     MORAY_AT(pareto, eel_taper),
-     .min = -1,
-     .max = 1,
-     .help = "taper of the eel-like motion; with -(N-2)/N joint i swings in the proportion (N-i)/N"},
+    MORAY_ROW(INT, pareto, points, "problem", "points", .min = 2, .max = PARETO_POINTS,
+              .help = "gaits of a front, at powers in equal ratios"),
+    MORAY_ROW(REAL, pareto, least_share, "problem", "least_share", .min = 1e-4, .max = 0.9,
+              .help = "least power, as a share of what the fastest lateral gait of the same model uses"),
+    MORAY_ROW(REAL, pareto, eel_taper, "problem", "eel_taper", .min = -1, .max = 1,
+              .help = "taper of the eel-like motion; with -(N-2)/N joint i swings in the proportion (N-i)/N"),
 };
 
 // ---- One front -----------------------------------------------------------------------------------------------------

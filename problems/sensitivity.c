@@ -7,12 +7,8 @@
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
                "mean joint power; by default what the paper's gait uses in the same model and current"),
-    {.section = "problem",
-     .key = "predict_current",
-     .type = MORAY_OPTION_PAIR,
-     MORAY_AT(sensitivity, predicted),
-     .unit = "m/s",
-     .help = "current for which the gait is predicted; by default 0.1 m/s more on both axes"},
+    MORAY_ROW(PAIR, sensitivity, predicted, "problem", "predict_current", .unit = "m/s",
+              .help = "current for which the gait is predicted; by default 0.1 m/s more on both axes"),
 };
 
 static moray_status work(gait_job *job)

@@ -337,30 +337,30 @@ typedef struct moray_certificate {
     double kkt;           // larger of: what the first-order conditions leave of the objective to gain, relative to what
                           // it moves by where all that it depends on moves by its size; and the largest violation of a
                           // row or bound relative to its size. Limit MORAY_LIMIT_KKT
-    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (1 + max |x|), and of the same of
+    double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (size + max |x|), and of the same of
                           // integrands g and integrals q; limit mesh_tolerance
-    double between_nodes; // largest violation of bounds and path constraints between nodes, / (1 + |bound|); limit 100
-                          // x mesh_tolerance
-    double resimulation; // largest |x - x_simulated| / (1 + max |x|) at the end of an interval that is integrated again
-                         // from its start with the found controls, and |q - q_simulated| / (1 + |q|); limit 100 x
-                         // mesh_tolerance
-    double derivatives;  // largest disagreement of a derivative of a phase or the endpoint, patterns included, with
-                         // differences at a node, relative to what its function moves by; limit
-                         // MORAY_LIMIT_DERIVATIVES
-    double directions;   // of the programme's first and second derivatives along dense directions, as in
-                         // moray_derivative_report with scaled rows; limit MORAY_LIMIT_DIRECTIONS
-    double hamiltonian;  // mean departure of the Hamiltonian from H' = dH/dt over a phase, relative to the largest of
-                         // the sums of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN of phases
-                         // that do not depend on time, with radau, gauss, and lobatto of 4 stages and more; told only
-                         // where costates are of low order or functions may jump with time
-    double gap;          // what the slacks of active bounds and rows, times their multipliers, hold the objective from
-                         // its optimum, relative as kkt. Limit MORAY_LIMIT_GAP
-    double curvature;    // how far the Lagrangian bends down along what the active constraints leave free: relative,
-                         // per square of sizes; 0 at a minimum, strict or not; NAN where no factorisation tells. Limit
-                         // MORAY_LIMIT_CURVATURE
-    double composed;     // as resimulation, each phase in one go from its start: for information, as unstable
-                         // equations make it as large as they like
-    char why[400];       // one sentence on the first number that fails, with its limit and where; empty if none does
+    double between_nodes; // largest violation of bounds and path constraints between nodes, / (size + |bound|); limit
+                          // 100 x mesh_tolerance
+    double resimulation;  // largest |x - x_simulated| / (size + max |x|) at the end of an interval that is integrated
+                          // again from its start with the found controls, and |q - q_simulated| / (size + |q|); limit
+                          // 100 x mesh_tolerance
+    double derivatives;   // largest disagreement of a derivative of a phase or the endpoint, patterns included, with
+                          // differences at a node, relative to what its function moves by; limit
+                          // MORAY_LIMIT_DERIVATIVES
+    double directions;    // of the programme's first and second derivatives along dense directions, as in
+                          // moray_derivative_report with scaled rows; limit MORAY_LIMIT_DIRECTIONS
+    double hamiltonian;   // mean departure of the Hamiltonian from H' = dH/dt over a phase, relative to the largest of
+                          // the sums of its terms; NaN where they vanish. Limit MORAY_LIMIT_HAMILTONIAN of phases
+                          // that do not depend on time, with radau, gauss, and lobatto of 4 stages and more; told only
+                          // where costates are of low order or functions may jump with time
+    double gap;           // what the slacks of active bounds and rows, times their multipliers, hold the objective from
+                          // its optimum, relative as kkt. Limit MORAY_LIMIT_GAP
+    double curvature;     // how far the Lagrangian bends down along what the active constraints leave free: relative,
+                          // per square of sizes; 0 at a minimum, strict or not; NAN where no factorisation tells. Limit
+                          // MORAY_LIMIT_CURVATURE
+    double composed;      // as resimulation, each phase in one go from its start: for information, as unstable
+                          // equations make it as large as they like
+    char why[400];        // one sentence on the first number that fails, with its limit and where; empty if none does
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.

@@ -31,10 +31,10 @@ void moray_find(struct finding *finding, double value, int p, double time)
 
 // ---- Numbers ----
 
-static moray_status examine_phase(struct verdict *v, int p, const moray_integrator *integrator)
+static moray_status examine_phase(struct verdict *v, const struct witness *w, int p, const moray_integrator *integrator)
 {
     struct examiner e;
-    MORAY_TRY(moray_examiner_new(&e, v->solution, p));
+    MORAY_TRY(moray_examiner_new(&e, w, p));
     const struct transcription *t = v->solution->transcription;
     const struct phase_layout *layout = &t->layout.phase[p];
     for (int k = 0; k < layout->mesh.intervals; k++) {
@@ -62,13 +62,16 @@ static moray_status question_hamiltonian(struct verdict *v, const struct witness
     return moray_ok();
 }
 
-static moray_status question_witness(struct verdict *v, const struct witness *w)
+static moray_status question_witness(struct verdict *v, const struct witness *w, const moray_integrator *integrator)
 {
     MORAY_TRY(moray_compare_columns(w, &v->c->derivatives, v->derivative, where_size));
     MORAY_TRY(moray_measure_optimality(w, &v->optimality));
     MORAY_TRY(moray_measure_curvature(w, &v->c->curvature, NULL));
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
         MORAY_TRY(question_hamiltonian(v, w, p));
+    MORAY_TRY(moray_difference_solution(v->solution, &v->c->directions));
+    for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
+        MORAY_TRY(examine_phase(v, w, p, integrator));
     return moray_ok();
 }
 
@@ -76,12 +79,9 @@ static moray_status gather(struct verdict *v, const moray_integrator *integrator
 {
     struct witness w;
     MORAY_TRY(moray_witness_new(&w, v->solution));
-    moray_status status = question_witness(v, &w);
+    moray_status status = question_witness(v, &w, integrator);
     moray_witness_free(&w);
     MORAY_TRY(status);
-    MORAY_TRY(moray_difference_solution(v->solution, &v->c->directions));
-    for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
-        MORAY_TRY(examine_phase(v, p, integrator));
     v->c->kkt = fmax(v->optimality.improvement, v->optimality.feasibility);
     v->c->gap = v->optimality.gap;
     v->c->mesh_error = v->mesh.value;

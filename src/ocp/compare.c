@@ -15,6 +15,12 @@ struct worst {
     int p, node, row, col;
 };
 
+// From the slope on the nearer side.
+static double distance(double in_use, double jac, double kink)
+{
+    return fmin(fabs(in_use - (jac + kink)), fabs(in_use - (jac - kink)));
+}
+
 static void compare(const struct witness *w, int p, int n, const double *in_use, struct worst *worst)
 {
     const struct transcription *t = w->solution->transcription;
@@ -22,12 +28,13 @@ static void compare(const struct witness *w, int p, int n, const double *in_use,
     const int block = map->n_in * map->n_out;
     const double *jac = p < 0 ? w->end_jac : w->phase[p].jac + n * block;
     const double *doubt = p < 0 ? w->end_doubt : w->phase[p].doubt + n * block;
+    const double *kink = p < 0 ? w->end_kink : w->phase[p].kink + n * block;
     const double *size = p < 0 ? w->end_size : w->phase[p].size;
     const double *out_size = p < 0 ? w->end_out_size : w->phase[p].out_size;
     const bool timeless = p >= 0 && t->layout.phase[p].t0 < 0 && t->layout.phase[p].tf < 0; // no variable moves t
     for (int k = 0; k < block - (timeless ? map->n_out : 0); k++) {
         const int row = k % map->n_out, col = k / map->n_out;
-        const double far = (fabs(in_use[k] - jac[k]) - certain * doubt[k]) * size[col];
+        const double far = (distance(in_use[k], jac[k], kink[k]) - certain * doubt[k]) * size[col];
         const double error = isfinite(doubt[k]) && out_size[row] > 0 ? far / out_size[row] : 0;
         if (error > worst->error)
             *worst = (struct worst){error, in_use[k], jac[k], p, n, row, col};

@@ -9,7 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ocp/columns.h"
+
 enum { directions = 3 };
+static const double certain = 1e4;    // doubts of a difference that a disagreement is to exceed
 static const double step_part = 0.05; // of a variable's size: the largest step of the differences is 0.02 of it
 
 // The programme along x + in[0] * direction. Outputs: [f, g], or the gradient of the Lagrangian, scaled.
@@ -111,14 +114,6 @@ static void lagrangian_slopes_at(void *self, const double *in, double *values)
     }
 }
 
-static void no_hessian(void *self, const double *in, const double *weight, double *values)
-{
-    (void)self;
-    (void)in;
-    (void)weight;
-    (void)values;
-}
-
 // Factors of 0.5 to 1.5 and both signs, other ones for every direction; but for the first, variables that a step would
 // take past a bound stay, because beyond it the functions need not exist.
 static void set_direction(struct ray *ray, int which)
@@ -135,24 +130,36 @@ static void set_direction(struct ray *ray, int which)
 
 static moray_status dense_column(moray_map *map, struct ray *ray, int n_out)
 {
-    *map = (moray_map){.n_in = 1, .n_out = n_out, .self = ray, .hessian = no_hessian};
+    *map = (moray_map){.n_in = 1, .n_out = n_out, .self = ray};
     MORAY_TRY(moray_pattern_new(&map->jac, n_out));
     for (int i = 0; i < n_out; i++)
         map->jac.row[i] = i;
     return moray_ok();
 }
 
+// Relative to 1 + what is found and to what that is in doubt; at a kink from the slope on the nearer side. Where
+// nothing is found, nothing is said of a number.
+static double disagreement(double given, double found, double doubt, double kink)
+{
+    if (isnan(found) && isfinite(given))
+        return 0;
+    const double far = fmin(fabs(given - (found + kink)), fabs(given - (found - kink)));
+    const double error = far / (1 + fabs(found) + certain * doubt);
+    return isnan(far) ? INFINITY : isnan(error) ? 0 : error;
+}
+
 static moray_status check_along(const moray_map *map, double *worst)
 {
-    const double here = 0;
-    moray_derivative_report report;
-    double *weight = calloc((size_t)map->n_out + 1, sizeof *weight);
-    if (!weight)
+    const double here = 0, size = 1;
+    const size_t n = (size_t)map->n_out;
+    double *given = calloc(4 * n + 1, sizeof *given), *found = given + n, *doubt = found + n, *kink = doubt + n;
+    if (!given)
         return moray_error(MORAY_MEMORY, "no memory to check derivatives of %d functions", map->n_out);
-    const moray_status status = moray_check_derivatives(map, &here, weight, &report);
-    free(weight);
-    if (!moray_failed(status))
-        *worst = isnan(report.jacobian_error) ? INFINITY : fmax(*worst, report.jacobian_error);
+    const moray_status status = moray_difference_columns(map, &here, &size, found, doubt, kink);
+    map->jacobian(map->self, &here, given);
+    for (size_t i = 0; i < n && !moray_failed(status); i++)
+        *worst = fmax(*worst, disagreement(given[i], found[i], doubt[i], kink[i]));
+    free(given);
     return status;
 }
 

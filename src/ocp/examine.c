@@ -7,9 +7,9 @@
 
 enum { samples_between = 5 }; // per point of the scheme, placed between the nodes
 
-// An error is relative to 1 + the largest value that the state takes at the nodes, or 1 + the integral.
-moray_status moray_examiner_new(struct examiner *e, const moray_solution *solution, int p)
+moray_status moray_examiner_new(struct examiner *e, const struct witness *witness, int p)
 {
+    const moray_solution *solution = witness->solution;
     const struct phase *phase = &solution->transcription->ocp->phase[p];
     const struct phase_layout *layout = &solution->transcription->layout.phase[p];
     const int n = phase->nx + phase->nq;
@@ -17,16 +17,19 @@ moray_status moray_examiner_new(struct examiner *e, const moray_solution *soluti
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to examine phase %s", phase->name);
     *e = (struct examiner){.solution = solution, .p = p, .n = n, .in = block, .out = block + phase->map->n_in};
+    e->witness = &witness->phase[p];
     e->size = e->out + phase->map->n_out;
     e->slope = e->size + n;
     e->error = e->slope + n;
     for (int i = 0; i < phase->nx; i++) {
         for (int node = 0; node < layout->nodes; node++)
             e->size[i] = fmax(e->size[i], fabs(solution->iterate.x[layout->node[node].x + i]));
-        e->size[i] += 1;
+        e->size[i] += e->witness->size[i];
     }
-    for (int i = phase->nx; i < n; i++)
-        e->size[i] = 1 + fabs(solution->iterate.x[layout->q + i - phase->nx]);
+    for (int i = phase->nx; i < n; i++) {
+        const double size = e->witness->integral[i - phase->nx];
+        e->size[i] = (size > 0 ? size : 1) + fabs(solution->iterate.x[layout->q + i - phase->nx]);
+    }
     return moray_ok();
 }
 
@@ -69,25 +72,27 @@ static void interpolant_slope(struct examiner *e, const struct interval *interva
     }
 }
 
-static double distance_outside(double value, moray_bounds bounds)
+static double distance_outside(double value, moray_bounds bounds, double size)
 {
     if (isnan(value))
         return INFINITY;
-    if (value < bounds.lower)
-        return (bounds.lower - value) / (1 + fabs(bounds.lower));
-    return value > bounds.upper ? (value - bounds.upper) / (1 + fabs(bounds.upper)) : 0;
+    const double bound = value < bounds.lower ? bounds.lower : bounds.upper;
+    const double far = fmax(fmax(bounds.lower - value, value - bounds.upper), 0);
+    return far > 0 ? far / ((size > 0 ? size : 1) + fabs(bound)) : 0;
 }
 
 static double worst_outside(const struct examiner *e)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
+    const double *in_size = e->witness->size, *out_size = e->witness->out_size;
+    const int nx = phase->nx;
     double worst = 0;
-    for (int r = 0; r < phase->nx; r++)
-        worst = fmax(worst, distance_outside(e->in[r], phase->x[r]));
-    for (int r = 0; r < phase->nu; r++)
-        worst = fmax(worst, distance_outside(e->in[phase->nx + r], phase->u[r]));
-    for (int r = 0; r < phase->nc; r++)
-        worst = fmax(worst, distance_outside(e->out[phase->nx + r], phase->c[r]));
+    for (int r = 0; r < nx; r++)
+        worst = fmax(worst, distance_outside(e->in[r], phase->x[r], in_size[r]));
+    for (int r = nx; r < nx + phase->nu; r++)
+        worst = fmax(worst, distance_outside(e->in[r], phase->u[r - nx], in_size[r]));
+    for (int r = nx; r < nx + phase->nc; r++)
+        worst = fmax(worst, distance_outside(e->out[r], phase->c[r - nx], out_size[r]));
     return worst;
 }
 

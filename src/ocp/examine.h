@@ -4,7 +4,7 @@
 #ifndef SRC_OCP_EXAMINE_H
 #define SRC_OCP_EXAMINE_H
 
-#include "ocp/solution.h"
+#include "ocp/witness.h"
 
 // Violations between nodes may be this many times the mesh tolerance: they are seen at single points, not integrated.
 enum { violation_slack = 100 };
@@ -13,14 +13,15 @@ enum { violation_slack = 100 };
 struct examiner {
     const moray_solution *solution;
     int p;
-    int n;            // quantities that are integrated: the states, then the integrals q
-    double *in, *out; // of the phase's map at the last point
-    double *size;     // [n]: 1 + max |x| over the phase, 1 + |q|
+    int n;                               // quantities that are integrated: the states, then the integrals q
+    double *in, *out;                    // of the phase's map at the last point
+    const struct phase_witness *witness; // sizes of u and c
+    double *size;                        // [n]: of the state and max |x| over the phase, of the integral and |q|
     double *slope, *error;
 };
 
-// Error: MORAY_MEMORY.
-moray_status moray_examiner_new(struct examiner *e, const moray_solution *solution, int p);
+// An error is relative to what a quantity moves by and what it is. The witness must last. Error: MORAY_MEMORY.
+moray_status moray_examiner_new(struct examiner *e, const struct witness *witness, int p);
 void moray_examiner_free(struct examiner *e);
 
 // Where the rate of the i-th integrated quantity stands in the map's output.
@@ -30,9 +31,9 @@ int moray_examiner_output(const struct examiner *e, int i);
 // given.
 void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x);
 
-// Integral over an interval of |x~' - f(x~, u~)| / (1 + max |x|), or of the same of an integrand and its q, of the
+// Integral over an interval of |x~' - f(x~, u~)| / (size + max |x|), or of the same of an integrand and its q, of the
 // worst of them. Raises *outside (NULL: not asked) to the largest violation of bounds and path constraints seen,
-// relative to 1 + |bound|.
+// relative to size + |bound|.
 double moray_examiner_interval(struct examiner *e, const struct interval *interval, double *outside);
 
 #endif

@@ -197,16 +197,26 @@ static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double
     return moray_ok();
 }
 
-moray_status moray_refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
-                          double *worst)
+static moray_status refine_all(const struct witness *w, double tolerance, int base_stages, struct mesh *meshes,
+                               double *worst)
 {
-    *worst = 0;
-    for (int p = 0; p < solution->transcription->ocp->phases; p++) {
+    for (int p = 0; p < w->solution->transcription->ocp->phases; p++) {
         struct refinement r = {.tolerance = tolerance, .base_stages = base_stages, .spare = INFINITY};
-        MORAY_TRY(moray_examiner_new(&r.e, solution, p));
+        MORAY_TRY(moray_examiner_new(&r.e, w, p));
         const moray_status status = refine_phase(&r, meshes ? &meshes[p] : NULL, worst);
         moray_examiner_free(&r.e);
         MORAY_TRY(status);
     }
     return moray_ok();
+}
+
+moray_status moray_refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
+                          double *worst)
+{
+    struct witness w;
+    *worst = 0;
+    MORAY_TRY(moray_witness_of_sizes(&w, solution));
+    const moray_status status = refine_all(&w, tolerance, base_stages, meshes, worst);
+    moray_witness_free(&w);
+    return status;
 }

@@ -37,13 +37,14 @@ static moray_status allocate_phase(struct witness *e, int p)
                  nq = (size_t)e->solution->transcription->ocp->phase[p].nq;
     const size_t entries = (size_t)layout_of(e, p)->nodes * n_in * n_out;
     struct phase_witness *phase = &e->phase[p];
-    phase->size = calloc(n_in + n_out + nq + 2 * entries, sizeof *phase->size);
+    phase->size = calloc(n_in + n_out + nq + 3 * entries, sizeof *phase->size);
     if (!phase->size)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     phase->out_size = phase->size + n_in;
     phase->integral = phase->out_size + n_out;
     phase->jac = phase->integral + nq;
     phase->doubt = phase->jac + entries;
+    phase->kink = phase->doubt + entries;
     return moray_ok();
 }
 
@@ -52,12 +53,13 @@ static moray_status allocate(struct witness *e)
     const struct transcription *t = e->solution->transcription;
     const size_t n_in = (size_t)t->endpoint->n_in, n_out = (size_t)t->endpoint->n_out;
     e->phase = calloc((size_t)t->ocp->phases, sizeof *e->phase);
-    e->end_size = calloc(n_in + n_out + 2 * n_in * n_out, sizeof *e->end_size);
+    e->end_size = calloc(n_in + n_out + 3 * n_in * n_out, sizeof *e->end_size);
     if (!e->phase || !e->end_size)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     e->end_out_size = e->end_size + n_in;
     e->end_jac = e->end_out_size + n_out;
     e->end_doubt = e->end_jac + n_in * n_out;
+    e->end_kink = e->end_doubt + n_in * n_out;
     for (int p = 0; p < t->ocp->phases; p++)
         MORAY_TRY(allocate_phase(e, p));
     return moray_ok();
@@ -119,6 +121,15 @@ static void take_ranges(struct witness *e, int p)
 
 // ---- Derivatives ----
 
+// Without differences, those in use.
+static void take_in_use(struct witness *e, int p)
+{
+    const moray_map *map = cache_of(e, p)->map;
+    for (int n = 0; n < layout_of(e, p)->nodes; n++)
+        if (layout_of(e, p)->node[n].collocated)
+            moray_witness_in_use(e, p, n, e->phase[p].jac + n * map->n_in * map->n_out);
+}
+
 static moray_status difference_phase(struct witness *e, int p)
 {
     const struct phase_cache *cache = cache_of(e, p);
@@ -129,11 +140,11 @@ static moray_status difference_phase(struct witness *e, int p)
         step[i] = fmax(e->phase[p].size[i], 0.1 * least_part * width_of(bounds_of(e, p, (int)i)));
         step[i] = step[i] > 0 ? step[i] : 1;
     }
-    for (int n = 0; n < layout_of(e, p)->nodes && !moray_failed(status); n++)
+    const struct phase_witness *w = &e->phase[p];
+    for (size_t n = 0; n < (size_t)layout_of(e, p)->nodes && !moray_failed(status); n++)
         if (layout_of(e, p)->node[n].collocated)
-            status =
-                moray_difference_columns(cache->map, cache->in + (size_t)n * n_in, step,
-                                         e->phase[p].jac + (size_t)n * block, e->phase[p].doubt + (size_t)n * block);
+            status = moray_difference_columns(cache->map, cache->in + n * n_in, step, w->jac + n * block,
+                                              w->doubt + n * block, w->kink + n * block);
     free(step);
     return status;
 }
@@ -282,13 +293,16 @@ double moray_witness_objective(const struct witness *e)
 
 // ---- All of it ----
 
-static moray_status gather(struct witness *e)
+static moray_status gather(struct witness *e, bool differences)
 {
     const struct transcription *t = e->solution->transcription;
     MORAY_TRY(allocate(e));
     for (int p = 0; p < t->ocp->phases; p++) {
         take_ranges(e, p);
-        MORAY_TRY(difference_phase(e, p));
+        if (differences)
+            MORAY_TRY(difference_phase(e, p));
+        else
+            take_in_use(e, p);
         raise_by_effect(e, p);
         size_integrals(e, p);
     }
@@ -301,21 +315,33 @@ static moray_status gather(struct witness *e)
     }
     size_ends(e);
     MORAY_TRY(size_end_outputs(e));
-    return moray_difference_columns(t->endpoint, t->end_in, e->end_size, e->end_jac, e->end_doubt);
+    if (!differences)
+        return moray_ok();
+    return moray_difference_columns(t->endpoint, t->end_in, e->end_size, e->end_jac, e->end_doubt, e->end_kink);
 }
 
-moray_status moray_witness_new(struct witness *e, const moray_solution *solution)
+static moray_status create(struct witness *e, const moray_solution *solution, bool differences)
 {
     *e = (struct witness){.solution = solution};
-    const moray_status status = gather(e);
+    const moray_status status = gather(e, differences);
     if (moray_failed(status))
         moray_witness_free(e);
     return status;
 }
 
-bool moray_witness_speaks(double doubt, double size, double out_size)
+moray_status moray_witness_new(struct witness *e, const moray_solution *solution)
 {
-    return doubt * size <= silent * out_size;
+    return create(e, solution, true);
+}
+
+moray_status moray_witness_of_sizes(struct witness *e, const moray_solution *solution)
+{
+    return create(e, solution, false);
+}
+
+bool moray_witness_speaks(double doubt, double kink, double size, double out_size)
+{
+    return (doubt + fabs(kink)) * size <= silent * out_size;
 }
 
 void moray_witness_in_use(const struct witness *e, int p, int node, double *jac)

@@ -13,21 +13,28 @@ struct phase_witness {
     double *out_size;    // [n_out] of f, c, g: how far each moves where an input moves by its size
     double *integral;    // [nq] size of q
     double *jac, *doubt; // [nodes][n_in][n_out]; doubt: how far off rounding and bends may have led
+    double *kink;        // [nodes][n_in][n_out]: the slopes on either side are jac + kink and jac - kink
 };
 
 struct witness {
     const moray_solution *solution;
     struct phase_witness *phase;
-    double *end_size, *end_out_size, *end_jac, *end_doubt; // [n_in], [n_out], [n_in][n_out] of the endpoint
-    double duration;                                       // of the longest phase
+    double *end_size, *end_out_size;        // [n_in], [n_out] of the endpoint
+    double *end_jac, *end_doubt, *end_kink; // [n_in][n_out]
+    double duration;                        // of the longest phase
 };
 
 // Error: MORAY_MEMORY. Free with moray_witness_free, which is safe after an error.
 moray_status moray_witness_new(struct witness *e, const moray_solution *solution);
 void moray_witness_free(struct witness *e);
 
-// Rows of dense derivatives that differences of this quality say nothing about keep those in use: whether it is one.
-bool moray_witness_speaks(double doubt, double size, double out_size);
+// The same sizes but for what derivatives in use and differences differ by, at the cost of an iteration: for the
+// refinement, which asks mesh by mesh. The derivatives of phases are those in use; the endpoint has none.
+moray_status moray_witness_of_sizes(struct witness *e, const moray_solution *solution);
+
+// Entries that differences of this quality, or a kink, say nothing about keep the derivatives in use: whether they do
+// not.
+bool moray_witness_speaks(double doubt, double kink, double size, double out_size);
 
 // size[columns] and size[rows] of the programme.
 void moray_witness_columns(const struct witness *e, double *size);

@@ -264,7 +264,8 @@ static void test_integrals_are_certified(void)
     CHECK_NEAR(moray_solution_integrals(solution, 0)[0], 0, 1e-12, "the nodes see nothing");
     CHECK(!certificate.pass && certificate.mesh_error > 0.01, "mesh error of the integral: %.2g",
           certificate.mesh_error);
-    CHECK_NEAR(certificate.resimulation, 0.5, 1e-6, "integral found by simulating again");
+    CHECK(certificate.resimulation > 1, "integral found by simulating again: %.2g times its size",
+          certificate.resimulation);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }

@@ -106,9 +106,9 @@ check "the headline has the range: $(grep ^Recommended out)" \
 # ---- Currents
 run --current 0.1,0.1 --json --over none
 check "a current it can stem: exit 0" [ $code -eq 0 ]
-run --current=-0.5,0
+run --current=-0.5,0 --over none
 check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.5000 m/s of it run against" err'
-run --current 0,0.4
+run --current 0,0.4 --over none
 check "a cross current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.4000 m/s of it run across" err'
 
 # ---- Interrupted: ends at the next iteration and says so (timeout sends what Ctrl-C sends; a busy machine needs longer

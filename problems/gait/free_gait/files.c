@@ -8,10 +8,9 @@
 
 static void json_gain(moray_json *json, const char *key, const moray_gait_gain *gain)
 {
-    moray_json_open(json, key);
-    moray_json_number(json, "speed_percent_at_equal_power", gain->speed_percent_at_equal_power);
-    moray_json_number(json, "power_percent_at_equal_speed", gain->power_percent_at_equal_speed);
-    moray_json_close(json);
+    moray_json_object(json, key,
+                      MORAY_MEMBERS({"speed_percent_at_equal_power", gain->speed_percent_at_equal_power},
+                                    {"power_percent_at_equal_speed", gain->power_percent_at_equal_speed}));
 }
 
 static void json_swum(moray_json *json, const free_gait *run, const stage *at)

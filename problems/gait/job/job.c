@@ -9,9 +9,10 @@ static const char *const joint_forms[] = {"on-gait", "closed-loop", NULL};
 static const moray_option shared[] = {
     GAIT_RANGE("theta_max_deg", theta_max, 0, 89, "deg", "link-angle amplitude of (24)"),
     GAIT_RANGE("omega_deg_s", omega, 1, 3600, "deg/s", "gait frequency"),
-    GAIT_RANGE("delta_deg", delta, 1, 179, "deg",
-               "phase shift between joints; by default from 0.375 to 2.25 times the paper's 2 pi/(N-1), and 15 to 90 deg at "
-               "least, 150 deg at most"),
+    GAIT_RANGE(
+        "delta_deg", delta, 1, 179, "deg",
+        "phase shift between joints; by default from 0.375 to 2.25 times the paper's 2 pi/(N-1), and 15 to 90 deg at "
+        "least, 150 deg at most"),
     GAIT_RANGE("phi0_m", offset, -1, 1, "m", "joint offset of the control-oriented model"),
     GAIT_RANGE("phi0_deg", offset_angle, -90, 90, "deg", "joint offset of the first-principles model"),
     GAIT_RANGE("taper", taper, -1, 1, NULL,
@@ -22,19 +23,10 @@ static const moray_option shared[] = {
     GAIT_LIMIT("joint_effort", joint_effort, NULL,
                "peak joint force at the nodes of the mesh, which then has 80 intervals (N; torque in N m with the "
                "complex model)"),
-    {.section = "problem",
-     .key = "joints",
-     .type = MORAY_OPTION_CHOICE,
-     MORAY_AT(gait_job, joints),
-     .choices = joint_forms,
-     .help = "six states with the joints on the gait, or all states with the joint controller (34)"},
-    {.section = "solver",
-     .key = "random_starts",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(gait_job, random_starts),
-     .min = 0,
-     .max = 10000,
-     .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"},
+    MORAY_ROW(CHOICE, gait_job, joints, "problem", "joints", .choices = joint_forms,
+              .help = "six states with the joints on the gait, or all states with the joint controller (34)"),
+    MORAY_ROW(INT, gait_job, random_starts, "solver", "random_starts", .min = 0, .max = 10000,
+              .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"),
     {.flag = "jobs",
      .argument = "N",
      .type = MORAY_OPTION_INT,
@@ -177,8 +169,8 @@ static moray_status optimise_and_prove(gait_job *job, moray_model model, const g
     return moray_ok();
 }
 
-// By delta = 2 pi/(N-1) of the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and longer robots, and not
-// near 180 deg, where (33) has no amplitude.
+// By delta = 2 pi/(N-1) of the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and longer robots, and
+// not near 180 deg, where (33) has no amplitude.
 static void delta_range(double delta[2], double paper)
 {
     const double least = 0.375, most = 2.25; // of it

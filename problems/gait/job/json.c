@@ -11,21 +11,18 @@ void gait_job_json_head(moray_json *json, const gait_job *job)
 
 void gait_job_json_prediction(moray_json *json, const moray_gait_prediction *prediction)
 {
-    moray_json_open(json, "predicted");
-    moray_json_number(json, "speed_m_s", prediction->speed);
-    moray_json_number(json, "course_speed_m_s", prediction->course_speed);
-    moray_json_number(json, "power_W", prediction->power);
-    moray_json_number(json, "cost_of_transport_J_m", prediction->power / prediction->speed);
-    moray_json_number(json, "course_cost_J_m", prediction->power / prediction->course_speed);
-    moray_json_close(json);
+    moray_json_object(json, "predicted",
+                      MORAY_MEMBERS({"speed_m_s", prediction->speed}, {"course_speed_m_s", prediction->course_speed},
+                                    {"power_W", prediction->power},
+                                    {"cost_of_transport_J_m", prediction->power / prediction->speed},
+                                    {"course_cost_J_m", prediction->power / prediction->course_speed}));
 }
 
 static void json_gain(moray_json *json, const moray_gait_gain *gain)
 {
-    moray_json_open(json, "gain");
-    moray_json_number(json, "speed_percent_at_equal_power", gain->speed_percent_at_equal_power);
-    moray_json_number(json, "power_percent_at_equal_speed", gain->power_percent_at_equal_speed);
-    moray_json_close(json);
+    moray_json_object(json, "gain",
+                      MORAY_MEMBERS({"speed_percent_at_equal_power", gain->speed_percent_at_equal_power},
+                                    {"power_percent_at_equal_speed", gain->power_percent_at_equal_speed}));
 }
 
 static void json_solver(moray_json *json, const stage *at)

@@ -181,11 +181,10 @@ static void json_optimum(moray_json *json, const search_gait *run, const optimum
     moray_json_number(json, "starts_that_end_here", o->hits);
     moray_json_bool(json, "global_ends_here", o->global);
     moray_json_open(json, "search");
-    moray_json_number(json, "course_speed_m_s", moray_course_speed(&o->orbit.steady, run->spec.course));
-    moray_json_number(json, "power_W", o->orbit.steady.power);
-    moray_json_number(json, "value", value_of(run, o));
-    moray_json_number(json, "difference_to_collocation", polished_value(run, o) - value_of(run, o));
-    moray_json_number(json, "largest_multiplier", o->floquet.largest);
+    moray_json_members(json, MORAY_MEMBERS({"course_speed_m_s", moray_course_speed(&o->orbit.steady, run->spec.course)},
+                                           {"power_W", o->orbit.steady.power}, {"value", value_of(run, o)},
+                                           {"difference_to_collocation", polished_value(run, o) - value_of(run, o)},
+                                           {"largest_multiplier", o->floquet.largest}));
     moray_json_bool(json, "stable", o->floquet.stable);
     moray_json_close(json);
     gait_job_json_stage(json, &run->job, &o->at);
@@ -197,15 +196,12 @@ static void json_found(moray_json *json, const search_gait *run)
     moray_json_open(json, "search");
     moray_json_text(json, "goal", search_gait_fastest(run) ? "speed" : "economy");
     moray_json_text(json, "local", search_gait_locals[run->local_method]);
-    moray_json_number(json, "starts", run->starts);
-    moray_json_number(json, "starts_lost", run->lost);
-    moray_json_number(json, "optima", run->n);
-    moray_json_number(json, "orbits", run->orbits);
-    moray_json_number(json, "time_s", run->seconds);
+    moray_json_members(json, MORAY_MEMBERS({"starts", run->starts}, {"starts_lost", run->lost}, {"optima", run->n},
+                                           {"orbits", run->orbits}, {"time_s", run->seconds}));
     moray_json_text(json, "global", search_gait_globals[run->global_method]);
-    moray_json_number(json, "global_orbits", run->global.evaluations);
-    moray_json_number(json, "global_time_s", run->global.seconds);
-    moray_json_number(json, "largest_difference", largest_difference(run));
+    moray_json_members(json,
+                       MORAY_MEMBERS({"global_orbits", run->global.evaluations}, {"global_time_s", run->global.seconds},
+                                     {"largest_difference", largest_difference(run)}));
     moray_json_close(json);
 }
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// Differences of columns beside a kink, which they may straddle.
+#include "tap.h"
+
+#include "ocp/columns.h"
+
+// out = slope of its side times (in - joint); the cubic of in bends on its own.
+struct bent {
+    double joint, before, after;
+};
+
+static void value(void *self, const double *in, double *out)
+{
+    const struct bent *bent = self;
+    const double beyond = in[0] - bent->joint;
+    out[0] = (beyond < 0 ? bent->before : bent->after) * beyond;
+    out[1] = in[0] * in[0] * in[0];
+}
+
+static void difference(const struct bent *bent, double in, double jac[2], double doubt[2], double kink[2])
+{
+    static const double size = 1;
+    struct bent self = *bent;
+    const moray_map map = {.n_in = 1, .n_out = 2, .value = value, .self = &self};
+    CHECK_OK(moray_difference_columns(&map, &in, &size, jac, doubt, kink), "differences");
+}
+
+// Where one of the sides holds the input, its slope is among the two that are told, and nothing else is near it.
+static void test_beside(void)
+{
+    const struct bent bent = {0.3, -1, -1.001};
+    static const double distance[] = {0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
+    for (unsigned k = 0; k < sizeof distance / sizeof *distance; k++)
+        for (int side = -1; side <= 1; side += 2) {
+            double jac[2], doubt[2], kink[2];
+            const double in = bent.joint + side * distance[k], own = in < bent.joint ? bent.before : bent.after;
+            difference(&bent, in, jac, doubt, kink);
+            CHECK(fmin(fabs(jac[0] + kink[0] - own), fabs(jac[0] - kink[0] - own)) <= 1e-9 + 4 * doubt[0],
+                  "%g beside the joint: %.9g +- %.3g", in - bent.joint, jac[0], kink[0]);
+            CHECK(doubt[0] < 1e-5, "%g beside it the differences are sure: %.1e", in - bent.joint, doubt[0]);
+            CHECK(kink[1] == 0 && fabs(jac[1] - 3 * in * in) < 1e-8, "a cubic has no kink: %.1e", kink[1]);
+        }
+}
+
+// The mean of both slopes is no derivative.
+static void test_mean(void)
+{
+    const struct bent bent = {0.3, -1, 1};
+    double jac[2], doubt[2], kink[2];
+    difference(&bent, bent.joint, jac, doubt, kink);
+    CHECK_NEAR(jac[0], 0, 1e-9, "mean of the slopes");
+    CHECK_NEAR(kink[0], 1, 1e-9, "half their difference");
+    CHECK(doubt[0] < 1e-8, "known: %.1e", doubt[0]);
+}
+
+static void test_smooth(void)
+{
+    const struct bent line = {0.3, 2, 2};
+    double jac[2], doubt[2], kink[2];
+    difference(&line, 0.3, jac, doubt, kink);
+    CHECK_NEAR(jac[0], 2, 1e-9, "a line");
+    CHECK(kink[0] == 0, "has no kink: %g", kink[0]);
+}
+
+int main(void)
+{
+    test_beside();
+    test_mean();
+    test_smooth();
+    return tap_done();
+}
