@@ -81,7 +81,7 @@ static void json_recommended(moray_json *json, const gait_job *job, const stage 
         moray_json_open(json, NULL);
         moray_json_text(json, "model", at->name);
         moray_json_numbers(json, "current_m_s", at->current, 2);
-        moray_json_number(json, "gain_percent_at_equal_power", 100 * at->gain);
+        moray_json_number(json, "gain_percent", 100 * at->gain);
         moray_json_close(json);
     }
     moray_json_close(json);
