@@ -51,15 +51,25 @@ static void guess_parameters(const free_gait *run, const motion *m, const moray_
         s[i] += size * sin(1 + 1.3 * i);
 }
 
-static moray_status solve_from(free_gait *run, motion *m, const stage *from, double share)
+// Where a motion may start: from which, with how much of the highest harmonic, at what barrier.
+typedef struct start {
+    const stage *from;
+    double share, barrier;
+} start;
+
+enum { STARTS = 5 };
+
+// The less barrier, the nearer the solver stays to where it begins.
+static moray_status solve_from(free_gait *run, motion *m, const start *at)
 {
-    const moray_settings settings = gait_job_settings(&run->job);
+    moray_settings settings = gait_job_settings(&run->job);
     moray_solution *solution = NULL;
     double *s = calloc(MORAY_GAIT_PARAMETERS + 1 + (size_t)coefficients_of(run, m->harmonics), sizeof *s);
     if (!s)
         return moray_error(MORAY_MEMORY, "no memory for a guess");
-    guess_parameters(run, m, &from->prediction.gait, share, s);
-    const moray_status status = moray_gait_problem_continue(m->at.problem, &settings, from->solution, s, &solution);
+    settings.barrier = at->barrier;
+    guess_parameters(run, m, &at->from->prediction.gait, at->share, s);
+    const moray_status status = moray_gait_problem_continue(m->at.problem, &settings, at->from->solution, s, &solution);
     free(s);
     if (!moray_failed(status))
         gait_job_keep_best(&m->at, solution);
@@ -72,21 +82,37 @@ static moray_status solve_from(free_gait *run, motion *m, const stage *from, dou
 static bool as_good(const motion *m, const motion *before)
 {
     const double same = 1e-7;
-    return moray_solution_info(m->at.solution)->outcome == MORAY_NLP_SOLVED &&
+    return m->at.solution && moray_solution_info(m->at.solution)->outcome == MORAY_NLP_SOLVED &&
            moray_solution_objective(m->at.solution) <= moray_solution_objective(before->at.solution) + same;
 }
 
-// From the motion before and from the best gait (25), and where the solver strayed from both, once more.
+// A gait from the motion before and from the best gait (25). A series from both, and from the gait within the limits of
+// the links, with more or less of the highest harmonic: harmonics lead to several optima, of which none leads to all.
+static int starts_of(free_gait *run, const motion *m, start at[STARTS])
+{
+    const double little = 3e-3, more = 3e-2, usual = gait_job_settings(&run->job).barrier, near = 1e-7;
+    const stage *before = &freest(run)->at, *gait = last_stage(&run->job), *limited = &run->motion[0].at;
+    const start all[STARTS] = {{before, 0, m->harmonics > 0 ? near : usual},
+                               {gait, little, usual},
+                               {gait, more, usual},
+                               {before, more, usual},
+                               {limited, more, usual}};
+    memcpy(at, all, sizeof all);
+    return m->harmonics > 0 ? STARTS : 2;
+}
+
+// The best of all starts; one that cannot be computed leaves the others.
 static moray_status solve(free_gait *run, motion *m, bool *found)
 {
-    const double little = 3e-3, more = 3e-2;
-    const motion *before = freest(run);
+    start at[STARTS];
+    const int n = starts_of(run, m, at);
     MORAY_TRY(make_problem(run, m));
-    MORAY_TRY(solve_from(run, m, &before->at, little));
-    MORAY_TRY(solve_from(run, m, last_stage(&run->job), little));
-    if (!as_good(m, before))
-        MORAY_TRY(solve_from(run, m, &before->at, more));
-    *found = as_good(m, before);
+    for (int k = 0; k < n; k++) {
+        const moray_status status = solve_from(run, m, &at[k]);
+        if (status.code == MORAY_INTERRUPTED || status.code == MORAY_MEMORY)
+            return status;
+    }
+    *found = as_good(m, freest(run));
     return moray_ok();
 }
 
@@ -155,9 +181,17 @@ static motion *start_motion(free_gait *run, int harmonics, double taper)
 
 static moray_status finish_motion(free_gait *run, motion *m)
 {
-    run->n++;
     MORAY_TRY(keep_motion(run, m));
-    return prove(run, m);
+    MORAY_TRY(prove(run, m));
+    run->n++;
+    return moray_ok();
+}
+
+static void drop_motion(motion *m)
+{
+    gait_job_stage_free(&m->at);
+    free(m->coefficients);
+    m->coefficients = NULL;
 }
 
 // The best gait (25) within the limits of the links.
@@ -169,17 +203,21 @@ static moray_status find_gait(free_gait *run)
     return finish_motion(run, m);
 }
 
-// A motion freer than the last one; run->vainly where that gains nothing.
+// A motion freer than the last one; in run->vain where that gains nothing or cannot be swum, and the last one stands for it.
 static moray_status free_further(free_gait *run, int harmonics, double taper)
 {
     motion *m = start_motion(run, harmonics, taper);
     bool found = false;
-    const moray_status status = solve(run, m, &found);
-    if (!moray_failed(status) && found)
-        return finish_motion(run, m);
-    gait_job_stage_free(&m->at);
-    run->vainly = harmonics;
-    return status;
+    moray_status status = solve(run, m, &found);
+    if (!moray_failed(status) && !found)
+        status = moray_error(MORAY_NOT_SOLVED, "of %d starts none ends at a better one", m->at.starts);
+    if (!moray_failed(status))
+        status = finish_motion(run, m);
+    if (!moray_failed(status))
+        return status;
+    run->vain[harmonics] = status;
+    drop_motion(m);
+    return status.code == MORAY_INTERRUPTED || status.code == MORAY_MEMORY ? status : moray_ok();
 }
 
 static moray_status climb(free_gait *run)
@@ -204,7 +242,7 @@ static moray_status work(gait_job *job)
     MORAY_TRY(find_gait(run));
     if (job->snake.robot.links > 2)
         MORAY_TRY(free_further(run, 0, 1));
-    for (int k = 1; k <= run->harmonics && run->vainly == 0; k++)
+    for (int k = 1; k <= run->harmonics; k++)
         MORAY_TRY(free_further(run, k, 0));
     return climb(run);
 }
@@ -221,10 +259,8 @@ static bool certified(const gait_job *job)
 static void release(gait_job *job)
 {
     free_gait *run = (free_gait *)job;
-    for (int k = 0; k < FREE_GAIT_MOTIONS; k++) {
-        gait_job_stage_free(&run->motion[k].at);
-        free(run->motion[k].coefficients);
-    }
+    for (int k = 0; k < FREE_GAIT_MOTIONS; k++)
+        drop_motion(&run->motion[k]);
 }
 
 static const gait_program program = {

@@ -13,8 +13,8 @@ static const moray_option options[] = {
                "mean joint power; by default what the paper's gait uses in the same model and current"),
     MORAY_ROW(TEXT, gait_job, over, "problem", "over", .flag = "over", .argument = "MODELS",
               .help = "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of "
-                      "the paper's "
-                      "gait on each; none: the first-principles optimum is recommended"),
+                      "the paper's gait on each; with @VX,VY behind a name in that current [m/s]: "
+                      "paper,consistent@0.1,0.1; none: the first-principles optimum is recommended"),
     MORAY_ROW(CHOICE, gait_job, over_goal, "problem", "over_goal", .choices = over_goals,
               .help = "what of the gains over these is maximised"),
 };
@@ -22,7 +22,7 @@ static const moray_option options[] = {
 static const gait_program program = {
     .name = "max_speed",
     .summary = "Optimises the gait of an underwater snake robot for speed along a course, and "
-               "proves it on the first-principles model.",
+               "tells what it gains on models that it was not found on.",
     .goal = MORAY_GAIT_FASTEST,
     .options = options,
     .n_options = sizeof options / sizeof *options,

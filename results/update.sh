@@ -45,6 +45,9 @@ show() {
 show max_speed max_speed
 show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
+show ladder ladder
+show search_gait_consistent search_gait --hydrodynamics consistent
+show search_gait_consistent_free search_gait --hydrodynamics consistent --set theta_max_deg=1:60
 show search_gait search_gait
 show search_gait_free search_gait --set theta_max_deg=1:60
 show pareto pareto
@@ -53,6 +56,7 @@ show free_gait free_gait --set harmonics=5
 show free_gait_strict free_gait --set link_angle_deg=20
 show free_gait_wide free_gait --set theta_max_deg=1:60 --set harmonics=5
 show free_gait_control free_gait --model control
+show free_gait_consistent free_gait --hydrodynamics consistent
 show sensitivity sensitivity
 show sensitivity_control sensitivity --model control
 show heading_tracking heading_tracking --current 0.1,0.1

@@ -87,25 +87,16 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
     return 90000 * tau;
 }
 
-const struct classic classic_low_thrust = {.name = "low-thrust",
-                                           .title = "Low-thrust orbit transfer",
-                                           .source = "Betts 2001; PSOPT",
-                                           .published = "0.2201791",
-                                           .maximised = true,
-                                           .data = &(const double){0},
-                                           .build = build,
-                                           .start = start,
-                                           .intervals = 60,
-                                           .tolerance = 1e-9};
+// |u|^2 = 1, or to within `slack`.
+#define LOW_THRUST(slack, ...)                                                                                         \
+    {                                                                                                                  \
+        .source = "Betts 2001; PSOPT", .maximised = true, .data = &(const double){slack}, .build = build,              \
+        .start = start, .intervals = 60, .tolerance = 1e-9, __VA_ARGS__                                                \
+    }
 
-const struct classic classic_low_thrust_slack = {.name = "low-thrust-slack",
-                                                 .title = "Low-thrust orbit transfer, |u|^2 to 1e-3",
-                                                 .source = "Betts 2001; PSOPT",
-                                                 .published = "0.2203403",
-                                                 .computed = "0.2203404",
-                                                 .maximised = true,
-                                                 .data = &(const double){0.001},
-                                                 .build = build,
-                                                 .start = start,
-                                                 .intervals = 60,
-                                                 .tolerance = 1e-9};
+const struct classic classic_low_thrust =
+    LOW_THRUST(0, .name = "low-thrust", .title = "Low-thrust orbit transfer", .published = "0.2201791");
+
+const struct classic classic_low_thrust_slack =
+    LOW_THRUST(0.001, .name = "low-thrust-slack", .title = "Low-thrust orbit transfer, |u|^2 to 1e-3",
+               .published = "0.2203403", .computed = "0.2203404");

@@ -55,6 +55,8 @@ static void weight(const moray_ends *at, moray_end_values *out, const void *data
 static const double x0[] = {21837080.052835, 0, 0, -0.25396764647494, 0, M_PI, 1};
 static const double begin[] = {0, 2690, 2840, 21650, 21700}; // of the phases, guessed [s]
 
+#define COAST .nx = 6, .continuous = coast, .x = coasting
+#define BURN .nx = 7, .nu = 2, .continuous = burn, .x = x, .u = u
 static moray_status build(moray_ocp **ocp, const void *data)
 {
     (void)data;
@@ -64,36 +66,21 @@ static moray_status build(moray_ocp **ocp, const void *data)
     const moray_bounds any = moray_free(), zero = moray_fixed(0);
     const moray_phase_spec phase[] = {
         {.name = "first coast",
-         .nx = 6,
-         .continuous = coast,
+         COAST,
          .t0 = zero,
          .tf = moray_between(2000, 3000),
-         .x = coasting,
          .x0 = MORAY_BOUNDS(moray_fixed(x0[0]), zero, zero, moray_fixed(x0[3]), zero, moray_fixed(x0[5]))},
         {.name = "first burn",
-         .nx = 7,
-         .nu = 2,
-         .continuous = burn,
+         BURN,
          .t0 = moray_between(2000, 3000),
          .tf = moray_between(2100, 3100),
-         .x = x,
-         .x0 = MORAY_BOUNDS(any, any, any, any, any, any, moray_fixed(x0[6])),
-         .u = u},
-        {.name = "second coast",
-         .nx = 6,
-         .continuous = coast,
-         .t0 = moray_between(2100, 3100),
-         .tf = moray_between(21600, 21800),
-         .x = coasting},
+         .x0 = MORAY_BOUNDS(any, any, any, any, any, any, moray_fixed(x0[6]))},
+        {.name = "second coast", COAST, .t0 = moray_between(2100, 3100), .tf = moray_between(21600, 21800)},
         {.name = "second burn",
-         .nx = 7,
-         .nu = 2,
-         .continuous = burn,
+         BURN,
          .t0 = moray_between(21600, 21800),
          .tf = moray_between(21650, 21900),
-         .x = x,
-         .xf = MORAY_BOUNDS(moray_fixed(19323 * 6076.1154855643 + 20925662.73), zero, zero, zero, zero, any, any),
-         .u = u}};
+         .xf = MORAY_BOUNDS(moray_fixed(19323 * 6076.1154855643 + 20925662.73), zero, zero, zero, zero, any, any)}};
     moray_bounds e[22];
     for (int i = 0; i < 22; i++)
         e[i] = zero;

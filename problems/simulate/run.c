@@ -186,12 +186,24 @@ static moray_status allot(const simulate *run, simulate_results *results)
     return status;
 }
 
+// Whether the control-oriented model turns: by an offset of a gait, or in a current across the start heading.
+static bool turns(const simulate *run, const simulate_results *results)
+{
+    const double *V = run->snake.current, nothing = 1e-12;
+    bool offset = fabs(V[1] * cos(run->heading) - V[0] * sin(run->heading)) > nothing;
+    for (int k = 0; k < results->n_changes; k++)
+        offset = offset || results->schedule[k].gait.offset != 0;
+    return offset && run->snake.model == MORAY_CONTROL_ORIENTED;
+}
+
 moray_status simulate_run(const simulate *run, simulate_results *results)
 {
     results->run = run;
     results->sim = settings_of(run);
     MORAY_TRY(moray_sim_settings_check(&results->sim));
     MORAY_TRY(read_schedule(run, results));
+    if (turns(run, results))
+        MORAY_TRY(moray_snake_turning(&run->snake));
     results->window = window_of(results, run->periods);
     MORAY_TRY(moray_swimmer_new(&results->swimmer, &run->snake.robot, run->snake.model));
     return allot(run, results);

@@ -30,6 +30,7 @@ static moray_status work(steer_job *job)
 {
     moray_family family;
     int stages;
+    MORAY_TRY(moray_snake_turning(&job->snake));
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     return job->program->work(job);
 }

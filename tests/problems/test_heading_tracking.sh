@@ -87,6 +87,7 @@ check "Ctrl-C is told and leaves nothing: $(cat err)" eval '[ $code -eq 130 ] &&
 
 # ---- Bad input
 printf 't_s,heading_deg\n0,0\n1;2\n' >bad.csv
+refuse 'paper fit --set write_ini=FILE' --links 6
 refuse 'bad.csv:3' --set reference=bad.csv
 refuse 'no_such.csv' --set reference=no_such.csv
 refuse 'T=H' --set reference=steps:3

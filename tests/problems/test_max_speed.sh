@@ -67,6 +67,17 @@ check "without --over that is what is recommended" [ "$(number recommended)" = '
 fi
 refuse 'over = strips: must be none or names of rungs' --over paper,strips
 refuse 'paper stands there twice' --over paper,paper
+refuse 'paper@0,0.0 stands there twice' --over paper,paper@0,0.0
+refuse 'over = strip@0.1,: must be none' --over strip@0.1
+refuse 'over = strip@0.1,paper: must be none' --over strip@0.1,paper
+run --json --over paper,consistent@0.1,0.1
+check "a gait for two models in two currents" [ $code -eq 0 ]
+gain_on() {
+    sed -n '/"scenarios"/,/"over_gain/p; /"ladder"/,$p' out | grep -A 6 "\"model\":[^a-z]*\"$1\"" |
+        sed -n 's/.*"gain_percent[a-z_]*":[^-0-9]*\([-0-9.e]*\).*/\1/p' | head -n 1
+}
+check "the invariant model's gain is that in still water: $(gain_on consistent@0.1,0.1), $(gain_on consistent)" \
+    near "$(gain_on consistent@0.1,0.1)" "$(gain_on consistent)" 1e-3
 
 # ---- Other robots: their paper's gait, and what is left out
 run --json --links 5 --over none
@@ -76,6 +87,12 @@ check "delta may leave 90 deg: $(number gait delta_deg)" [ $code -eq 0 ]
 run --links 3 --set power_W=0.02
 check "no baseline that makes way: $code $(cat err)" eval '[ $code -eq 0 ] && grep -q "^Left out as a baseline on the first-principles model: the paper.s gait for 3 links" out'
 check "and so no ladder" grep -q 'is compared on none of 15' out
+
+fit='paper fit --set write_ini=FILE'
+run --links 6 --over none --current 0,0.05
+check "constants tuned for another robot leave the control-oriented optimum out: $(grep '^Left out: the control' out)" \
+    eval '[ $code -eq 0 ] && grep "^Left out: the control-oriented optimum: rot_damping" out | grep -q "$fit"'
+refuse "$fit" --links 6 --current 0,0.05 --model control
 
 run --quiet --model control --set taper=-0.8
 check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
@@ -89,9 +106,9 @@ check "the headline has the range: $(grep ^Recommended out)" \
 # ---- Currents
 run --current 0.1,0.1 --json --over none
 check "a current it can stem: exit 0" [ $code -eq 0 ]
-run --current=-0.5,0
+run --current=-0.5,0 --over none
 check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.5000 m/s of it run against" err'
-run --current 0,0.4
+run --current 0,0.4 --over none
 check "a cross current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it: 0.4000 m/s of it run across" err'
 
 # ---- Interrupted: ends at the next iteration and says so (timeout sends what Ctrl-C sends; a busy machine needs longer

@@ -137,6 +137,8 @@ schedule() {
     printf "$1" >s.csv
 }
 
+refuse 'paper fit --set write_ini=FILE' --links 6 --current 0,0.1
+refuse 'paper fit --set write_ini=FILE' --set m_kg=0.5 --set phi0_m=0.01
 refuse 'theta_max_deg = 20: give one of them' --set theta_max_deg=20 --set a_m=0.04
 refuse 'alpha_deg = 10 contradicts a_m = 0.04' --set alpha_deg=10 --set a_m=0.04
 refuse 'phi0_deg = 1 contradicts phi0_m = 0.01' --set phi0_deg=1 --set phi0_m=0.01

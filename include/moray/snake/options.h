@@ -15,12 +15,13 @@ enum { MORAY_PAPER, MORAY_CONSISTENT }; // the word of --hydrodynamics
 
 typedef struct moray_snake_options {
     moray_robot robot; // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry,
-                       // the choices of its hydro -1: from hydrodynamics
+                       // the choices of its hydro -1: from hydrodynamics; rot_damping and rot_gain NaN: the paper's
     int hydrodynamics;
     moray_link_geometry geometry; // gives the coefficients of the robot that are not given directly
     moray_model model;
     double current[2]; // V_x, V_y [m/s]
     double course;     // direction of travel over ground [rad]
+    bool not_tuned;    // after parsing: rot_damping or rot_gain is the paper's, and the robot is another one
 } moray_snake_options;
 
 // The paper's robot in still water, control-oriented model.
@@ -29,6 +30,10 @@ MORAY_API moray_snake_options moray_snake_options_default(void);
 // --robot FILE, --links, --model, --current, --course and the keys of [robot]; in the end the robot is made and checked
 // (error: MORAY_INPUT). As a group of a program: {&moray_snake_option_table, offsetof(SETTINGS, FIELD)}.
 MORAY_API extern const moray_option_table moray_snake_option_table;
+
+// Before the control-oriented model turns, steered or in a current across. Error: MORAY_INPUT where the constants of (20)
+// are not this robot's, with the command that fits them; swimming straight in still water does without them.
+MORAY_API moray_status moray_snake_turning(const moray_snake_options *options);
 
 // "model", "robot" and "current_m_s" of a summary.
 MORAY_API void moray_snake_to_json(moray_json *json, const moray_snake_options *options);

@@ -26,7 +26,7 @@ typedef struct free_gait {
                        // gait (25) reaches
     motion motion[FREE_GAIT_MOTIONS];
     int n;      // motions found, the last the freest
-    int vainly; // harmonics at which nothing better was found; 0: none
+    moray_status vain[FREE_GAIT_HARMONICS + 1]; // by harmonics, 0 for the taper: why there is no motion; ok where there is
 } free_gait;
 
 static inline const motion *freest(const free_gait *run)

@@ -144,6 +144,21 @@ static void say_gain(const moray_gait_gain *gain, const char *whom, char *text)
         moray_text_add(text, TEXT, ", %.2f %% %s power at its speed", fabs(more), more < 0 ? "less" : "MORE");
 }
 
+// Where a freer motion is no faster than the one before it, that one stands for it.
+static void say_vain(const free_gait *run, char *text)
+{
+    for (int k = 0; k <= FREE_GAIT_HARMONICS; k++) {
+        if (!moray_failed(run->vain[k]))
+            continue;
+        if (k == 0)
+            moray_text_add(text, TEXT, "Tapered");
+        else
+            moray_text_add(text, TEXT, "With %d harmonic%s", k, k > 1 ? "s" : "");
+        moray_text_add(text, TEXT, " nothing better was found, and the motion before stands for it: %.200s.\n",
+                       run->vain[k].text);
+    }
+}
+
 static void find_words(const free_gait *run, char *text)
 {
     const stage *best = last_stage(&run->job);
@@ -167,8 +182,7 @@ static void find_words(const free_gait *run, char *text)
     moray_text_add(
         text, TEXT, ".\nThe %s model itself predicted %+.2f %% speed on the gait (25) within the same limits.\n",
         moray_model_name(best->model), 100 * (m->at.prediction.speed / run->motion[0].at.prediction.speed - 1));
-    if (run->vainly > 0)
-        moray_text_add(text, TEXT, "With %d harmonics nothing better was found from there.\n", run->vainly);
+    say_vain(run, text);
 }
 
 // ---- All -----------------------------------------------------------------------------------------------------------

@@ -73,6 +73,23 @@ const char *gait_job_baseline(const gait_job *job, char text[64])
     return text;
 }
 
+// Whether gaits of the control-oriented model have to turn: into a current across the course, or by an offset.
+static bool turns(const gait_job *job)
+{
+    const double *V = job->snake.current, c = cos(job->snake.course), s = sin(job->snake.course);
+    const double nothing = 1e-12;
+    return fabs(V[1] * c - V[0] * s) > nothing || job->offset[0] > 0 || job->offset[1] < 0;
+}
+
+moray_status gait_job_turning(const gait_job *job, moray_model model)
+{
+    if (model != MORAY_CONTROL_ORIENTED || !turns(job))
+        return moray_ok();
+    const moray_status status = moray_snake_turning(&job->snake);
+    return moray_failed(status) && job->snake.model != model ? moray_error(MORAY_NOT_SOLVED, "%.280s", status.text)
+                                                             : status;
+}
+
 // A number asked for, by default the paper's gait's, which may have none.
 static moray_status demand(const gait_job *job, moray_model model, const char *key, double given, double paper,
                            double *value)
@@ -90,6 +107,7 @@ moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at)
 {
     const moray_steady *paper = &job->paper.steady[model];
     const double power = model == job->snake.model || isinf(job->power) ? job->power : NAN;
+    MORAY_TRY(gait_job_turning(job, model));
     at->model = model;
     at->found_on = gait_job_found_on(job, model);
     memcpy(at->taper, job->taper, sizeof at->taper);
@@ -107,7 +125,9 @@ void gait_job_try(const gait_job *job, const moray_gait *gait, moray_model from,
     const moray_steady none = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, false, NAN, 0};
     for (int model = 0; model < 2; model++) {
         trial->gait[model] = moray_gait_map(&job->snake.robot, gait, from, (moray_model)model);
-        const moray_status status = moray_gait_trial_swim(&job->rig, (moray_model)model, trial);
+        moray_status status = gait_job_turning(job, (moray_model)model);
+        if (!moray_failed(status))
+            status = moray_gait_trial_swim(&job->rig, (moray_model)model, trial);
         if (!moray_failed(status))
             continue;
         trial->steady[model] = none;
@@ -221,8 +241,8 @@ static moray_status work_on_ladder(gait_job *job)
 
 moray_status gait_job_work(gait_job *job)
 {
-    rungs over;
-    MORAY_TRY(gait_job_rungs(job, &over));
+    scenarios over;
+    MORAY_TRY(gait_job_scenarios(job, &over));
     MORAY_TRY(gait_job_prepare(job));
     MORAY_TRY(work_on_other(job));
     stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];

@@ -34,10 +34,18 @@ typedef struct stage {
     moray_status why;
 } stage;
 
-// The models of a gait that is optimised for several.
-typedef struct rungs {
-    int n, at[MORAY_RUNGS];
-} rungs;
+// A model, in a current, of a gait that is optimised for several.
+typedef struct scenario {
+    char name[48]; // as it is given, "consistent@0.1,0.1"
+    int rung;
+    double current[2]; // [m/s]
+    double gain;       // of that gait over the baseline there, a ratio, when it is found
+} scenario;
+
+typedef struct scenarios {
+    int n;
+    scenario at[MORAY_SCENARIOS];
+} scenarios;
 
 struct gait_job {
     moray_common common;
@@ -49,7 +57,7 @@ struct gait_job {
     double joint_rate, joint_effort;
     moray_joints joints;
     int random_starts, refinements;  // refinements: finer meshes tried where the first does not pass the certificate
-    char over[MORAY_PATH_SIZE];      // names of rungs, empty: none
+    char over[MORAY_PATH_SIZE];      // names of rungs, with @VX,VY behind those in another current; empty: none
     int over_goal;                   // a moray_over_goal
     int jobs;                        // processes; 0: one a processor
     char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
@@ -58,6 +66,7 @@ struct gait_job {
     moray_status no_paper[2]; // by model: why it cannot be swum; ok where it is
     stage stage[2];           // by model
     stage ladder;             // the gait optimised for job->over; used where `over` is
+    scenarios scenarios;      // those of the same
     moray_ticker ticker;
 };
 
@@ -134,7 +143,11 @@ typedef struct gait_starts {
 moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
                                       const double current[2]);
 
-// Builds it. Error: those of moray_gait_problem_new.
+// Whether a model may be used where gaits have to turn. Error: that of moray_snake_turning; MORAY_NOT_SOLVED with the same
+// text where the model is not the one asked for, which is then left out.
+moray_status gait_job_turning(const gait_job *job, moray_model model);
+
+// Builds it. Error: those of gait_job_turning and moray_gait_problem_new.
 moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_goal goal, const double current[2],
                               moray_gait_problem **problem);
 
@@ -174,7 +187,7 @@ void gait_job_prove(gait_job *job, stage *at);
 moray_status gait_job_over(gait_job *job, const gait_starts *known);
 
 // The names in job->over. Error: MORAY_INPUT.
-moray_status gait_job_rungs(const gait_job *job, rungs *over);
+moray_status gait_job_scenarios(const gait_job *job, scenarios *over);
 
 // The rungs that are of the model on which a gait of the job is found.
 unsigned gait_job_found_on(const gait_job *job, moray_model model);

@@ -75,6 +75,16 @@ static void json_recommended(moray_json *json, const gait_job *job, const stage 
         return;
     moray_json_text(json, "over", job->over);
     moray_json_text(json, "over_goal", job->over_goal == MORAY_OVER_WORST ? "worst" : "mean");
+    moray_json_open_list(json, "scenarios");
+    for (int k = 0; k < job->scenarios.n; k++) {
+        const scenario *at = &job->scenarios.at[k];
+        moray_json_open(json, NULL);
+        moray_json_text(json, "model", at->name);
+        moray_json_numbers(json, "current_m_s", at->current, 2);
+        moray_json_number(json, "gain_percent", 100 * at->gain);
+        moray_json_close(json);
+    }
+    moray_json_close(json);
     moray_json_number(json, "over_gain_percent", 100 * moray_gait_over_gain(best->solution));
 }
 

@@ -6,25 +6,58 @@
 
 #include "job.h"
 
-moray_status gait_job_rungs(const gait_job *job, rungs *over)
+static moray_status refuse_name(const char *name)
+{
+    return moray_error(MORAY_INPUT,
+                       "over = %.60s: must be none or names of rungs with commas between, @VX,VY [m/s] behind those in another "
+                       "current: paper, split2, split3, split5, strip, quadratic, consistent, c_n+20, c_n-20, c_t+20, c_t-20, "
+                       "mu_n+20, mu_n-20, lambda+20, lambda-20",
+                       name);
+}
+
+static bool read_number(const char *text, double *value)
+{
+    char *end;
+    *value = text ? strtod(text, &end) : NAN;
+    return text && end != text && !*end && isfinite(*value);
+}
+
+// "NAME" in the current of the job, or "NAME@VX", and then "VY" is what stands behind the next comma.
+static moray_status read_scenario(const gait_job *job, char *text, char **rest, scenario *at)
+{
+    char *x = strchr(text, '@'), *y = NULL;
+    if (x) {
+        *x++ = 0;
+        y = strtok_r(NULL, ",", rest);
+    }
+    *at = (scenario){.rung = moray_rung_named(text), .current = {job->snake.current[0], job->snake.current[1]}};
+    snprintf(at->name, sizeof at->name, x ? "%s@%s,%s" : "%s", text, x, y ? y : "");
+    if (at->rung < 0 || (x && !(read_number(x, &at->current[0]) && read_number(y, &at->current[1]))))
+        return refuse_name(at->name);
+    return moray_ok();
+}
+
+static bool same_scenario(const scenario *one, const scenario *other)
+{
+    return one->rung == other->rung && one->current[0] == other->current[0] && one->current[1] == other->current[1];
+}
+
+moray_status gait_job_scenarios(const gait_job *job, scenarios *over)
 {
     char text[MORAY_PATH_SIZE], *rest = NULL;
-    *over = (rungs){0};
+    *over = (scenarios){0};
     if (strcmp(job->over, "none") == 0)
         return moray_ok();
     strcpy(text, job->over);
     for (char *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
-        const int rung = moray_rung_named(name);
-        if (rung < 0)
-            return moray_error(MORAY_INPUT,
-                               "over = %.40s: must be none or names of rungs with commas between: paper, split2, split3, "
-                               "split5, strip, quadratic, consistent, c_n+20, c_n-20, c_t+20, c_t-20, mu_n+20, mu_n-20, "
-                               "lambda+20, lambda-20",
-                               name);
+        if (over->n == MORAY_SCENARIOS)
+            return moray_error(MORAY_INPUT, "over = %.200s: more than %d names", job->over, MORAY_SCENARIOS);
+        scenario *at = &over->at[over->n];
+        MORAY_TRY(read_scenario(job, name, &rest, at));
         for (int k = 0; k < over->n; k++)
-            if (over->at[k] == rung)
-                return moray_error(MORAY_INPUT, "over = %.200s: %s stands there twice", job->over, name);
-        over->at[over->n++] = rung;
+            if (same_scenario(at, &over->at[k]))
+                return moray_error(MORAY_INPUT, "over = %.200s: %s stands there twice", job->over, at->name);
+        over->n++;
     }
     return moray_ok();
 }
@@ -68,27 +101,28 @@ moray_status gait_job_climb(const gait_job *job, stage *const *at, int n)
 
 // ---- One gait for several models -------------------------------------------------------------------------------------
 
-// The models, with an orbit on each and what the baseline makes there.
+// The scenarios, with an orbit on each and what the baseline makes there.
 typedef struct {
-    rungs over;
+    scenarios *over;
     moray_rung rung[MORAY_RUNGS]; // the whole ladder
-    moray_orbit *orbit[MORAY_RUNGS];
-    moray_gait_scenario scenario[MORAY_RUNGS];
-} scenarios;
+    moray_orbit *orbit[MORAY_SCENARIOS];
+    moray_gait_scenario scenario[MORAY_SCENARIOS];
+} scenario_set;
 
-static void scenarios_free(scenarios *set)
+static void set_free(scenario_set *set)
 {
-    for (int k = 0; k < set->over.n; k++)
+    for (int k = 0; k < set->over->n; k++)
         moray_orbit_free(set->orbit[k]);
 }
 
-static moray_status make_scenario(gait_job *job, scenarios *set, int k)
+static moray_status make_scenario(gait_job *job, scenario_set *set, int k)
 {
-    const moray_rung *rung = &set->rung[set->over.at[k]];
+    const scenario *it = &set->over->at[k];
+    const moray_rung *rung = &set->rung[it->rung];
     moray_orbit_spec spec = moray_orbit_spec_default(&rung->robot, MORAY_FIRST_PRINCIPLES);
     moray_orbit_result baseline;
     stage at = {.model = MORAY_FIRST_PRINCIPLES};
-    memcpy(spec.current, job->snake.current, sizeof spec.current);
+    memcpy(spec.current, it->current, sizeof spec.current);
     spec.course = job->snake.course;
     spec.scheme = job->common.scheme;
     spec.intervals = job->common.intervals;
@@ -96,25 +130,24 @@ static moray_status make_scenario(gait_job *job, scenarios *set, int k)
     const moray_status status =
         moray_orbit_solve(set->orbit[k], &job->paper.gait[MORAY_FIRST_PRINCIPLES], &baseline);
     if (moray_failed(status))
-        return moray_error(status.code, "the baseline on %s: %.250s", rung->name, status.text);
+        return moray_error(status.code, "the baseline on %s: %.230s", it->name, status.text);
     at.power = baseline.steady.power;
     memcpy(at.taper, job->taper, sizeof at.taper);
-    set->scenario[k] = (moray_gait_scenario){rung->name,
-                                             gait_job_spec(job, &at, MORAY_GAIT_FASTEST, job->snake.current),
+    set->scenario[k] = (moray_gait_scenario){it->name, gait_job_spec(job, &at, MORAY_GAIT_FASTEST, it->current),
                                              baseline.steady.speed};
     set->scenario[k].problem.robot = rung->robot;
     return moray_ok();
 }
 
 // From the orbits of a gait, on each model at the baseline's power.
-static moray_status solve_from(gait_job *job, scenarios *set, const moray_gait *from, stage *at)
+static moray_status solve_from(gait_job *job, scenario_set *set, const moray_gait *from, stage *at)
 {
     const moray_settings settings = gait_job_settings(job);
-    moray_gait gait[MORAY_RUNGS];
-    moray_swim_track orbit[MORAY_RUNGS] = {0};
+    moray_gait gait[MORAY_SCENARIOS];
+    moray_swim_track orbit[MORAY_SCENARIOS] = {0};
     moray_solution *solution = NULL;
     moray_status status = moray_ok();
-    for (int k = 0; k < set->over.n && !moray_failed(status); k++) {
+    for (int k = 0; k < set->over->n && !moray_failed(status); k++) {
         moray_orbit_result found;
         gait[k] = *from;
         status = moray_orbit_match_power(set->orbit[k], &gait[k], set->scenario[k].problem.limits.power, &found);
@@ -125,14 +158,14 @@ static moray_status solve_from(gait_job *job, scenarios *set, const moray_gait *
     }
     if (!moray_failed(status))
         status = moray_gait_over_solve(at->over, &settings, gait, orbit, &solution);
-    for (int k = 0; k < set->over.n; k++)
+    for (int k = 0; k < set->over->n; k++)
         moray_swim_track_free(&orbit[k]);
     if (!moray_failed(status))
         gait_job_keep_best(at, solution);
     return status;
 }
 
-static moray_status solve_all(gait_job *job, scenarios *set, const gait_starts *known, stage *at)
+static moray_status solve_all(gait_job *job, scenario_set *set, const gait_starts *known, stage *at)
 {
     moray_status first_failure = moray_ok();
     srand48(1);
@@ -152,17 +185,22 @@ static moray_status solve_all(gait_job *job, scenarios *set, const gait_starts *
     return moray_ok();
 }
 
-// omega is that of the user's own model, where it is one of them, and else that which uses the power allowed there.
-static void choose_omega(const gait_job *job, const scenarios *set, stage *at)
+static bool is_own(const gait_job *job, const scenario *at)
 {
-    const unsigned own = moray_rung_of(&job->snake.robot);
+    const double *V = job->snake.current;
+    return moray_rung_of(&job->snake.robot) >> at->rung & 1 && at->current[0] == V[0] && at->current[1] == V[1];
+}
+
+// omega is that of the user's own model and current, where it is one of them, and else that which uses the power allowed
+// there.
+static void choose_omega(const gait_job *job, const scenario_set *set, stage *at)
+{
     at->phase = 0;
-    for (int k = 0; k < set->over.n; k++)
-        if (own >> set->over.at[k] & 1)
+    for (int k = 0; k < set->over->n; k++)
+        if (is_own(job, &set->over->at[k]))
             at->phase = k;
     at->prediction = moray_gait_over_prediction(at->over, at->solution, at->phase);
-    const bool is_own = own >> set->over.at[at->phase] & 1;
-    if ((is_own && isnan(job->power)) || !isfinite(at->power))
+    if ((is_own(job, &set->over->at[at->phase]) && isnan(job->power)) || !isfinite(at->power))
         return;
     const moray_swim_setup setup = moray_test_rig_setup(&job->rig, MORAY_FIRST_PRINCIPLES);
     moray_gait gait = at->prediction.gait;
@@ -171,14 +209,17 @@ static void choose_omega(const gait_job *job, const scenarios *set, stage *at)
         at->prediction.gait.omega = fmin(fmax(gait.omega, job->omega[0]), job->omega[1]);
 }
 
-static moray_status optimise(gait_job *job, scenarios *set, const gait_starts *known)
+static moray_status optimise(gait_job *job, scenario_set *set, const gait_starts *known)
 {
     stage *at = &job->ladder;
     moray_ladder(&job->snake.robot, set->rung);
-    for (int k = 0; k < set->over.n; k++)
+    for (int k = 0; k < set->over->n; k++)
         MORAY_TRY(make_scenario(job, set, k));
-    MORAY_TRY(moray_gait_over_new(&at->over, set->scenario, set->over.n, (moray_over_goal)job->over_goal));
+    MORAY_TRY(moray_gait_over_new(&at->over, set->scenario, set->over->n, (moray_over_goal)job->over_goal));
     MORAY_TRY(solve_all(job, set, known, at));
+    for (int k = 0; k < set->over->n; k++)
+        set->over->at[k].gain =
+            moray_gait_over_prediction(at->over, at->solution, k).speed / set->scenario[k].speed - 1;
     choose_omega(job, set, at);
     return gait_job_certify(job, at);
 }
@@ -186,21 +227,21 @@ static moray_status optimise(gait_job *job, scenarios *set, const gait_starts *k
 moray_status gait_job_over(gait_job *job, const gait_starts *known)
 {
     stage *at = &job->ladder;
-    scenarios set = {0};
-    MORAY_TRY(gait_job_rungs(job, &set.over));
+    scenario_set set = {.over = &job->scenarios};
+    MORAY_TRY(gait_job_scenarios(job, &job->scenarios));
     *at = (stage){.model = MORAY_FIRST_PRINCIPLES,
                   .power = last_stage(job)->power,
                   .speed = last_stage(job)->speed,
                   .taper = {job->taper[0], job->taper[1]}};
-    for (int k = 0; k < set.over.n; k++)
-        at->found_on |= 1u << set.over.at[k];
+    for (int k = 0; k < set.over->n; k++)
+        at->found_on |= 1u << set.over->at[k].rung;
     if (at->found_on & moray_rung_of(&job->snake.robot))
         at->found_on |= MORAY_RUNG_CHANGES;
     if (moray_failed(job->no_paper[MORAY_FIRST_PRINCIPLES]))
         return moray_error(MORAY_NOT_SOLVED, "there is no baseline to gain over: %.250s",
                            job->no_paper[MORAY_FIRST_PRINCIPLES].text);
     const moray_status status = optimise(job, &set, known);
-    scenarios_free(&set);
+    set_free(&set);
     if (!moray_failed(status))
         gait_job_prove(job, at);
     return status;

@@ -195,6 +195,16 @@ static void print_left_out(const gait_job *job)
             printf("Left out: the %s: %s\n\n", kind_of(job, all[k]), all[k]->why.text);
 }
 
+// What the gait for several gains on each, at the power of the baseline there.
+static void print_scenarios(const gait_job *job)
+{
+    const scenarios *over = &job->scenarios;
+    for (int k = 0; k < over->n; k++)
+        printf("%s %+.2f %% on %s", k == 0 ? "The gait optimised for the ladder gains, where it was optimised," : ",",
+               100 * over->at[k].gain, over->at[k].name);
+    printf("\n\n");
+}
+
 static void print_solver(const gait_job *job, const stage *at)
 {
     char text[text_size];
@@ -221,6 +231,8 @@ static void print(const void *found, const moray_report *report)
         printf("%s\n\n", text);
     }
     print_left_out(job);
+    if (recommended(job) == &job->ladder)
+        print_scenarios(job);
     text[0] = 0;
     gait_job_headline(job, text);
     printf("%s\n\n", text);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <stdlib.h>
+#include <string.h>
 
 #include "job.h"
 
@@ -38,6 +39,7 @@ moray_status gait_job_problem(const gait_job *job, const stage *at, moray_gait_g
                               moray_gait_problem **problem)
 {
     const moray_gait_problem_spec spec = gait_job_spec(job, at, goal, current);
+    MORAY_TRY(gait_job_turning(job, at->model));
     return moray_gait_problem_new(problem, &spec);
 }
 
@@ -78,10 +80,11 @@ moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *proble
 }
 
 // The orbit is swum straight along the course where the gait cannot hold it.
-moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
-                            moray_solution **solution)
+static moray_status solve_in(gait_job *job, const stage *at, const double current[2], const moray_gait_problem *problem,
+                             const moray_gait *gait, moray_solution **solution)
 {
-    const moray_swim_setup setup = moray_test_rig_setup(&job->rig, at->model);
+    moray_swim_setup setup = moray_test_rig_setup(&job->rig, at->model);
+    memcpy(setup.current, current, sizeof setup.current);
     moray_steady steady;
     moray_swim_track orbit = {0};
     moray_status status = moray_swim_hold_course(&setup, gait, job->snake.course, &steady);
@@ -91,6 +94,12 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
         status = gait_job_solve_from(job, problem, gait, &orbit, solution);
     moray_swim_track_free(&orbit);
     return status;
+}
+
+moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
+                            moray_solution **solution)
+{
+    return solve_in(job, at, job->snake.current, problem, gait, solution);
 }
 
 static double uniform(double low, double high)
@@ -209,7 +218,7 @@ static moray_gait_prediction fastest(gait_job *job, const stage *at, const doubl
     moray_solution *solution = NULL;
     moray_gait_prediction prediction = {.speed = NAN, .course_speed = NAN};
     if (!moray_failed(gait_job_problem(job, at, MORAY_GAIT_FASTEST, current, &problem)) &&
-        !moray_failed(gait_job_solve(job, at, problem, &job->paper.gait[at->model], &solution)) && solved(solution))
+        !moray_failed(solve_in(job, at, current, problem, &job->paper.gait[at->model], &solution)) && solved(solution))
         prediction = moray_gait_problem_prediction(problem, solution);
     moray_solution_free(solution);
     moray_gait_problem_free(problem);

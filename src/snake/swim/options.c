@@ -27,6 +27,7 @@ _Static_assert(sizeof(moray_model) == sizeof(int), "choices are stored as int");
     .section = "robot", .key = #name, .type = MORAY_OPTION_CHOICE, MORAY_AT(moray_snake_options, robot.hydro.name),    \
     .choices = list
 #define BY_WORD "; by --hydrodynamics unless given"
+#define AS_TUNED "; unless given that which the authors tuned for their robot, refused where another one turns"
 #define FROM_GEOMETRY "; from the geometry unless given"
 
 static const moray_option robot_rows[] = {
@@ -69,9 +70,9 @@ static const moray_option robot_rows[] = {
     {ROBOT("lambda_3", lambda_3), AT_LEAST(0), .unit = "kg m^2",
      .help = "quadratic drag in the fluid torque (4)" FROM_GEOMETRY},
     {ROBOT("rot_damping", rot_damping), AT_LEAST(0), .unit = "1/s",
-     .help = "rotational damping of the control-oriented model, first constant of (20)"},
+     .help = "rotational damping of the control-oriented model, first constant of (20)" AS_TUNED},
     {ROBOT("rot_gain", rot_gain), AT_LEAST(0), .unit = "1/(m^2 s)",
-     .help = "gain from joint offset to turning in the control-oriented model, second constant of (20)"},
+     .help = "gain from joint offset to turning in the control-oriented model, second constant of (20)" AS_TUNED},
     {ROBOT("k_p", k_p), AT_LEAST(0), .unit = "1/s^2", .help = "proportional gain of the joint controller (34)"},
     {ROBOT("k_d", k_d), AT_LEAST(0), .unit = "1/s", .help = "derivative gain of the joint controller (34)"},
     MORAY_ROW(CHOICE, moray_snake_options, hydrodynamics, "robot", "hydrodynamics", .flag = "hydrodynamics",
@@ -90,6 +91,7 @@ moray_snake_options moray_snake_options_default(void)
         .robot = moray_robot_paper(), .geometry = moray_link_geometry_paper(), .model = MORAY_CONTROL_ORIENTED};
     moray_robot *r = &options.robot;
     r->l = r->m = r->J = r->c_t = r->c_n = r->mu_n = r->lambda_1 = r->lambda_2 = r->lambda_3 = NAN;
+    r->rot_damping = r->rot_gain = NAN;
     memset(&r->hydro, -1, offsetof(moray_hydrodynamics, pieces)); // not given
     return options;
 }
@@ -103,6 +105,42 @@ static void make_hydrodynamics(moray_hydrodynamics *hydro, int word)
     hydro->drag = (int)hydro->drag < 0 ? from.drag : hydro->drag;
     hydro->added_mass = (int)hydro->added_mass < 0 ? from.added_mass : hydro->added_mass;
     hydro->frame = (int)hydro->frame < 0 ? from.frame : hydro->frame;
+}
+
+// Whether links, geometry, mass and coefficients are those of the paper's robot.
+static bool is_the_papers(const moray_robot *robot)
+{
+    const moray_robot paper = moray_robot_paper();
+    const double one[] = {robot->l,    robot->m,        robot->J,        robot->c_t,     robot->c_n,
+                          robot->mu_n, robot->lambda_1, robot->lambda_2, robot->lambda_3},
+                 other[] = {paper.l,    paper.m,        paper.J,        paper.c_t,     paper.c_n,
+                            paper.mu_n, paper.lambda_1, paper.lambda_2, paper.lambda_3};
+    const double rounding = 1e-9;
+    for (unsigned i = 0; i < sizeof one / sizeof *one; i++)
+        if (!(fabs(one[i] - other[i]) <= rounding * other[i]))
+            return false;
+    return robot->links == paper.links;
+}
+
+// The constants of (20) where they are not given.
+static bool make_turning(moray_robot *robot)
+{
+    const moray_robot paper = moray_robot_paper();
+    const bool given = !isnan(robot->rot_damping) && !isnan(robot->rot_gain);
+    robot->rot_damping = isnan(robot->rot_damping) ? paper.rot_damping : robot->rot_damping;
+    robot->rot_gain = isnan(robot->rot_gain) ? paper.rot_gain : robot->rot_gain;
+    return given || is_the_papers(robot);
+}
+
+moray_status moray_snake_turning(const moray_snake_options *options)
+{
+    const moray_robot paper = moray_robot_paper();
+    if (!options->not_tuned)
+        return moray_ok();
+    return moray_error(MORAY_INPUT,
+                       "rot_damping, rot_gain: not given; %g and %g are tuned for the paper's robot, not for this one: fit "
+                       "them with `paper fit --set write_ini=FILE` and this robot's other options, then add --robot FILE",
+                       paper.rot_damping, paper.rot_gain);
 }
 
 // The robot of geometry and direct coefficients.
@@ -121,6 +159,7 @@ static moray_status make_robot(void *settings)
         if (!isnan(from[i]))
             *to[i] = from[i];
     make_hydrodynamics(&made.hydro, options->hydrodynamics);
+    options->not_tuned = !make_turning(&made);
     *given = made;
     return moray_robot_check(&made);
 }

@@ -80,6 +80,26 @@ static void test_hydrodynamics(void)
     CHECK(PARSE(&s, "--set", "pieces=3", "--set", "rotation=strip").code == MORAY_INPUT, "a strip is not cut");
 }
 
+// The constants of (20) are the paper's for its robot alone.
+static void test_turning(void)
+{
+    static const char *const others[] = {"links=6", "m_kg=0.5", "length_m=0.2", "a_e_m=0.04", "rho_kg_m3=1025", "c_n=3"};
+    settings s;
+    CHECK_OK(PARSE(&s, "--set", "m_kg=0.65973445725385655"), "the paper's robot, with its own mass given");
+    CHECK_OK(moray_snake_turning(&s.snake), "has the constants of the paper");
+    for (unsigned i = 0; i < sizeof others / sizeof *others; i++) {
+        CHECK_OK(PARSE(&s, "--set", others[i]), others[i]);
+        const moray_status status = moray_snake_turning(&s.snake);
+        CHECK(status.code == MORAY_INPUT && strstr(status.text, "paper fit --set write_ini="), "%s: has not: %s",
+              others[i], status.text);
+        CHECK_OK(PARSE(&s, "--set", others[i], "--set", "rot_gain=30"), "one is not both");
+        CHECK(s.snake.not_tuned && s.snake.robot.rot_gain == 30, "one given");
+        CHECK(s.snake.robot.rot_damping == moray_robot_paper().rot_damping, "the other is the paper's");
+        CHECK_OK(PARSE(&s, "--set", others[i], "--set", "rot_gain=30", "--set", "rot_damping=1"), "both");
+        CHECK_OK(moray_snake_turning(&s.snake), "are taken");
+    }
+}
+
 static void test_words(void)
 {
     settings s;
@@ -113,6 +133,7 @@ int main(void)
     close(file);
     test_robot();
     test_hydrodynamics();
+    test_turning();
     test_words();
     CHECK_OK(PARSE(&s, NULL), "defaults");
     check_sound_table(&program, &s, sizeof s);
