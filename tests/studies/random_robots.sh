@@ -22,7 +22,7 @@ robot() {
             srand(7919 * seed)
             for (i = 0; i < 10; i++)
                 rand() # the first ones of seeds nearby are alike
-            printf "[robot]\nlinks = %d\n", 3 + int(18 * rand())
+            printf "[robot]\nlinks = %d\n", 3 + 7 * seed % 18 # all of them in turn
             printf "rho_kg_m3 = %d\n", rand() < 0.5 ? 1000 : 1025
             printf "length_m = %.4f\n", between(0.06, 0.3)
             printf "a_e_m = %.4f\nb_e_m = %.4f\n", between(0.02, 0.07), between(0.02, 0.07)
