@@ -22,7 +22,7 @@ static const moray_option options[] = {
 static const gait_program program = {
     .name = "max_speed",
     .summary = "Optimises the gait of an underwater snake robot for speed along a course, and "
-               "proves it on the first-principles model.",
+               "tells what it gains on models that it was not found on.",
     .goal = MORAY_GAIT_FASTEST,
     .options = options,
     .n_options = sizeof options / sizeof *options,

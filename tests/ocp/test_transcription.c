@@ -157,6 +157,7 @@ static void check_programme(const moray_ocp *ocp, moray_family family, int stage
     free(x);
     free(weight);
     moray_pattern_free(&map.jac);
+    moray_pattern_free(&map.hess);
     moray_transcription_free(t);
     moray_mesh_free(&mesh[0]);
     moray_mesh_free(&mesh[1]);

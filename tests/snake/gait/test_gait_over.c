@@ -66,6 +66,7 @@ static moray_solution *solve(set *s, const moray_gait_over *over)
     moray_solution *solution = NULL;
     settings.scheme = "lobatto5";
     settings.intervals = 12;
+    settings.max_refinements = 4;
     settings.barrier = 1e-4;
     for (int k = 0; k < s->n; k++) {
         moray_orbit_result found;
