@@ -209,6 +209,18 @@ static void choose_omega(const gait_job *job, const scenario_set *set, stage *at
         at->prediction.gait.omega = fmin(fmax(gait.omega, job->omega[0]), job->omega[1]);
 }
 
+// Where the gains on the models oppose one another the best is the baseline itself, with more active constraints than
+// there are directions: what is left of a gait that neither gains nor is certified is left out.
+static moray_status check_gain(const gait_job *job, const stage *at)
+{
+    const double nothing = 5e-4;
+    if (at->certificate.pass || moray_gait_over_gain(at->solution) >= nothing)
+        return moray_ok();
+    return moray_error(MORAY_NOT_SOLVED,
+                       "no gait was found that gains on all of %.150s, and what was found, %+.2f %%, is not certified: KKT %.1e",
+                       job->over, 100 * moray_gait_over_gain(at->solution), at->certificate.kkt);
+}
+
 static moray_status optimise(gait_job *job, scenario_set *set, const gait_starts *known)
 {
     stage *at = &job->ladder;
@@ -221,7 +233,8 @@ static moray_status optimise(gait_job *job, scenario_set *set, const gait_starts
         set->over->at[k].gain =
             moray_gait_over_prediction(at->over, at->solution, k).speed / set->scenario[k].speed - 1;
     choose_omega(job, set, at);
-    return gait_job_certify(job, at);
+    MORAY_TRY(gait_job_certify(job, at));
+    return check_gain(job, at);
 }
 
 moray_status gait_job_over(gait_job *job, const gait_starts *known)
