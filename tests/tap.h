@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static int tap_run, tap_failed;
 
@@ -55,6 +56,12 @@ static inline int tap_done(void)
         moray_status tap_status_ = (status);                                                                           \
         tap_check(!moray_failed(tap_status_), __FILE__, __LINE__, "%s: %s", (what), tap_status_.text);                 \
     } while (0)
+
+// False in the sanitizers' half of tests/run.sh, for long checks of what shorter ones reach too.
+static inline bool tap_thorough(void)
+{
+    return !getenv("MORAY_TESTS_BRIEF");
+}
 
 // Repeatable uniform random number in [low, high) (SplitMix64).
 static inline double tap_random(unsigned long long *seed, double low, double high)

@@ -39,6 +39,7 @@ check "three times of replanning" \
 check "a gait that is given is kept" near "$(number first_principles_plan omega_deg_s)" 120 1e-6
 check "what limits it is said" grep -q 'A jump of 20 deg takes' out
 
+if thorough; then
 # ---- The control-oriented model alone, its gait found
 run $short --quiet --model control --set receding=no --set reference=steps:6=20
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
@@ -47,6 +48,7 @@ check "the table has the paper's gait and that found" grep -q "paper's  control 
 check "and how it steers" eval 'grep -q "^control-oriented plan " out && grep -q "^feedback ahead, gait found " out'
 check "and what was tuned" grep -q '^Tuned on the first-principles model' out
 check "and a conclusion" grep -q '^First-principles model, same limits: the best optimised steering' out
+fi
 
 # ---- A CSV file says the same as a text
 printf 't_s,heading_deg\n0,0\n8,0\n12,20\n' >ramp.csv

@@ -3,14 +3,16 @@
 . "$2/tests/program.sh"
 
 # ---- The control-oriented model, from the paper's gait and from random starts (paper-notes, section 5)
-run --model control --json --set random_starts=7 --out results
+starts=7
+thorough || starts=1
+run --model control --json --set random_starts=$starts --out results
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
 check "speed on the control-oriented model $(number predicted speed_m_s)" near "$(number predicted speed_m_s)" 0.2597 1e-4
 check "at $(number predicted power_W) W" near "$(number predicted power_W)" 0.3972 5e-5
 check "delta $(number delta_deg)" near "$(number delta_deg)" 34.9 0.1
 check "omega $(number omega_deg_s)" near "$(number omega_deg_s)" 104.3 0.1
 check "theta_max $(number theta_max_deg) at its bound" near "$(number theta_max_deg)" 20 1e-5
-check "from every start" [ "$(number starts_at_optimum)" = 8 ]
+check "from every start" [ "$(number starts_at_optimum)" = $((starts + 1)) ]
 check "paper's gait, first-principles, $(number baseline validated)" \
     eval 'sed -n "/\"baseline\"/,\$p" out | sed -n "/\"validated\"/,/}/p" >block &&
           near "$(sed -n "s/.*\"speed_m_s\":[ \t]*\([0-9.e-]*\).*/\1/p" block)" 0.2293 1e-4 &&
@@ -97,11 +99,13 @@ refuse "$fit" --links 6 --current 0,0.05 --model control
 run --quiet --model control --set taper=-0.8
 check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
 
+if thorough; then
 run --quiet
 check "the table says plainly that the gait loses" grep -q 'LOSES on the first-principles model' out
 check "and puts both models' gains side by side" grep -q 'The control-oriented model itself predicted' out
 check "the headline has the range: $(grep ^Recommended out)" \
     grep -q '^Recommended: the gait optimised for the ladder, .* it wins on all 15, from +1.3[0-9] to +3.7[0-9] %\.$' out
+fi
 
 # ---- Currents
 run --current 0.1,0.1 --json --over none

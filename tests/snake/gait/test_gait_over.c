@@ -129,11 +129,11 @@ static void check_over(const char *const *names, int n)
         solution[goal] = solve(&s, over[goal]);
         check_certificate(solution[goal]);
         mean[goal] = check_on_ladder(&s, over[goal], solution[goal], &worst[goal]);
-        CHECK_NEAR(100 * moray_gait_over_gain(solution[goal]), goal == MORAY_OVER_WORST ? worst[goal] : mean[goal], 1e-4,
-                   "what was maximised");
+        CHECK_NEAR(100 * moray_gait_over_gain(solution[goal]), goal == MORAY_OVER_WORST ? worst[goal] : mean[goal],
+                   1e-4, "what was maximised");
     }
-    CHECK(worst[0] >= worst[1] - 1e-4, "the best worst gain %.4f is none worse than that of the best mean, %.4f", worst[0],
-          worst[1]);
+    CHECK(worst[0] >= worst[1] - 1e-4, "the best worst gain %.4f is none worse than that of the best mean, %.4f",
+          worst[0], worst[1]);
     CHECK(mean[1] >= mean[0] - 1e-4, "nor the best mean %.4f than that of the best worst, %.4f", mean[1], mean[0]);
     for (int goal = 0; goal < 2; goal++) {
         moray_solution_free(solution[goal]);
@@ -151,7 +151,8 @@ static void check_one(void)
     CHECK_OK(moray_gait_over_new(&over, s.scenario, 1, MORAY_OVER_WORST), "the programme");
     moray_solution *solution = solve(&s, over);
     CHECK_NEAR(100 * moray_gait_over_gain(solution), 4.029, 5e-3, "over the paper's model alone");
-    CHECK_NEAR(moray_gait_over_prediction(over, solution, 0).gait.delta / DEG, 51.33, 0.01, "with the delta of max_speed");
+    CHECK_NEAR(moray_gait_over_prediction(over, solution, 0).gait.delta / DEG, 51.33, 0.01,
+               "with the delta of max_speed");
     moray_solution_free(solution);
     moray_gait_over_free(over);
     free_set(&s);

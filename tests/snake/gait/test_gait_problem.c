@@ -364,13 +364,16 @@ int main(void)
     test_first_principles();
     test_goals_agree(MORAY_CONTROL_ORIENTED);
     test_goals_agree(MORAY_FIRST_PRINCIPLES);
-    test_thriftiest_by_simulation();
-    test_thriftiest_in_current();
-    for (int model = 0; model < 2; model++) {
+    for (int model = 0; model < 2; model++)
+        test_taper_limits((moray_model)model, 0.5);
+    for (int model = 0; model < 2 && tap_thorough(); model++) {
         test_power_price((moray_model)model);
         test_taper((moray_model)model);
-        test_taper_limits((moray_model)model, 0.5);
         test_taper_limits((moray_model)model, -0.8);
+    }
+    if (tap_thorough()) {
+        test_thriftiest_by_simulation();
+        test_thriftiest_in_current();
     }
     test_refusals();
     return tap_done();

@@ -241,9 +241,11 @@ int main(void)
 {
     test_endpoint(MORAY_GAIT_FASTEST);
     test_endpoint(MORAY_GAIT_THRIFTIEST);
-    test_optima(MORAY_CONTROL_ORIENTED);
     test_optima(MORAY_FIRST_PRINCIPLES);
-    test_limits();
+    if (tap_thorough()) {
+        test_optima(MORAY_CONTROL_ORIENTED);
+        test_limits();
+    }
     test_refusals();
     return tap_done();
 }
