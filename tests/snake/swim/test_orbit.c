@@ -153,7 +153,7 @@ static void test_return(moray_model model)
     moray_orbit_free(orbit);
 }
 
-// The numbers of paper-notes, section 5; other schemes and meshes give them too.
+// The numbers of an independent implementation; other schemes and meshes give them too.
 static void test_schemes(void)
 {
     const struct {

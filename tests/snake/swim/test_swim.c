@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// References: the table and the numbers of paper-notes, section 5, and a classical Runge-Kutta integration at fixed
+// References: the table and the numbers of an independent implementation, and a classical Runge-Kutta integration at fixed
 // step of the swimmer's rates, which shares nothing with src/sim and src/app.
 #include "degree.h"
 #include "tap.h"
@@ -135,7 +135,7 @@ static void test_schedule(moray_model model)
     moray_swimmer_free(swimmer);
 }
 
-// Sec. V-C, and what paper-notes says of it: offsets in [40, 70] and [130, 160] s.
+// Sec. V-C, and what an independent implementation has of it: offsets in [40, 70] and [130, 160] s.
 static void test_turning_manoeuvre(moray_model model, double heading_deg, double p_x, double p_y)
 {
     moray_swimmer *swimmer = make(model);
@@ -210,7 +210,7 @@ static void test_plans(void)
     moray_swimmer_free(swimmer);
 }
 
-// ---- Numbers of paper-notes, section 5 ------------------------------------------------------------------------------
+// ---- Numbers of an independent implementation ------------------------------------------------------------------------------
 
 static void test_straight_table(moray_model model, const double v_x[4])
 {
