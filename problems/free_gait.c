@@ -203,7 +203,8 @@ static moray_status find_gait(free_gait *run)
     return finish_motion(run, m);
 }
 
-// A motion freer than the last one; in run->vain where that gains nothing or cannot be swum, and the last one stands for it.
+// A motion freer than the last one; in run->vain where that gains nothing or cannot be swum, and the last one stands
+// for it.
 static moray_status free_further(free_gait *run, int harmonics, double taper)
 {
     motion *m = start_motion(run, harmonics, taper);

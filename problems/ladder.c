@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Gaits on the ladder of models: in speed, at the power of the paper's gait on each. The gaits are by default those that
-// were found on the first-principles and on the control-oriented model alone (max_speed, search_gait).
+// Gaits on the ladder of models: in speed, at the power of the paper's gait on each. The gaits are by default those
+// that were found on the first-principles and on the control-oriented model alone (max_speed, search_gait).
 #include <math.h>
 #include <stdio.h>
 
@@ -67,10 +67,10 @@ static moray_status climb(ladder *run)
     add_gait(run, "paper's", &paper);
     for (int k = 0; k < GAITS; k++) {
         const double theta_max = run->shape[k][0], delta = run->shape[k][1];
-        const moray_gait gait = {
-            .amplitude = moray_amplitude_from_theta_max(robot, MORAY_FIRST_PRINCIPLES, theta_max, delta),
-            .omega = paper.omega,
-            .delta = delta};
+        const moray_gait gait = {.amplitude =
+                                     moray_amplitude_from_theta_max(robot, MORAY_FIRST_PRINCIPLES, theta_max, delta),
+                                 .omega = paper.omega,
+                                 .delta = delta};
         char name[32];
         if (isnan(theta_max))
             continue;
@@ -88,7 +88,8 @@ static moray_status climb(ladder *run)
                               run->row);
 }
 
-// ---- Results ---------------------------------------------------------------------------------------------------------
+// ---- Results
+// ---------------------------------------------------------------------------------------------------------
 
 enum { TEXT = 4000 };
 
@@ -136,12 +137,13 @@ static moray_status report(ladder *run)
     moray_table_row gains[MORAY_RUNGS], paper[MORAY_RUNGS];
     const moray_ladder_row *ladders[GAITS] = {NULL};
     char text[TEXT] = "";
-    moray_table tables[2] = {{.title = "The paper's gait (theta_max, delta = 20 deg, 2 pi/(N-1)) on the ladder of models",
-                              .columns = {"speed, m/s", "power, W"},
-                              .n_columns = 2,
-                              .rows = paper,
-                              .n_rows = MORAY_RUNGS},
-                             {.title = "Gain in speed at its power, by theta_max and delta", .n_columns = run->n - 1}};
+    moray_table tables[2] = {
+        {.title = "The paper's gait (theta_max, delta = 20 deg, 2 pi/(N-1)) on the ladder of models",
+         .columns = {"speed, m/s", "power, W"},
+         .n_columns = 2,
+         .rows = paper,
+         .n_rows = MORAY_RUNGS},
+        {.title = "Gain in speed at its power, by theta_max and delta", .n_columns = run->n - 1}};
     for (int k = 0; k < MORAY_RUNGS; k++)
         paper[k] = (moray_table_row){.label = run->row[k].model, .value = {run->row[k].speed, run->row[k].power}};
     for (int g = 1; g < run->n; g++) {
@@ -151,8 +153,7 @@ static moray_status report(ladder *run)
     tables[1].rows = gains;
     tables[1].n_rows = moray_ladder_rows(ladders, run->n - 1, gains);
     say(run, text);
-    const moray_report page = {
-        .title = "ladder", .text = text, .tables = tables, .n_tables = run->n > 1 ? 2 : 1};
+    const moray_report page = {.title = "ladder", .text = text, .tables = tables, .n_tables = run->n > 1 ? 2 : 1};
     return moray_app_show(
         &run->common,
         &(moray_results){.name = "ladder", .found = run, .summary = summarise, .print = print, .report = &page});

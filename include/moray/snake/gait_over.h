@@ -25,8 +25,8 @@ typedef enum { MORAY_OVER_WORST, MORAY_OVER_MEAN } moray_over_goal;
 typedef struct moray_gait_over moray_gait_over;
 
 // maximise  t,  t <= speed_k / speed of the baseline_k - 1,  power_k = power of the baseline_k,  and what else the
-// limits say, for every scenario k; or the mean of speed_k / speed of the baseline_k - 1. Amplitude, delta and taper are
-// shared. omega and the offset are each scenario's own: a gait is compared at equal power, and keeps its heading.
+// limits say, for every scenario k; or the mean of speed_k / speed of the baseline_k - 1. Amplitude, delta and taper
+// are shared. omega and the offset are each scenario's own: a gait is compared at equal power, and keeps its heading.
 // Error: MORAY_INPUT naming what is wrong, MORAY_MEMORY.
 MORAY_API moray_status moray_gait_over_new(moray_gait_over **over, const moray_gait_scenario *scenario, int n,
                                            moray_over_goal goal);

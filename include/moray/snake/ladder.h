@@ -50,16 +50,18 @@ typedef struct moray_ladder_row {
     moray_status why;
 } moray_ladder_row;
 
-// Whether a gait is one to compare with. Error: MORAY_NOT_SOLVED where it makes less than a hundredth of a link a period.
+// Whether a gait is one to compare with. Error: MORAY_NOT_SOLVED where it makes less than a hundredth of a link a
+// period.
 MORAY_API moray_status moray_makes_way(const moray_robot *robot, const moray_gait *gait, const moray_steady *steady);
 
-// Swims them all, into row[gaits][MORAY_RUNGS]: as stable periodic orbits, on which phi_0 holds the heading; where there is
-// none, and with a series, from rest (moray_swim_match_power). Error: MORAY_INPUT (robot), MORAY_NUMERIC (moray_parallel).
+// Swims them all, into row[gaits][MORAY_RUNGS]: as stable periodic orbits, on which phi_0 holds the heading; where
+// there is none, and with a series, from rest (moray_swim_match_power). Error: MORAY_INPUT (robot), MORAY_NUMERIC
+// (moray_parallel).
 MORAY_API moray_status moray_ladder_climb(const moray_ladder_spec *spec, moray_ladder_row *row);
 
 // What a ladder says: of the n rungs that compare, on how many the gait wins, by more than 0.05 %, and the range.
-// `found_on` has a bit 1 << rung for each one that the gait was optimised on; those with a coefficient changed are of the
-// same model as moray_rung_of.
+// `found_on` has a bit 1 << rung for each one that the gait was optimised on; those with a coefficient changed are of
+// the same model as moray_rung_of.
 typedef struct moray_ladder_count {
     int n, wins, wins_elsewhere; // elsewhere: not among found_on
     double least, most;          // gain [%]; NaN where n is 0
@@ -68,12 +70,13 @@ typedef struct moray_ladder_count {
 MORAY_API moray_ladder_count moray_ladder_counted(const moray_ladder_row row[MORAY_RUNGS], unsigned found_on);
 
 // Adds the verdict to what stands in text[size]: "wins on all 15, from +1.3 to +4.0 %", "wins on 6 of 15, from -2.1 to
-// +4.0 %", "wins only on the model it was found on, 9 of 15, from -19.0 to +3.3 %" (where it was found on several: models), with
-// what is left out and why behind it.
+// +4.0 %", "wins only on the model it was found on, 9 of 15, from -19.0 to +3.3 %" (where it was found on several:
+// models), with what is left out and why behind it.
 MORAY_API void moray_ladder_verdict(const moray_ladder_row row[MORAY_RUNGS], unsigned found_on, char *text,
                                     size_t size);
 
-// "ladder": a list of {model, gain_percent_at_equal_power, speed_m_s, power_W, omega_deg_s}, with "left_out" where that is so.
+// "ladder": a list of {model, gain_percent_at_equal_power, speed_m_s, power_W, omega_deg_s}, with "left_out" where that
+// is so.
 MORAY_API void moray_ladder_to_json(moray_json *json, const moray_ladder_row row[MORAY_RUNGS]);
 
 // Rows of a table of gains, one gait a column; returns how many.

@@ -31,8 +31,8 @@ MORAY_API moray_snake_options moray_snake_options_default(void);
 // (error: MORAY_INPUT). As a group of a program: {&moray_snake_option_table, offsetof(SETTINGS, FIELD)}.
 MORAY_API extern const moray_option_table moray_snake_option_table;
 
-// Before the control-oriented model turns, steered or in a current across. Error: MORAY_INPUT where the constants of (20)
-// are not this robot's, with the command that fits them; swimming straight in still water does without them.
+// Before the control-oriented model turns, steered or in a current across. Error: MORAY_INPUT where the constants of
+// (20) are not this robot's, with the command that fits them; swimming straight in still water does without them.
 MORAY_API moray_status moray_snake_turning(const moray_snake_options *options);
 
 // "model", "robot" and "current_m_s" of a summary.

@@ -25,8 +25,9 @@ typedef struct free_gait {
     double limit;      // of |link angle - heading| [rad]: by default the larger of theta_max_deg and of what the best
                        // gait (25) reaches
     motion motion[FREE_GAIT_MOTIONS];
-    int n;      // motions found, the last the freest
-    moray_status vain[FREE_GAIT_HARMONICS + 1]; // by harmonics, 0 for the taper: why there is no motion; ok where there is
+    int n; // motions found, the last the freest
+    moray_status
+        vain[FREE_GAIT_HARMONICS + 1]; // by harmonics, 0 for the taper: why there is no motion; ok where there is
 } free_gait;
 
 static inline const motion *freest(const free_gait *run)

@@ -18,7 +18,7 @@ typedef struct stage {
     double power; // limit of the mean joint power [W], or infinite
     double speed; // least speed along the course [m/s], or 0
     double taper[2];
-    double link_angle; // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
+    double link_angle;               // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
     moray_gait_problem *problem;     // of the one, or
     moray_gait_over *over;           // of the one gait for several models, of which
     int phase;                       // this is the one whose prediction is shown
@@ -143,8 +143,8 @@ typedef struct gait_starts {
 moray_gait_problem_spec gait_job_spec(const gait_job *job, const stage *at, moray_gait_goal goal,
                                       const double current[2]);
 
-// Whether a model may be used where gaits have to turn. Error: that of moray_snake_turning; MORAY_NOT_SOLVED with the same
-// text where the model is not the one asked for, which is then left out.
+// Whether a model may be used where gaits have to turn. Error: that of moray_snake_turning; MORAY_NOT_SOLVED with the
+// same text where the model is not the one asked for, which is then left out.
 moray_status gait_job_turning(const gait_job *job, moray_model model);
 
 // Builds it. Error: those of gait_job_turning and moray_gait_problem_new.

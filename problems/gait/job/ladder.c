@@ -8,11 +8,12 @@
 
 static moray_status refuse_name(const char *name)
 {
-    return moray_error(MORAY_INPUT,
-                       "over = %.60s: must be none or names of rungs with commas between, @VX,VY [m/s] behind those in another "
-                       "current: paper, split2, split3, split5, strip, quadratic, consistent, c_n+20, c_n-20, c_t+20, c_t-20, "
-                       "mu_n+20, mu_n-20, lambda+20, lambda-20",
-                       name);
+    return moray_error(
+        MORAY_INPUT,
+        "over = %.60s: must be none or names of rungs with commas between, @VX,VY [m/s] behind those in another "
+        "current: paper, split2, split3, split5, strip, quadratic, consistent, c_n+20, c_n-20, c_t+20, c_t-20, "
+        "mu_n+20, mu_n-20, lambda+20, lambda-20",
+        name);
 }
 
 static bool read_number(const char *text, double *value)
@@ -99,7 +100,8 @@ moray_status gait_job_climb(const gait_job *job, stage *const *at, int n)
     return status;
 }
 
-// ---- One gait for several models -------------------------------------------------------------------------------------
+// ---- One gait for several models
+// -------------------------------------------------------------------------------------
 
 // The scenarios, with an orbit on each and what the baseline makes there.
 typedef struct {
@@ -127,8 +129,7 @@ static moray_status make_scenario(gait_job *job, scenario_set *set, int k)
     spec.scheme = job->common.scheme;
     spec.intervals = job->common.intervals;
     MORAY_TRY(moray_orbit_new(&set->orbit[k], &spec));
-    const moray_status status =
-        moray_orbit_solve(set->orbit[k], &job->paper.gait[MORAY_FIRST_PRINCIPLES], &baseline);
+    const moray_status status = moray_orbit_solve(set->orbit[k], &job->paper.gait[MORAY_FIRST_PRINCIPLES], &baseline);
     if (moray_failed(status))
         return moray_error(status.code, "the baseline on %s: %.230s", it->name, status.text);
     at.power = baseline.steady.power;
@@ -191,8 +192,8 @@ static bool is_own(const gait_job *job, const scenario *at)
     return moray_rung_of(&job->snake.robot) >> at->rung & 1 && at->current[0] == V[0] && at->current[1] == V[1];
 }
 
-// omega is that of the user's own model and current, where it is one of them, and else that which uses the power allowed
-// there.
+// omega is that of the user's own model and current, where it is one of them, and else that which uses the power
+// allowed there.
 static void choose_omega(const gait_job *job, const scenario_set *set, stage *at)
 {
     at->phase = 0;
@@ -216,9 +217,10 @@ static moray_status check_gain(const gait_job *job, const stage *at)
     const double nothing = 5e-4;
     if (at->certificate.pass || moray_gait_over_gain(at->solution) >= nothing)
         return moray_ok();
-    return moray_error(MORAY_NOT_SOLVED,
-                       "no gait was found that gains on all of %.150s, and what was found, %+.2f %%, is not certified: KKT %.1e",
-                       job->over, 100 * moray_gait_over_gain(at->solution), at->certificate.kkt);
+    return moray_error(
+        MORAY_NOT_SOLVED,
+        "no gait was found that gains on all of %.150s, and what was found, %+.2f %%, is not certified: KKT %.1e",
+        job->over, 100 * moray_gait_over_gain(at->solution), at->certificate.kkt);
 }
 
 static moray_status optimise(gait_job *job, scenario_set *set, const gait_starts *known)

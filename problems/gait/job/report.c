@@ -69,14 +69,14 @@ void gait_job_headline(const gait_job *job, char *text)
     const double nothing = 5e-4;
     const stage *at = recommended(job);
     const moray_gait *gait = &at->trial.gait[MORAY_FIRST_PRINCIPLES];
-    const double theta_max = moray_theta_max_from_amplitude(&job->snake.robot, MORAY_FIRST_PRINCIPLES, gait->amplitude,
-                                                            gait->delta);
+    const double theta_max =
+        moray_theta_max_from_amplitude(&job->snake.robot, MORAY_FIRST_PRINCIPLES, gait->amplitude, gait->delta);
     char baseline[64];
-    moray_text_add(text, text_size,
-                   "Recommended: the %s, theta_max %.4g deg, delta %.4g deg, omega %.4g deg/s. In speed at the power of "
-                   "%s it ",
-                   kind_of(job, at), theta_max / DEG, gait->delta / DEG, gait->omega / DEG,
-                   gait_job_baseline(job, baseline));
+    moray_text_add(
+        text, text_size,
+        "Recommended: the %s, theta_max %.4g deg, delta %.4g deg, omega %.4g deg/s. In speed at the power of "
+        "%s it ",
+        kind_of(job, at), theta_max / DEG, gait->delta / DEG, gait->omega / DEG, gait_job_baseline(job, baseline));
     moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
     moray_text_add(text, text_size, ".");
     if (at == &job->ladder && moray_gait_over_gain(at->solution) < nothing)
@@ -144,8 +144,8 @@ static void make_tables(const gait_job *job, struct tables *t)
                                         "Gain in speed at the power of the paper's gait, on the ladder of models"};
     for (int k = 0; k < tables; k++) {
         const int first = k == tables - 1;
-        t->table[k] = (moray_table){
-            .title = titles[k], .n_columns = columns - first, .rows = t->rows[k], .n_rows = rows[k]};
+        t->table[k] =
+            (moray_table){.title = titles[k], .n_columns = columns - first, .rows = t->rows[k], .n_rows = rows[k]};
         for (int c = 0; c < columns - first; c++)
             t->table[k].columns[c] = names[c + first];
     }

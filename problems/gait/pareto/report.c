@@ -106,10 +106,11 @@ static void say_ladder(const pareto_front *front, char *text)
         most = fmax(most, count.most);
     }
     if (isfinite(least))
-        moray_text_add(text, text_size,
-                       "%s model, %s: on the ladder of models, at the power of the paper's gait, %d of %d gaits win on all "
-                       "models; gains from %+.1f to %+.1f %%.\n",
-                       moray_model_name(front->model), pareto_kinds[front->kind], win, front->n, least, most);
+        moray_text_add(
+            text, text_size,
+            "%s model, %s: on the ladder of models, at the power of the paper's gait, %d of %d gaits win on all "
+            "models; gains from %+.1f to %+.1f %%.\n",
+            moray_model_name(front->model), pareto_kinds[front->kind], win, front->n, least, most);
 }
 
 static void find_words(const pareto *run, char *text)

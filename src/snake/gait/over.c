@@ -24,7 +24,8 @@ struct moray_gait_over {
     moray_ocp *ocp;
 };
 
-// ---- Parameters (amplitude, omega of each, delta, offset of each, taper, t) ------------------------------------------
+// ---- Parameters (amplitude, omega of each, delta, offset of each, taper, t)
+// ------------------------------------------
 
 // Where those of scenario k stand, ascending.
 static void places(const moray_gait_over *over, int k, int place[MORAY_GAIT_PARAMETERS])
@@ -38,7 +39,8 @@ static int place_of_t(const moray_gait_over *over)
     return 3 + 2 * over->n;
 }
 
-// ---- Ends ------------------------------------------------------------------------------------------------------------
+// ---- Ends
+// ------------------------------------------------------------------------------------------------------------
 
 // Events of scenario k: its own but, after the first, without those of the shared shape: places [first, last).
 static void shared_events(const moray_gait_over *over, int k, int *first, int *last)
@@ -90,7 +92,8 @@ static void over_ends(const moray_ends *at, moray_end_values *out, const void *d
     out->objective = over->goal == MORAY_OVER_WORST ? -t : -sum;
 }
 
-// ---- Construction ----------------------------------------------------------------------------------------------------
+// ---- Construction
+// ----------------------------------------------------------------------------------------------------
 
 static void nothing_value(void *self, const double *in, double *out)
 {
@@ -109,10 +112,8 @@ static moray_status widen_plant(moray_gait_over *over, int k)
     const int nx = problem->size.nx;
     int place[MORAY_BODY_STATES + MORAY_GAIT_PARAMETERS + 1];
     moray_map base = problem->plant;
-    moray_map none = {.n_in = nx + over->ns + 1,
-                      .value = nothing_value,
-                      .jacobian = nothing_value,
-                      .hessian = nothing_hessian};
+    moray_map none = {
+        .n_in = nx + over->ns + 1, .value = nothing_value, .jacobian = nothing_value, .hessian = nothing_hessian};
     base.release = NULL;
     for (int i = 0; i < nx; i++)
         place[i] = i;
@@ -250,7 +251,8 @@ const moray_ocp *moray_gait_over_ocp(const moray_gait_over *over)
     return over->ocp;
 }
 
-// ---- Solving ---------------------------------------------------------------------------------------------------------
+// ---- Solving
+// ---------------------------------------------------------------------------------------------------------
 
 static double speed_on(const moray_gait_problem *problem, const moray_swim_track *orbit)
 {

@@ -9,9 +9,9 @@ struct moray_gait_problem {
     moray_plant_size size;
     moray_map plant;
     struct gait_endpoint endpoint;
-    moray_bounds *block;   // x0, c, e, s in turn
-    const char **names;    // of e, then of c
-    gait_name *path_names; // that they point into
+    moray_bounds *block;    // x0, c, e, s in turn
+    const char **names;     // of e, then of c
+    gait_name *path_names;  // that they point into
     moray_phase_spec phase; // the period; refers to the above
     moray_bounds_list e, s;
     moray_ocp *ocp;

@@ -28,7 +28,8 @@ moray_robot moray_robot_paper(void)
     return robot;
 }
 
-// Elliptic cylinder with semi-axes a_e in the plane of motion and b_e across it, by the formulas that Sec. V-A refers to (units: erratum E8).
+// Elliptic cylinder with semi-axes a_e in the plane of motion and b_e across it, by the formulas that Sec. V-A refers
+// to (units: erratum E8).
 void moray_robot_from_geometry(moray_robot *robot, const moray_link_geometry *g)
 {
     const double l = g->length / 2, perimeter = g->a_e + g->b_e;

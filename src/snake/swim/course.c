@@ -109,7 +109,7 @@ typedef struct {
     double course;
     moray_orbit *orbit; // NULL: simulated
     moray_orbit_result found;
-    double heading;     // where the last simulation began
+    double heading; // where the last simulation began
 } trier;
 
 static moray_status try_gait(trier *by, const moray_gait *gait, moray_steady *steady)

@@ -10,9 +10,9 @@
 
 // ---- The rungs -----------------------------------------------------------------------------------------------------
 
-static const char *const names[MORAY_RUNGS] = {
-    "paper",  "split2", "split3",  "split5",  "strip",     "quadratic", "consistent", "c_n+20",
-    "c_n-20", "c_t+20", "c_t-20", "mu_n+20", "mu_n-20", "lambda+20", "lambda-20"};
+static const char *const names[MORAY_RUNGS] = {"paper",     "split2",     "split3",  "split5",    "strip",
+                                               "quadratic", "consistent", "c_n+20",  "c_n-20",    "c_t+20",
+                                               "c_t-20",    "mu_n+20",    "mu_n-20", "lambda+20", "lambda-20"};
 enum { MODELS = 7, CHANGES = (MORAY_RUNGS - MODELS) / 2 };
 
 static moray_hydrodynamics model_of(int rung)
@@ -28,10 +28,8 @@ static moray_hydrodynamics model_of(int rung)
 
 static void change(moray_robot *robot, int coefficient, double factor)
 {
-    double *const of[CHANGES][3] = {{&robot->c_n},
-                                    {&robot->c_t},
-                                    {&robot->mu_n},
-                                    {&robot->lambda_1, &robot->lambda_2, &robot->lambda_3}};
+    double *const of[CHANGES][3] = {
+        {&robot->c_n}, {&robot->c_t}, {&robot->mu_n}, {&robot->lambda_1, &robot->lambda_2, &robot->lambda_3}};
     for (int i = 0; i < 3 && of[coefficient][i]; i++)
         *of[coefficient][i] *= factor;
 }
@@ -86,8 +84,7 @@ static moray_status place_new(place *at, const moray_ladder_spec *spec, const mo
     moray_orbit_spec orbit = moray_orbit_spec_default(robot, MORAY_FIRST_PRINCIPLES);
     memcpy(orbit.current, spec->current, sizeof orbit.current);
     orbit.course = spec->course;
-    *at = (place){.spec = spec,
-                  .setup = {.current = {spec->current[0], spec->current[1]}, .settings = spec->settings}};
+    *at = (place){.spec = spec, .setup = {.current = {spec->current[0], spec->current[1]}, .settings = spec->settings}};
     MORAY_TRY(moray_swimmer_new(&at->setup.swimmer, robot, MORAY_FIRST_PRINCIPLES));
     return moray_orbit_new(&at->orbit, &orbit);
 }
@@ -197,8 +194,7 @@ moray_status moray_ladder_climb(const moray_ladder_spec *spec, moray_ladder_row 
     moray_ladder_row *by_rung = calloc(MORAY_RUNGS * gaits + 1, sizeof *by_rung);
     if (!by_rung)
         return moray_error(MORAY_MEMORY, "no memory for a ladder of %d gaits", spec->gaits);
-    const moray_status status =
-        moray_parallel(MORAY_RUNGS, gaits * sizeof *by_rung, by_rung, climb, &copy, spec->jobs);
+    const moray_status status = moray_parallel(MORAY_RUNGS, gaits * sizeof *by_rung, by_rung, climb, &copy, spec->jobs);
     for (int k = 0; k < MORAY_RUNGS; k++)
         for (int g = 0; g < spec->gaits; g++)
             row[g * MORAY_RUNGS + k] = by_rung[k * spec->gaits + g];

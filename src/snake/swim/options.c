@@ -59,7 +59,8 @@ static const moray_option robot_rows[] = {
     {LINK("C_M", C_M), AT_LEAST(0), .help = "added inertia constant"},
     {ROBOT("l_m", l), ABOVE(0), .unit = "m", .help = "half the length of a link" FROM_GEOMETRY},
     {ROBOT("m_kg", m), ABOVE(0), .unit = "kg", .help = "mass of a link" FROM_GEOMETRY},
-    {ROBOT("J_kg_m2", J), ABOVE(0), .unit = "kg m^2", .help = "moment of inertia of a link; from mass and geometry unless given"},
+    {ROBOT("J_kg_m2", J), ABOVE(0), .unit = "kg m^2",
+     .help = "moment of inertia of a link; from mass and geometry unless given"},
     {ROBOT("c_t", c_t), AT_LEAST(0), .unit = "kg/s", .help = "tangential drag of a link" FROM_GEOMETRY},
     {ROBOT("c_n", c_n), AT_LEAST(0), .unit = "kg/s", .help = "normal drag of a link" FROM_GEOMETRY},
     {ROBOT("mu_n", mu_n), AT_LEAST(0), .unit = "kg", .help = "normal added mass of a link" FROM_GEOMETRY},
@@ -137,10 +138,11 @@ moray_status moray_snake_turning(const moray_snake_options *options)
     const moray_robot paper = moray_robot_paper();
     if (!options->not_tuned)
         return moray_ok();
-    return moray_error(MORAY_INPUT,
-                       "rot_damping, rot_gain: not given; %g and %g are tuned for the paper's robot, not for this one: fit "
-                       "them with `paper fit --set write_ini=FILE` and this robot's other options, then add --robot FILE",
-                       paper.rot_damping, paper.rot_gain);
+    return moray_error(
+        MORAY_INPUT,
+        "rot_damping, rot_gain: not given; %g and %g are tuned for the paper's robot, not for this one: fit "
+        "them with `paper fit --set write_ini=FILE` and this robot's other options, then add --robot FILE",
+        paper.rot_damping, paper.rot_gain);
 }
 
 // The robot of geometry and direct coefficients.

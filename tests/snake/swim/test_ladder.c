@@ -36,9 +36,12 @@ static bool same_robot(const moray_robot *a, const moray_robot *b)
 
 static void check_rungs(void)
 {
-    static const char *const models[][2] = {{"paper", "pieces=1"},          {"split2", "pieces=2"},
-                                            {"split3", "pieces=3"},         {"split5", "pieces=5"},
-                                            {"strip", "rotation=strip"},    {"quadratic", "drag=quadratic"},
+    static const char *const models[][2] = {{"paper", "pieces=1"},
+                                            {"split2", "pieces=2"},
+                                            {"split3", "pieces=3"},
+                                            {"split5", "pieces=5"},
+                                            {"strip", "rotation=strip"},
+                                            {"quadratic", "drag=quadratic"},
                                             {"consistent", "hydrodynamics=consistent"}};
     static const char *const changes[][4] = {{"c_n"}, {"c_t"}, {"mu_n"}, {"lambda_1", "lambda_2", "lambda_3"}};
     const moray_robot paper = moray_robot_paper();

@@ -83,7 +83,8 @@ static void test_hydrodynamics(void)
 // The constants of (20) are the paper's for its robot alone.
 static void test_turning(void)
 {
-    static const char *const others[] = {"links=6", "m_kg=0.5", "length_m=0.2", "a_e_m=0.04", "rho_kg_m3=1025", "c_n=3"};
+    static const char *const others[] = {"links=6",    "m_kg=0.5",       "length_m=0.2",
+                                         "a_e_m=0.04", "rho_kg_m3=1025", "c_n=3"};
     settings s;
     CHECK_OK(PARSE(&s, "--set", "m_kg=0.65973445725385655"), "the paper's robot, with its own mass given");
     CHECK_OK(moray_snake_turning(&s.snake), "has the constants of the paper");

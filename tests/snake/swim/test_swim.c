@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// References: the table and the numbers of an independent implementation, and a classical Runge-Kutta integration at fixed
-// step of the swimmer's rates, which shares nothing with src/sim and src/app.
+// References: the table and the numbers of an independent implementation, and a classical Runge-Kutta integration at
+// fixed step of the swimmer's rates, which shares nothing with src/sim and src/app.
 #include "degree.h"
 #include "tap.h"
 
@@ -210,7 +210,8 @@ static void test_plans(void)
     moray_swimmer_free(swimmer);
 }
 
-// ---- Numbers of an independent implementation ------------------------------------------------------------------------------
+// ---- Numbers of an independent implementation
+// ------------------------------------------------------------------------------
 
 static void test_straight_table(moray_model model, const double v_x[4])
 {
