@@ -159,7 +159,7 @@ static moray_status express(moray_ocp **ocp, struct other *o, const moray_ocp *o
 
 struct found {
     double objective;
-    int iterations;
+    int iterations, meshes, nodes; // nodes: of the last mesh
     moray_certificate certificate;
 };
 
@@ -175,12 +175,16 @@ static void solve(const struct classic *classic, const moray_ocp *old, int k, st
     found->objective = moray_solution_objective(solution) / systems[k][objective];
     int meshes;
     const moray_mesh_record *mesh = moray_solution_history(solution, &meshes);
+    found->meshes = meshes;
+    found->nodes = mesh[meshes - 1].nodes;
     for (int m = 0; m < meshes; m++)
         found->iterations += mesh[m].iterations;
     moray_solution_free(solution);
     moray_ocp_free(ocp);
     free(o);
 }
+
+static int tried, compared; // how often, and with the same mesh in the end
 
 // hard: a system in which the solver gives up, which the certificate must say; 0: none.
 static void test_one(const char *name, int hard)
@@ -200,7 +204,10 @@ static void test_one(const char *name, int hard)
         CHECK(right || (hard > 0 && k == hard), "%s in units %d: %.10g, in the first %.10g", name, k, found.objective,
               first.objective);
         CHECK(c->pass == right, "%s in units %d after %d iterations: %s", name, k, found.iterations, c->why);
-        CHECK(!right || fabs(log(error / same_error)) < log(2), "%s in units %d: mesh error %.2g, as %.2g", name, k,
+        // Rounding may send the refinement another way, to another mesh with an error of its own.
+        const bool same_mesh = right && found.meshes == first.meshes && found.nodes == first.nodes;
+        tried++, compared += same_mesh;
+        CHECK(!same_mesh || fabs(log(error / same_error)) < log(2), "%s in units %d: mesh error %.2g, as %.2g", name, k,
               c->mesh_error, same->mesh_error);
     }
     moray_ocp_free(ocp);
@@ -213,5 +220,6 @@ int main(void)
     test_one("bryson-denham", 2);
     test_one("van-der-pol", 0);
     test_one("hypersensitive", 0);
+    CHECK(2 * compared > tried, "%d of %d ended on the same mesh", compared, tried);
     return tap_done();
 }
