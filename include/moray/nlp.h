@@ -88,6 +88,7 @@ typedef struct moray_nlp_info {
     double linear_seconds;     // of cpu_seconds, in the linear solver; of MUMPS and MA57 to 1e-3, NaN unless asked for
     int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
     double evaluation_by[5];   // evaluation_seconds of each
+    double regularisation;     // delta_w that the last step needed for a descent direction; NaN without a step
     moray_linear_solver linear_solver; // that the result is from
     moray_status linear_fallback;      // why MUMPS solved it from the start though our own was asked for; MORAY_OK: no
 } moray_nlp_info;

@@ -124,12 +124,12 @@ static Bool on_iteration(Index mode, Index iteration, Number objective, Number i
 {
     (void)mu;
     (void)d_norm;
-    (void)regularisation;
     (void)alpha_du;
     (void)alpha_pr;
     (void)trials;
     struct session *session = data;
     session->info->iterations = iteration;
+    session->info->regularisation = iteration > 0 ? regularisation : NAN;
     if (mode == 0 && iteration > 0) // the restoration's iterates have another violation; the start is no progress
         keep_best(session, objective, inf_pr);
     if (!session->settings->progress)

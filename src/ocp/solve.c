@@ -278,12 +278,18 @@ static moray_status solve_beside(struct campaign *c, const double *kept, moray_s
     return status;
 }
 
+// Where the last step needed no regularisation the Hessian was positive definite on the constraints.
+static bool may_be_saddle(const moray_solution *solution)
+{
+    return moray_is_solved(solution) && solution->info.regularisation != 0;
+}
+
 // Solves on the meshes in c. A start that was not a solution may have led to a saddle, as one of symmetry does.
 static moray_status solve_mesh(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     MORAY_TRY(solve_widened(c, guess, result));
     bool moved = !(guess && guess->from);
-    while (moved && c->escapes < most_escapes && moray_is_solved(*result)) {
+    while (moved && c->escapes < most_escapes && may_be_saddle(*result)) {
         const moray_solution *before = *result;
         double *kept = calloc((size_t)before->transcription->nlp.n, sizeof *kept);
         if (!kept)
