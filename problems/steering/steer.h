@@ -284,7 +284,7 @@ void steer_json_saturation(const steer_job *job, moray_json *json, moray_model m
 // What moray_results wants of a job: the summary; figures and trajectory.csv. Error: MORAY_IO, MORAY_MEMORY, those of
 // moray_swim_closed_loop_run.
 void steer_summary(const void *job, moray_json *json);
-moray_status steer_write(const void *job, moray_output *output);
+moray_status steer_write(const void *found, moray_output *output);
 
 // Where gnuplot does not draw, says so on standard error unless quiet. Error: MORAY_MEMORY, MORAY_INPUT.
 moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure);

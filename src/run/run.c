@@ -156,7 +156,8 @@ static moray_status judge(const app_run *run)
     for (size_t i = strlen(said); i > 0 && said[i - 1] == '\n'; i--)
         said[i - 1] = 0;
     for (char *c = said; *c; c++)
-        *c = *c == '\n' ? ' ' : *c;
+        if (*c == '\n')
+            *c = ' ';
     return moray_error(MORAY_NOT_SOLVED, "%s", said);
 }
 

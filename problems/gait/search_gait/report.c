@@ -55,7 +55,7 @@ static int search_rows(const search_gait *run, moray_table_row *rows)
                                       o->orbit.steady.peak_effort,
                                       o->floquet.largest,
                                       o->hits,
-                                      run->global_method > 0 ? o->global : NAN,
+                                      run->global_method > 0 ? (double)o->global : NAN,
                                       o->at.gain.speed_percent_at_equal_power};
         for (int i = 0; i < count; i++)
             rows[i].value[k + 1] = values[i];
