@@ -26,7 +26,8 @@ moray_status simulation_rate(moray_model model, int links, int repeats, double *
     const moray_gait paper = moray_gait_paper(&robot),
                      gait = moray_gait_map(&robot, &paper, MORAY_CONTROL_ORIENTED, model);
     MORAY_TRY(moray_swimmer_new(&swimmer, &robot, model));
-    double *seconds = calloc((size_t)(repeats + 2 * links + 4), sizeof *seconds), *x = seconds + repeats;
+    double *seconds = calloc((size_t)(repeats + 2 * links + 4), sizeof *seconds),
+           *x = seconds ? seconds + repeats : NULL;
     moray_status status = seconds ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d links", links);
     for (int k = 0; k < repeats && !moray_failed(status); k++)
         status = simulate(swimmer, &gait, x, &seconds[k]);

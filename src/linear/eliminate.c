@@ -29,8 +29,7 @@ struct choice {
     bool empty;          // nothing in the column
 };
 
-// ---- Exchange
-// --------------------------------------------------------------------------------------------------------
+// ---- Exchange ------------------------------------------------------------------------------------------------------
 
 static void exchange(double *one, double *other)
 {
@@ -60,8 +59,7 @@ static void swap(struct panel *p, int a, int b)
     p->index[b] = index;
 }
 
-// ---- Choice
-// ----------------------------------------------------------------------------------------------------------
+// ---- Choice --------------------------------------------------------------------------------------------------------
 
 struct peak {
     double inside, outside; // largest entry in the block's rows, in others
@@ -142,8 +140,7 @@ static struct choice choose(const struct panel *p)
     return best;
 }
 
-// ---- Pivots
-// ----------------------------------------------------------------------------------------------------------
+// ---- Pivots --------------------------------------------------------------------------------------------------------
 
 // Updates the block's columns after the last `depth` pivots with these.
 static void update_block(struct panel *p, int depth)
@@ -227,8 +224,7 @@ static void take(struct panel *p, struct choice choice)
     }
 }
 
-// ---- Blocks
-// ----------------------------------------------------------------------------------------------------------
+// ---- Blocks --------------------------------------------------------------------------------------------------------
 
 // Updates the columns after the block with its pivots.
 static void settle(struct panel *p)

@@ -79,8 +79,7 @@ void moray_ldl_free(moray_ldl *ldl)
     free(ldl);
 }
 
-// ---- Ordering
-// --------------------------------------------------------------------------------------------------------
+// ---- Ordering ------------------------------------------------------------------------------------------------------
 
 static moray_status make_plan(moray_ldl *ldl, const double *values)
 {
@@ -144,8 +143,7 @@ static moray_status order(moray_ldl *ldl, const double *values)
     return status;
 }
 
-// ---- Factorisation
-// ---------------------------------------------------------------------------------------------------
+// ---- Factorisation -------------------------------------------------------------------------------------------------
 
 // Fronts one by one. Error: MORAY_NOT_SOLVED where the work passes `most` or the factors what is bearable.
 static moray_status eliminate(moray_ldl *ldl, double most)

@@ -42,8 +42,7 @@ struct plan {
     double flops;
 };
 
-// ---- Ordering
-// --------------------------------------------------------------------------------------------------------
+// ---- Ordering ------------------------------------------------------------------------------------------------------
 
 moray_status moray_ldl_graph_new(struct graph *graph, int n, const moray_pattern *pattern, const double *values);
 void moray_ldl_graph_free(struct graph *graph);
@@ -55,8 +54,7 @@ int moray_ldl_graph_pair(const struct graph *graph, double strong, int *mate, in
 // order[n] <- a pivot order of little fill that keeps pairs together. Error: MORAY_MEMORY.
 moray_status moray_ldl_graph_order(const struct graph *graph, const int *mate, int *order);
 
-// ---- Symbolic
-// --------------------------------------------------------------------------------------------------------
+// ---- Symbolic ------------------------------------------------------------------------------------------------------
 
 // Error: MORAY_MEMORY.
 moray_status moray_ldl_plan_new(struct plan *plan, const struct graph *graph, const moray_pattern *pattern);
@@ -74,8 +72,7 @@ void moray_ldl_plan_places(const struct plan *plan, int s, int *place);
 // Leads each entry given to its place.
 moray_status moray_ldl_plan_entries(struct plan *plan, const moray_pattern *pattern, int *work); // work[n + 1]
 
-// ---- Numeric
-// ---------------------------------------------------------------------------------------------------------
+// ---- Numeric -------------------------------------------------------------------------------------------------------
 
 // A front as it is at hand: the columns planned, then those passed up to it, then the rows.
 struct front {

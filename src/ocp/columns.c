@@ -153,9 +153,10 @@ moray_status moray_difference_columns(const moray_map *map, const double *in, co
                                       double *doubt, double *kink)
 {
     const size_t n_in = (size_t)map->n_in, n_out = (size_t)map->n_out;
-    double *block = calloc(n_in + (8 + levels) * n_out + 1, sizeof *block), *at = block + n_in;
+    double *block = calloc(n_in + (8 + levels) * n_out + 1, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to difference %d functions", map->n_out);
+    double *at = block + n_in;
     struct columns c = {.map = map, .in = block, .here = at, .ahead = at + n_out, .behind = at + 2 * n_out};
     const struct slope side[] = {{at + 3 * n_out, at + 4 * n_out}, {at + 5 * n_out, at + 6 * n_out}};
     c.bend = at + 7 * n_out;

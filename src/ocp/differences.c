@@ -152,9 +152,10 @@ static moray_status check_along(const moray_map *map, double *worst)
 {
     const double here = 0, size = 1;
     const size_t n = (size_t)map->n_out;
-    double *given = calloc(4 * n + 1, sizeof *given), *found = given + n, *doubt = found + n, *kink = doubt + n;
+    double *given = calloc(4 * n + 1, sizeof *given);
     if (!given)
         return moray_error(MORAY_MEMORY, "no memory to check derivatives of %d functions", map->n_out);
+    double *found = given + n, *doubt = found + n, *kink = doubt + n;
     const moray_status status = moray_difference_columns(map, &here, &size, found, doubt, kink);
     map->jacobian(map->self, &here, given);
     for (size_t i = 0; i < n && !moray_failed(status); i++)

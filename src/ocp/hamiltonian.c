@@ -92,9 +92,10 @@ moray_status moray_hamiltonian_drift(const struct witness *w, int p, struct find
 {
     const struct transcription *t = w->solution->transcription;
     const int nodes = t->layout.phase[p].nodes, nx = t->ocp->phase[p].nx;
-    double *block = calloc((size_t)nodes * (size_t)(nx + 3), sizeof *block), *costate = block + 3 * nodes;
+    double *block = calloc((size_t)nodes * (size_t)(nx + 3), sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
+    double *costate = block + 3 * nodes;
     struct course c = {w, p, block, block + nodes, block + 2 * nodes, 0};
     moray_solution_nodes(w->solution, p, NULL, costate);
     moray_solution_hamiltonian(w->solution, p, c.H);

@@ -60,9 +60,10 @@ moray_status moray_resimulate(struct examiner *e, const moray_integrator *integr
                               double *composed)
 {
     const int nodes = e->solution->transcription->layout.phase[e->p].nodes;
-    double *x = calloc((size_t)(e->n + nodes), sizeof *x), *time = x + e->n;
+    double *x = calloc((size_t)(e->n + nodes), sizeof *x);
     if (!x)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
+    double *time = x + e->n;
     struct finding whole = {0};
     moray_solution_nodes(e->solution, e->p, time, NULL);
     moray_status status = run(e, integrator, true, x, time, shooting);

@@ -20,7 +20,7 @@ static bool has_length(const struct transcription *t)
 static moray_status direction_of(const moray_solution *solution, double *curvature, double *direction)
 {
     struct witness w;
-    MORAY_TRY(moray_witness_new(&w, solution));
+    MORAY_TRY(moray_witness_of_sizes(&w, solution));
     const moray_status status = moray_measure_curvature(&w, curvature, direction);
     moray_witness_free(&w);
     return status;

@@ -30,25 +30,26 @@ static double span_of(const struct witness *e, int p)
     return cache_of(e, p)->tf - cache_of(e, p)->t0;
 }
 
-static moray_status allocate_phase(struct witness *e, int p)
+static moray_status allocate_phase(struct witness *e, int p, bool differences)
 {
     const moray_map *map = cache_of(e, p)->map;
     const size_t n_in = (size_t)map->n_in, n_out = (size_t)map->n_out,
                  nq = (size_t)e->solution->transcription->ocp->phase[p].nq;
-    const size_t entries = (size_t)layout_of(e, p)->nodes * n_in * n_out;
+    const size_t block = n_in * n_out, entries = differences ? (size_t)layout_of(e, p)->nodes * block : 0;
     struct phase_witness *phase = &e->phase[p];
-    phase->size = calloc(n_in + n_out + nq + 3 * entries, sizeof *phase->size);
+    phase->size = calloc(n_in + n_out + nq + block + 3 * entries, sizeof *phase->size);
     if (!phase->size)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     phase->out_size = phase->size + n_in;
     phase->integral = phase->out_size + n_out;
-    phase->jac = phase->integral + nq;
+    phase->slope = phase->integral + nq;
+    phase->jac = phase->slope + block;
     phase->doubt = phase->jac + entries;
     phase->kink = phase->doubt + entries;
     return moray_ok();
 }
 
-static moray_status allocate(struct witness *e)
+static moray_status allocate(struct witness *e, bool differences)
 {
     const struct transcription *t = e->solution->transcription;
     const size_t n_in = (size_t)t->endpoint->n_in, n_out = (size_t)t->endpoint->n_out;
@@ -61,7 +62,7 @@ static moray_status allocate(struct witness *e)
     e->end_doubt = e->end_jac + n_in * n_out;
     e->end_kink = e->end_doubt + n_in * n_out;
     for (int p = 0; p < t->ocp->phases; p++)
-        MORAY_TRY(allocate_phase(e, p));
+        MORAY_TRY(allocate_phase(e, p, differences));
     return moray_ok();
 }
 
@@ -121,13 +122,19 @@ static void take_ranges(struct witness *e, int p)
 
 // ---- Derivatives ----
 
+static void note_slope(double *slope, double value)
+{
+    *slope = fmax(*slope, fabs(value));
+}
+
 // Without differences, those in use.
 static void take_in_use(struct witness *e, int p)
 {
     const moray_map *map = cache_of(e, p)->map;
     for (int n = 0; n < layout_of(e, p)->nodes; n++)
-        if (layout_of(e, p)->node[n].collocated)
-            moray_witness_in_use(e, p, n, e->phase[p].jac + n * map->n_in * map->n_out);
+        for (int k = 0; k < map->jac.nnz && layout_of(e, p)->node[n].collocated; k++)
+            note_slope(&e->phase[p].slope[map->jac.col[k] * map->n_out + map->jac.row[k]],
+                       cache_of(e, p)->jac[n * map->jac.nnz + k]);
 }
 
 static moray_status difference_phase(struct witness *e, int p)
@@ -145,17 +152,10 @@ static moray_status difference_phase(struct witness *e, int p)
         if (layout_of(e, p)->node[n].collocated)
             status = moray_difference_columns(cache->map, cache->in + n * n_in, step, w->jac + n * block,
                                               w->doubt + n * block, w->kink + n * block);
+    for (size_t k = 0; k < (size_t)layout_of(e, p)->nodes * block; k++)
+        note_slope(&w->slope[k % block], w->jac[k]);
     free(step);
     return status;
-}
-
-static double largest_slope(const struct witness *e, int p, int row, int col)
-{
-    const moray_map *map = cache_of(e, p)->map;
-    double largest = 0;
-    for (int n = 0; n < layout_of(e, p)->nodes; n++)
-        largest = fmax(largest, fabs(e->phase[p].jac[(n * map->n_in + col) * map->n_out + row]));
-    return largest;
 }
 
 // ---- Sizes of what hardly moves, from what it does ----
@@ -164,11 +164,12 @@ static double largest_slope(const struct witness *e, int p, int row, int col)
 static void raise_by_effect(struct witness *e, int p)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[p];
+    const int n_out = cache_of(e, p)->map->n_out;
     double *size = e->phase[p].size;
     for (int j = 0; j < cache_of(e, p)->map->n_in - 1; j++) {
         double least = INFINITY;
         for (int i = 0; i < phase->nx; i++) {
-            const double slope = fabs(span_of(e, p)) * largest_slope(e, p, i, j);
+            const double slope = fabs(span_of(e, p)) * e->phase[p].slope[j * n_out + i];
             if (size[i] > 0 && slope > 0)
                 least = fmin(least, size[i] / slope);
         }
@@ -256,9 +257,10 @@ static moray_status size_outputs(struct witness *e, int p)
     const struct phase_cache *cache = cache_of(e, p);
     const struct phase *phase = &e->solution->transcription->ocp->phase[p];
     const int n_in = cache->map->n_in, n_out = cache->map->n_out, g = phase->nx + phase->nc;
-    double *work = calloc((size_t)(n_in + 2 * n_out), sizeof *work), *here = work + n_in + n_out;
+    double *work = calloc((size_t)(n_in + 2 * n_out), sizeof *work);
     if (!work)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
+    double *here = work + n_in + n_out;
     for (int n = 0; n < layout_of(e, p)->nodes; n++) {
         const struct node *node = &layout_of(e, p)->node[n];
         if (!node->collocated)
@@ -296,7 +298,7 @@ double moray_witness_objective(const struct witness *e)
 static moray_status gather(struct witness *e, bool differences)
 {
     const struct transcription *t = e->solution->transcription;
-    MORAY_TRY(allocate(e));
+    MORAY_TRY(allocate(e, differences));
     for (int p = 0; p < t->ocp->phases; p++) {
         take_ranges(e, p);
         if (differences)

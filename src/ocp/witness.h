@@ -12,6 +12,7 @@ struct phase_witness {
     double *size;        // [n_in] of x, u, s, t: how far each moves in the phase
     double *out_size;    // [n_out] of f, c, g: how far each moves where an input moves by its size
     double *integral;    // [nq] size of q
+    double *slope;       // [n_in][n_out] the largest derivatives along the phase
     double *jac, *doubt; // [nodes][n_in][n_out]; doubt: how far off rounding and bends may have led
     double *kink;        // [nodes][n_in][n_out]: the slopes on either side are jac + kink and jac - kink
 };
@@ -29,7 +30,7 @@ moray_status moray_witness_new(struct witness *e, const moray_solution *solution
 void moray_witness_free(struct witness *e);
 
 // The same sizes but for what derivatives in use and differences differ by, at the cost of an iteration: for the
-// refinement, which asks mesh by mesh. The derivatives of phases are those in use; the endpoint has none.
+// refinement, which asks mesh by mesh, and for curvature. No derivatives but the largest, of those in use.
 moray_status moray_witness_of_sizes(struct witness *e, const moray_solution *solution);
 
 // Entries that differences of this quality, or a kink, say nothing about keep the derivatives in use: whether they do

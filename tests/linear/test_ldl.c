@@ -49,8 +49,7 @@ static double some(sample *s)
     return tap_random(&s->seed, -1, 1);
 }
 
-// ---- Structures
-// ------------------------------------------------------------------------------------------------------
+// ---- Structures ----------------------------------------------------------------------------------------------------
 
 static void make_sparse(sample *s)
 {
@@ -138,8 +137,7 @@ static void unscale(sample *s)
         s->A[i] *= scale[i / s->n] * scale[i % s->n];
 }
 
-// ---- Comparison
-// ------------------------------------------------------------------------------------------------------
+// ---- Comparison ----------------------------------------------------------------------------------------------------
 
 // Eigenvalues in ascending order of the matrix with rows and columns divided by the roots of their largest entries,
 // and what they were multiplied by.
@@ -259,8 +257,7 @@ static void test_structure(const char *name, maker *make, bool scaled, double th
           tally.error);
 }
 
-// ---- Singular ones
-// ---------------------------------------------------------------------------------------------------
+// ---- Singular ones -------------------------------------------------------------------------------------------------
 
 // [H J'; J 0] with the last constraint three times the first: rank one less, and told so.
 static void make_dependent(sample *s)
@@ -323,8 +320,7 @@ static void test_empty(void)
     moray_ldl_free(ldl);
 }
 
-// ---- Other values, refusals
-// ------------------------------------------------------------------------------------------
+// ---- Other values, refusals ----------------------------------------------------------------------------------------
 
 // Stages of a state x_i, a control u_i and a constraint that pairs with its state, until states are held by their
 // bounds and it must pair with the control of a stage elsewhere: the order made for the first values is given up.

@@ -100,8 +100,7 @@ moray_status gait_job_climb(const gait_job *job, stage *const *at, int n)
     return status;
 }
 
-// ---- One gait for several models
-// -------------------------------------------------------------------------------------
+// ---- One gait for several models -----------------------------------------------------------------------------------
 
 // The scenarios, with an orbit on each and what the baseline makes there.
 typedef struct {

@@ -259,7 +259,7 @@ moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_out
     moray_column *columns = calloc((size_t)width, sizeof *columns);
     char(*joint_names)[16] = calloc((size_t)joints, sizeof *joint_names);
     moray_status status = data && columns && joint_names ? moray_ok() : moray_error(MORAY_MEMORY, "no memory");
-    double t0, tf, *x = data + samples * width, *phi = x + states;
+    double t0, tf, *x = data ? data + samples * width : NULL, *phi = data ? x + states : NULL;
     moray_solution_times(at->solution, at->phase, &t0, &tf);
     for (int k = 0; k < samples && !moray_failed(status); k++) {
         double *row = data + k * width;
@@ -302,7 +302,7 @@ static moray_status draw_start(const void *found, moray_output *output)
     const char *names[columns_most];
     const int gaits = make_columns(job, trials, ladders, names);
     char labels[most][64];
-    double *data = calloc((most + 1) * points, sizeof *data), *time = data + most * points;
+    double *data = calloc((most + 1) * points, sizeof *data), *time = data ? data + most * points : NULL;
     moray_curve curves[most];
     moray_status status = data ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a figure");
     int n = 0;

@@ -24,8 +24,7 @@ struct moray_gait_over {
     moray_ocp *ocp;
 };
 
-// ---- Parameters (amplitude, omega of each, delta, offset of each, taper, t)
-// ------------------------------------------
+// ---- Parameters (amplitude, omega of each, delta, offset of each, taper, t) ----------------------------------------
 
 // Where those of scenario k stand, ascending.
 static void places(const moray_gait_over *over, int k, int place[MORAY_GAIT_PARAMETERS])
@@ -39,8 +38,7 @@ static int place_of_t(const moray_gait_over *over)
     return 3 + 2 * over->n;
 }
 
-// ---- Ends
-// ------------------------------------------------------------------------------------------------------------
+// ---- Ends ----------------------------------------------------------------------------------------------------------
 
 // Events of scenario k: its own but, after the first, without those of the shared shape: places [first, last).
 static void shared_events(const moray_gait_over *over, int k, int *first, int *last)
@@ -92,8 +90,7 @@ static void over_ends(const moray_ends *at, moray_end_values *out, const void *d
     out->objective = over->goal == MORAY_OVER_WORST ? -t : -sum;
 }
 
-// ---- Construction
-// ----------------------------------------------------------------------------------------------------
+// ---- Construction --------------------------------------------------------------------------------------------------
 
 static void nothing_value(void *self, const double *in, double *out)
 {
@@ -251,8 +248,7 @@ const moray_ocp *moray_gait_over_ocp(const moray_gait_over *over)
     return over->ocp;
 }
 
-// ---- Solving
-// ---------------------------------------------------------------------------------------------------------
+// ---- Solving -------------------------------------------------------------------------------------------------------
 
 static double speed_on(const moray_gait_problem *problem, const moray_swim_track *orbit)
 {

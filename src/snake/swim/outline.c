@@ -41,9 +41,9 @@ moray_status moray_swim_outline(const moray_swim_track *track, const moray_swimm
     const int N = robot->links, robots = count_robots(track, robot);
     *n = 3 * N * robots;
     *x = malloc((size_t)(2 * *n + 3 * N) * sizeof **x);
-    *y = *x + *n;
     if (!*x)
         return moray_error(MORAY_MEMORY, "no memory for the outlines of %d robots", robots);
+    *y = *x + *n;
     for (int i = 0; i < robots; i++) {
         const int k = (int)((double)(track->n - 1) * i / (robots - 1));
         trace_links(swimmer, track->x + (size_t)k * track->n_states, *y + *n, *x + 3 * N * i, *y + 3 * N * i);

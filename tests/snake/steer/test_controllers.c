@@ -118,8 +118,7 @@ static void test_turn_rate(const moray_straight_motion *straight)
     moray_swim_closed_loop_free(&closed_loop);
 }
 
-// ---- Feedback laws
-// --------------------------------------------------------------------------------------------------------
+// ---- Feedback laws -------------------------------------------------------------------------------------------------
 
 static double target_of(const moray_swim_sample *sample, void *self)
 {

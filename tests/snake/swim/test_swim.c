@@ -210,8 +210,7 @@ static void test_plans(void)
     moray_swimmer_free(swimmer);
 }
 
-// ---- Numbers of an independent implementation
-// ------------------------------------------------------------------------------
+// ---- Numbers of an independent implementation ----------------------------------------------------------------------
 
 static void test_straight_table(moray_model model, const double v_x[4])
 {
