@@ -107,14 +107,10 @@ moray_status steer_take_plan(steer_job *job, int number)
 
 moray_status steer_not_solved(const moray_solution *solution)
 {
-    char text[300];
     const moray_nlp_info *info = moray_solution_info(solution);
     if (info->outcome == MORAY_NLP_INTERRUPTED)
         return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations; nothing is written", info->iterations);
-    snprintf(text, sizeof text, "%s", moray_solution_diagnosis(solution));
-    for (char *at = strchr(text, '\n'); at; at = strchr(at, '\n'))
-        *at = ' ';
-    return moray_error(MORAY_NOT_SOLVED, "%.280s", text);
+    return moray_solution_failure(solution);
 }
 
 double steer_duration(const moray_solution *solution)

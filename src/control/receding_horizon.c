@@ -79,7 +79,7 @@ static moray_status solve(moray_receding_horizon *r, double t, const double *sta
     *iterations = info->iterations;
     if (info->outcome == MORAY_NLP_SOLVED || info->outcome == MORAY_NLP_ACCEPTABLE)
         return moray_ok();
-    return moray_error(MORAY_NOT_SOLVED, "%.250s", moray_solution_diagnosis(*solution));
+    return moray_solution_failure(*solution);
 }
 
 static void drop(const moray_receding_horizon *r, void *problem, moray_solution *solution)

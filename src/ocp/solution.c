@@ -54,6 +54,18 @@ const char *moray_solution_diagnosis(const moray_solution *solution)
     return solution->diagnosis;
 }
 
+moray_status moray_solution_failure(const moray_solution *solution)
+{
+    moray_status failure = moray_error(MORAY_NOT_SOLVED, "%s", solution->diagnosis);
+    size_t n = strlen(failure.text);
+    while (n > 0 && failure.text[n - 1] == '\n')
+        failure.text[--n] = 0;
+    for (size_t i = 0; i < n; i++)
+        if (failure.text[i] == '\n')
+            failure.text[i] = ' ';
+    return failure;
+}
+
 // The interval that ends at tau where two meet there: nodes at its end are its own (Radau).
 static const struct interval *interval_at(const struct phase_layout *layout, double tau)
 {

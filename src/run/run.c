@@ -147,18 +147,11 @@ static moray_status solve(app_run *run)
 static moray_status judge(const app_run *run)
 {
     const moray_nlp_info *info = moray_solution_info(run->solution);
-    char said[250];
     if (info->outcome == MORAY_NLP_SOLVED)
         return moray_ok();
     if (info->outcome == MORAY_NLP_INTERRUPTED)
         return moray_interruption(run->solution, run->kept);
-    snprintf(said, sizeof said, "%s", moray_solution_diagnosis(run->solution));
-    for (size_t i = strlen(said); i > 0 && said[i - 1] == '\n'; i--)
-        said[i - 1] = 0;
-    for (char *c = said; *c; c++)
-        if (*c == '\n')
-            *c = ' ';
-    return moray_error(MORAY_NOT_SOLVED, "%s", said);
+    return moray_solution_failure(run->solution);
 }
 
 static const double doubtful = 1e-4; // difference that rounding does not explain

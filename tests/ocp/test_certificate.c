@@ -8,6 +8,7 @@
 
 #include "ocp/solution.h"
 #include "rk4.h"
+#include "symmetric_line.h"
 
 static const int rk4_steps = 40;
 static const moray_integrator rk4 = {rk4_run, &rk4_steps};
@@ -192,32 +193,12 @@ static void test_spoiled(void)
 
 // ---- A saddle: minimise -x(1)^2 at x = u = 0 ----
 
-static void drift(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    out->f[0] = at->u[0];
-}
-
-static void far_away(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = -at->phase[0].xf[0] * at->phase[0].xf[0];
-}
-
 static void test_saddle(void)
 {
-    const moray_phase_spec line = {.name = "line",
-                                   .nx = 1,
-                                   .nu = 1,
-                                   .continuous = drift,
-                                   .t0 = moray_fixed(0),
-                                   .tf = moray_fixed(1),
-                                   .x0 = MORAY_BOUNDS(moray_fixed(0)),
-                                   .u = MORAY_BOUNDS(moray_between(-1, 1))};
     moray_ocp *ocp = NULL;
     moray_solution *solution = NULL;
     const moray_settings settings = moray_settings_default();
-    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &line, .endpoint = far_away}), "a maximum");
+    CHECK_OK(symmetric_line_new(&ocp), "a maximum");
     CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
     const size_t n = (size_t)solution->transcription->nlp.n, m = (size_t)solution->transcription->nlp.m;
     memset(solution->iterate.x, 0, n * sizeof(double));

@@ -9,6 +9,7 @@
 
 #include "moray/ocp.h"
 #include "rk4.h"
+#include "symmetric_line.h"
 
 static const int rk4_steps = 40;
 static const moray_integrator rk4 = {rk4_run, &rk4_steps};
@@ -25,31 +26,11 @@ static moray_solution *solve(const moray_ocp *ocp, const moray_settings *setting
 
 // ---- A maximum: minimise -x(1)^2, x' = u, |u| <= 1, from the symmetric start; the optimum is -1 ----
 
-static void drift(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    out->f[0] = at->u[0];
-}
-
-static void far_away(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = -at->phase[0].xf[0] * at->phase[0].xf[0];
-}
-
 static void test_maximum(void)
 {
-    const moray_phase_spec line = {.name = "line",
-                                   .nx = 1,
-                                   .nu = 1,
-                                   .continuous = drift,
-                                   .t0 = moray_fixed(0),
-                                   .tf = moray_fixed(1),
-                                   .x0 = MORAY_BOUNDS(moray_fixed(0)),
-                                   .u = MORAY_BOUNDS(moray_between(-1, 1))};
     const char *schemes[] = {"hermite-simpson", "radau3", "gauss2"};
     moray_ocp *ocp = NULL;
-    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &line, .endpoint = far_away}), "a maximum");
+    CHECK_OK(symmetric_line_new(&ocp), "a maximum");
     for (unsigned k = 0; k < sizeof schemes / sizeof *schemes; k++) {
         moray_settings settings = moray_settings_default();
         moray_certificate certificate;
@@ -162,7 +143,7 @@ static void test_no_length(void)
     const moray_phase_spec phases[] = {{.name = "way",
                                         .nx = 1,
                                         .nu = 1,
-                                        .continuous = drift,
+                                        .continuous = symmetric_drift,
                                         .t0 = moray_fixed(0),
                                         .tf = moray_fixed(1),
                                         .x0 = MORAY_BOUNDS(moray_fixed(1)),
@@ -170,7 +151,7 @@ static void test_no_length(void)
                                        {.name = "rest",
                                         .nx = 1,
                                         .nu = 1,
-                                        .continuous = drift,
+                                        .continuous = symmetric_drift,
                                         .t0 = moray_fixed(1),
                                         .tf = moray_fixed(1),
                                         .u = MORAY_BOUNDS(moray_between(-1, 1))}};
@@ -205,7 +186,7 @@ static void test_direction_of_time(void)
 {
     const moray_phase_spec half = {.nx = 1,
                                    .nu = 1,
-                                   .continuous = drift,
+                                   .continuous = symmetric_drift,
                                    .t0 = moray_between(0, 10),
                                    .tf = moray_between(0, 10),
                                    .u = MORAY_BOUNDS(moray_between(0.5, 1))};

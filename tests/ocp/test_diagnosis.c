@@ -127,6 +127,10 @@ static void check_suggestion(const moray_ocp_spec *spec, moray_settings settings
     else
         CHECK(found == outcome, "%s", moray_nlp_outcome_text(found));
     check_says(moray_solution_diagnosis(solution), expected);
+    const moray_status failure = moray_solution_failure(solution);
+    CHECK(failure.code == MORAY_NOT_SOLVED && !strchr(failure.text, '\n') &&
+              strncmp(failure.text, moray_solution_diagnosis(solution), 20) == 0,
+          "as an error it is one line: %s", failure.text);
     CHECK(lines_with(moray_solution_diagnosis(solution), "Try: ") == 1 &&
               lines_with(moray_solution_diagnosis(solution), "Furthest from the guess: ") == 1,
           "one thing to try");

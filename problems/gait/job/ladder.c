@@ -6,14 +6,17 @@
 
 #include "job.h"
 
-static moray_status refuse_name(const char *name)
+static moray_status refuse_name(const gait_job *job, const char *name)
 {
-    return moray_error(
-        MORAY_INPUT,
-        "over = %.60s: must be none or names of rungs with commas between, @VX,VY [m/s] behind those in another "
-        "current: paper, split2, split3, split5, strip, quadratic, consistent, c_n+20, c_n-20, c_t+20, c_t-20, "
-        "mu_n+20, mu_n-20, lambda+20, lambda-20",
-        name);
+    moray_rung rung[MORAY_RUNGS];
+    char names[200] = "";
+    moray_ladder(&job->snake.robot, rung);
+    for (int k = 0; k < MORAY_RUNGS; k++)
+        moray_text_add(names, sizeof names, "%s%s", k ? ", " : "", rung[k].name);
+    return moray_error(MORAY_INPUT,
+                       "over = %.60s: must be none or names of rungs with commas between, @VX,VY [m/s] behind those in "
+                       "another current: %s",
+                       name, names);
 }
 
 static bool read_number(const char *text, double *value)
@@ -34,7 +37,7 @@ static moray_status read_scenario(const gait_job *job, char *text, char **rest, 
     *at = (scenario){.rung = moray_rung_named(text), .current = {job->snake.current[0], job->snake.current[1]}};
     snprintf(at->name, sizeof at->name, x ? "%s@%s,%s" : "%s", text, x, y ? y : "");
     if (at->rung < 0 || (x && !(read_number(x, &at->current[0]) && read_number(y, &at->current[1]))))
-        return refuse_name(at->name);
+        return refuse_name(job, at->name);
     return moray_ok();
 }
 
@@ -181,7 +184,7 @@ static moray_status solve_all(gait_job *job, scenario_set *set, const gait_start
     if (!at->solution)
         return first_failure;
     if (moray_solution_info(at->solution)->outcome != MORAY_NLP_SOLVED)
-        return moray_error(MORAY_NOT_SOLVED, "%.280s", moray_solution_diagnosis(at->solution));
+        return moray_solution_failure(at->solution);
     return moray_ok();
 }
 

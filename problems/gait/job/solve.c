@@ -241,7 +241,7 @@ static moray_status explain_no_way(gait_job *job, const stage *at)
                            "current = %g,%g: the robot cannot stem it: %.4f m/s of it run against the course, and "
                            "within the limits the robot makes %.4f m/s along it at most",
                            V[0], V[1], -along, sqrt(U * U - across * across));
-    return moray_error(MORAY_NOT_SOLVED, "%.280s", moray_solution_diagnosis(at->solution));
+    return moray_solution_failure(at->solution);
 }
 
 static moray_status explain_failure(gait_job *job, const stage *at)

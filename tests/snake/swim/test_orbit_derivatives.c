@@ -82,9 +82,7 @@ static bool rates(double t, const double *x, double *dx, void *self)
 static void move(const rig *r, int state, double d, double *x)
 {
     const int N = r->robot.links, half = state < 3 ? 0 : N + 2, which = state % 3;
-    if (r->model == MORAY_CONTROL_ORIENTED)
-        x[half + N - 1 + which] += d;
-    else if (which > 0)
+    if (r->model == MORAY_CONTROL_ORIENTED || which > 0)
         x[half + N - 1 + which] += d;
     for (int i = 0; i < N && which == 0 && r->model == MORAY_FIRST_PRINCIPLES; i++)
         x[half + i] += d; // all links alike
