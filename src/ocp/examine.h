@@ -4,7 +4,7 @@
 #ifndef SRC_OCP_EXAMINE_H
 #define SRC_OCP_EXAMINE_H
 
-#include "ocp/witness.h"
+#include "ocp/certificate/witness.h"
 
 // Violations between nodes may be this many times the mesh tolerance: they are seen at single points, not integrated.
 enum { violation_slack = 100 };

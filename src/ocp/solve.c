@@ -5,7 +5,7 @@
 
 #include "ocp/refine.h"
 #include "ocp/ringing.h"
-#include "ocp/saddle.h"
+#include "ocp/certificate/saddle.h"
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-3;

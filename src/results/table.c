@@ -7,7 +7,8 @@
 
 #include "base/number.h"
 
-const char *moray_table_number(double value, char text[32])
+// A value as tables show it: whole numbers in full, others with four significant digits, NaN as "".
+static const char *table_number(double value, char text[32])
 {
     const locale_t before = moray_c_locale_begin();
     if (isnan(value))
@@ -23,7 +24,7 @@ const char *moray_table_number(double value, char text[32])
 const char *moray_table_cell(const moray_table_row *row, int j, char text[32])
 {
     if (!row->text)
-        return moray_table_number(row->value[j], text);
+        return table_number(row->value[j], text);
     return j == 0 ? row->text : "";
 }
 

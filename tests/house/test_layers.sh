@@ -57,15 +57,19 @@ includes() {
 # upward: the includes that no rule allows.
 upward() {
     awk -v headers="$work/headers" -v allowed="$work/allowed" '
+        function room(path) { # the room that a path lies in, at whatever depth
+            while (!((path " " path) in may) && sub(/\/[^\/]*$/, "", path))
+                continue
+            return path
+        }
         BEGIN {
             while ((getline line < headers) > 0) { split(line, part, " "); room_of[part[1]] = part[2] }
             while ((getline line < allowed) > 0) may[line] = 1
         }
         {
-            to = $3
-            if (to in room_of) to = room_of[to]
-            else sub(/\/[^\/]*$/, "", to)
-            if (!(($2 " " to) in may)) print $1 " (" $2 ") includes " $3 " (" to ")"
+            from = room($2)
+            to = $3 in room_of ? room_of[$3] : room($3)
+            if (!((from " " to) in may)) print $1 " (" from ") includes " $3 " (" to ")"
         }' "$@"
 }
 

@@ -91,9 +91,6 @@ typedef struct moray_table {
     int n_rows;
 } moray_table;
 
-// A value as tables show it: whole numbers in full, others with four significant digits, NaN as "".
-MORAY_API const char *moray_table_number(double value, char text[32]);
-
 // Plain text with aligned columns; widths count UTF-8 characters. Of several, each with a blank line behind it.
 MORAY_API void moray_table_print(const moray_table *table, FILE *file);
 MORAY_API void moray_tables_print(const moray_table *tables, int n, FILE *file);

@@ -31,7 +31,6 @@ typedef struct moray_gait_over moray_gait_over;
 MORAY_API moray_status moray_gait_over_new(moray_gait_over **over, const moray_gait_scenario *scenario, int n,
                                            moray_over_goal goal);
 MORAY_API void moray_gait_over_free(moray_gait_over *over);
-MORAY_API const moray_ocp *moray_gait_over_ocp(const moray_gait_over *over);
 
 // Solves from the orbits of gaits, gait[n] and orbit[n]: as moray_gait_problem_solve, of equal amplitude, delta and
 // taper, which are taken from the first. Errors and result: those of moray_solve.

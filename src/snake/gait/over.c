@@ -243,11 +243,6 @@ void moray_gait_over_free(moray_gait_over *over)
     free(over);
 }
 
-const moray_ocp *moray_gait_over_ocp(const moray_gait_over *over)
-{
-    return over->ocp;
-}
-
 // ---- Solving -------------------------------------------------------------------------------------------------------
 
 static double speed_on(const moray_gait_problem *problem, const moray_swim_track *orbit)

@@ -13,7 +13,6 @@
 moray_status moray_steering_new(moray_steering **problem, const moray_steering_spec *spec);
 void moray_steering_free(moray_steering *problem);
 const moray_ocp *moray_steering_ocp(const moray_steering *problem);
-const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem);
 
 // Joint work over the phase [J]; the task's integrals are the first of moray_solution_integrals.
 double moray_steering_work(const moray_steering *problem, const moray_solution *solution);

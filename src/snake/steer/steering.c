@@ -289,11 +289,6 @@ const moray_ocp *moray_steering_ocp(const moray_steering *problem)
     return problem->ocp;
 }
 
-const moray_steering_spec *moray_steering_spec_of(const moray_steering *problem)
-{
-    return &problem->spec;
-}
-
 double moray_steering_work(const moray_steering *problem, const moray_solution *solution)
 {
     return moray_solution_integrals(solution, 0)[problem->spec.task.nq];

@@ -2,7 +2,7 @@
 #ifndef SRC_OCP_DIFFERENCES_H
 #define SRC_OCP_DIFFERENCES_H
 
-#include "ocp/witness.h"
+#include "ocp/certificate/witness.h"
 
 // *worst: the largest disagreement between the derivatives of the programme at the solution and differences of its
 // functions along directions that move every variable at once, and so trust no pattern. Error: MORAY_MEMORY.

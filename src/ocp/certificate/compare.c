@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "ocp/differences.h"
+#include "ocp/certificate/differences.h"
 #include "ocp/names.h"
 
 static const double certain = 4; // doubts that a disagreement is to exceed

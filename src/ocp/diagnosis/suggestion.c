@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ocp/diagnosis.h"
+#include "ocp/diagnosis/diagnosis.h"
 
 static const double feasible = 1e-6;
 enum { most_inputs = 120 }; // of a function whose derivatives are checked

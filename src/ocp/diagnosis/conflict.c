@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "nlp/rank.h"
-#include "ocp/diagnosis.h"
+#include "ocp/diagnosis/diagnosis.h"
 
 static struct selection select_active(struct evidence *e, bool with_bounds)
 {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ocp/certify.h"
+#include "ocp/certificate/certify.h"
 
 struct resimulation {
     struct examiner *e;

@@ -3,13 +3,13 @@
 // Derivatives of the programme at a solution against differences along dense directions: what the solver believed, told
 // apart from what the functions do. A direction makes of the programme a function of one number, which is checked as
 // any map is.
-#include "ocp/differences.h"
+#include "ocp/certificate/differences.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "ocp/columns.h"
+#include "ocp/certificate/columns.h"
 
 enum { directions = 3 };
 static const double certain = 1e4;    // doubts of a difference that a disagreement is to exceed

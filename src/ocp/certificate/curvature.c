@@ -2,7 +2,7 @@
 //
 // Minimum or saddle: the inertia of [H + shift S, J'; J, -r] with the active bounds held is (n, m, 0) where H + shift S
 // is positive on what the active constraints leave free. Everything in sizes, so that no unit matters.
-#include "ocp/curvature.h"
+#include "ocp/certificate/curvature.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ocp/certify.h"
-#include "ocp/curvature.h"
-#include "ocp/differences.h"
+#include "ocp/certificate/certify.h"
+#include "ocp/certificate/curvature.h"
+#include "ocp/certificate/differences.h"
 #include "ocp/names.h"
-#include "ocp/optimality.h"
+#include "ocp/certificate/optimality.h"
 
 static const double no_length = 1e-5; // of a phase, relative to the longest: what a barrier leaves of none
 enum { where_size = 300, good_stages = 4 };

@@ -5,7 +5,7 @@
 #define SRC_OCP_CERTIFY_H
 
 #include "ocp/examine.h"
-#include "ocp/witness.h"
+#include "ocp/certificate/witness.h"
 
 // The worst of a number over phases, and when.
 struct finding {

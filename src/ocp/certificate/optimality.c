@@ -2,7 +2,7 @@
 //
 // The gradient of the Lagrangian from dense differences: for a node with weights w of [f, c, g] it is A' w, through
 // t = t0 + T tau and the factor T of f and g also into the free times.
-#include "ocp/optimality.h"
+#include "ocp/certificate/optimality.h"
 
 #include <math.h>
 #include <stdlib.h>

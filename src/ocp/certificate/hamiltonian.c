@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ocp/certify.h"
+#include "ocp/certificate/certify.h"
 
 struct course {
     const struct witness *w;

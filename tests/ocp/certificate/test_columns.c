@@ -3,7 +3,7 @@
 // Differences of columns beside a kink, which they may straddle.
 #include "tap.h"
 
-#include "ocp/columns.h"
+#include "ocp/certificate/columns.h"
 
 // out = slope of its side times (in - joint); the cubic of in bends on its own.
 struct bent {

@@ -2,7 +2,7 @@
 #ifndef SRC_OCP_CURVATURE_H
 #define SRC_OCP_CURVATURE_H
 
-#include "ocp/witness.h"
+#include "ocp/certificate/witness.h"
 
 // *worst: how far the Lagrangian bends down along a direction that the active constraints leave free, 0 at a minimum,
 // NAN where no factorisation tells: minus d' H d for d' S d = 1, where H is in sizes of variables and objective and S

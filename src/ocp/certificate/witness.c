@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "ocp/witness.h"
+#include "ocp/certificate/witness.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "ocp/columns.h"
+#include "ocp/certificate/columns.h"
 
 static const double least_part = 1e-3; // of a magnitude, or of what would matter to the objective, that makes a size
 static const double driving = 0.1;     // of what it takes to move a state by its size

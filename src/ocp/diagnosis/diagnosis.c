@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What a solution shows, in words.
-#include "ocp/diagnosis.h"
+#include "ocp/diagnosis/diagnosis.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ocp/bands.h"
+#include "ocp/diagnosis/bands.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "ocp/saddle.h"
+#include "ocp/certificate/saddle.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "ocp/curvature.h"
+#include "ocp/certificate/curvature.h"
 
 static const double stride = 0.3; // of a size, by the variable that moves most: far enough not to come back
 

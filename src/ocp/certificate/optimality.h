@@ -2,7 +2,7 @@
 #ifndef SRC_OCP_OPTIMALITY_H
 #define SRC_OCP_OPTIMALITY_H
 
-#include "ocp/witness.h"
+#include "ocp/certificate/witness.h"
 
 // Optimality conditions of a solution with derivatives by differences, in no unit. Where something is worst: a column
 // or a row of the programme, -1 for none.

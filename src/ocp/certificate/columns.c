@@ -4,7 +4,7 @@
 // extrapolate that agrees best with its neighbours, rounding counted. Central quotients across a kink that is nearer
 // than the smallest step agree on the mean of its slopes: both sides are differenced where quotients ahead and behind
 // keep apart.
-#include "ocp/columns.h"
+#include "ocp/certificate/columns.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef SRC_OCP_DIAGNOSIS_H
 #define SRC_OCP_DIAGNOSIS_H
 
-#include "ocp/bands.h"
+#include "ocp/diagnosis/bands.h"
 
 enum { name_size = 160 };
 
