@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// A solve, mesh after mesh: what stays between them, and the solve on one of them.
+#ifndef SRC_OCP_CAMPAIGN_H
+#define SRC_OCP_CAMPAIGN_H
+
+#include "ocp/solution.h"
+
+enum { most_escapes = 2 };   // from saddles
+enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
+
+struct campaign {
+    const moray_ocp *ocp;
+    const moray_settings *settings;
+    moray_family family;
+    int stages; // of new intervals
+    struct mesh *meshes;
+    moray_mesh_record *history; // becomes the solution's
+    int tried, widenings, escapes;
+    double spent;         // of the processor, in the solver
+    moray_solution *best; // of the solved ones that of the least error; often the last
+    double best_error;
+    int vain; // meshes since
+};
+
+// Solves on the meshes in c. A start that was not a solution may have led to a saddle, as one of symmetry does: that is
+// left. Error: those of moray_solve.
+moray_status moray_campaign_solve(struct campaign *c, const moray_guess *guess, moray_solution **result);
+
+// Notes a mesh with its error in the history, which the solution shows and the campaign owns.
+void moray_campaign_record(struct campaign *c, moray_solution *solution, double error, int dependences);
+
+// Frees a solution but for the history.
+void moray_campaign_drop(moray_solution *solution);
+
+#endif

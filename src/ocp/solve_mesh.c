@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+//
+// The solve on one mesh: transcribed with patterns that hold, solved, widened where a function shows more, and away
+// from a saddle.
+#include "ocp/campaign.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ocp/certificate/saddle.h"
+#include "ocp/widen.h"
+
+static const double worst_warm_error = 1e-3;
+static const double least_seconds = 1e-3; // of a solve that is begun
+
+moray_status moray_allocate_iterate(moray_solution *solution)
+{
+    const int n = solution->transcription->nlp.n, m = solution->transcription->nlp.m;
+    double *block = calloc((size_t)(4 * n + 2 * m), sizeof *block);
+    if (!block)
+        return moray_error(MORAY_MEMORY, "no memory for %d variables", n);
+    solution->iterate = (moray_iterate){
+        .x = block, .z_lower = block + n, .z_upper = block + 2 * n, .g = block + 4 * n, .lambda = block + 4 * n + m};
+    solution->guess = block + 3 * n;
+    return moray_ok();
+}
+
+static moray_nlp_settings solver_settings(const moray_settings *settings, bool warm)
+{
+    return (moray_nlp_settings){.tolerance = settings->tolerance,
+                                .max_iterations = settings->max_iterations,
+                                .max_cpu_seconds = settings->max_cpu_seconds,
+                                .barrier = warm ? settings->tolerance : settings->barrier,
+                                .warm = warm,
+                                .print_level = settings->print_level,
+                                .linear_solver = settings->linear_solver,
+                                .timing = settings->timing,
+                                .ipopt = settings->ipopt,
+                                .n_ipopt = settings->n_ipopt,
+                                .progress = settings->progress,
+                                .observer = settings->observer};
+}
+
+bool moray_is_solved(const moray_solution *solution)
+{
+    return solution->info.outcome == MORAY_NLP_SOLVED || solution->info.outcome == MORAY_NLP_ACCEPTABLE;
+}
+
+// Multipliers of a solved mesh whose error is small halve the iterations or better; of a coarse one they mislead.
+static bool can_start_warm(const moray_solution *solution, const moray_guess *guess)
+{
+    const moray_solution *from = guess ? guess->from : NULL;
+    return from && from->transcription->ocp == solution->transcription->ocp && moray_is_solved(from) &&
+           from->history[from->meshes - 1].error < worst_warm_error;
+}
+
+static moray_status run_solver(moray_solution *solution, const moray_guess *guess, bool warm)
+{
+    struct transcription *t = solution->transcription;
+    const moray_nlp_settings settings = solver_settings(&solution->settings, warm);
+    MORAY_TRY(moray_fill_guess(t, guess, solution->iterate.x));
+    if (solution->settings.own_scaling)
+        MORAY_TRY(moray_choose_scales(t, solution->iterate.x));
+    memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
+    if (warm)
+        MORAY_TRY(moray_carry_multipliers(guess->from, solution));
+    return moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
+}
+
+static moray_status run(moray_solution *solution, const moray_guess *guess)
+{
+    struct transcription *t = solution->transcription;
+    const bool warm = can_start_warm(solution, guess);
+    MORAY_TRY(run_solver(solution, guess, warm));
+    if (warm && !moray_is_solved(solution) && solution->info.outcome != MORAY_NLP_INTERRUPTED)
+        MORAY_TRY(run_solver(solution, guess, false));
+    if (!moray_transcription_jacobians(t, solution->iterate.x)) // accessors read the caches
+        return moray_error(MORAY_NUMERIC, "at the solver's last point, %.200s", t->failure.text);
+    return moray_ok();
+}
+
+static moray_status transcribe(const struct campaign *c, moray_solution *solution)
+{
+    MORAY_TRY(moray_transcription_new(&solution->transcription, c->ocp, c->family, c->meshes));
+    return moray_allocate_iterate(solution);
+}
+
+// Transcribed with patterns that hold at the guess.
+static moray_status transcribe_at_guess(const struct campaign *c, const moray_guess *guess, moray_solution *solution)
+{
+    int found = 1;
+    MORAY_TRY(transcribe(c, solution));
+    for (int k = 0; k < most_widenings && found > 0; k++) {
+        MORAY_TRY(moray_fill_guess(solution->transcription, guess, solution->iterate.x));
+        MORAY_TRY(moray_widen_patterns(solution->transcription, &found));
+        if (found == 0)
+            break;
+        moray_transcription_free(solution->transcription);
+        free(solution->iterate.x);
+        solution->transcription = NULL, solution->iterate.x = NULL;
+        MORAY_TRY(transcribe(c, solution));
+    }
+    return moray_ok();
+}
+
+// A warm start lowers the barrier only where the interpolated point is nearly right: elsewhere it would start in a
+// corner.
+static moray_status solve_once(struct campaign *c, const moray_guess *guess, moray_solution **result)
+{
+    *result = NULL;
+    moray_solution *solution = calloc(1, sizeof *solution);
+    if (!solution)
+        return moray_error(MORAY_MEMORY, "no memory for a solution");
+    solution->settings = *c->settings;
+    if (c->settings->max_cpu_seconds > 0)
+        solution->settings.max_cpu_seconds = fmax(c->settings->max_cpu_seconds - c->spent, least_seconds);
+    moray_status status = transcribe_at_guess(c, guess, solution);
+    if (!moray_failed(status))
+        status = run(solution, guess);
+    c->spent += solution->info.cpu_seconds;
+    if (moray_failed(status))
+        moray_solution_free(solution);
+    else
+        *result = solution;
+    return status;
+}
+
+moray_mesh_record moray_record_of(const moray_solution *solution, double error)
+{
+    const struct layout *layout = &solution->transcription->layout;
+    moray_mesh_record record = {.variables = layout->columns,
+                                .outcome = solution->info.outcome,
+                                .linear_solver = solution->info.linear_solver,
+                                .iterations = solution->info.iterations,
+                                .seconds = solution->info.seconds,
+                                .error = error,
+                                .objective = solution->iterate.objective};
+    for (int p = 0; p < layout->phases; p++) {
+        record.intervals += layout->phase[p].mesh.intervals;
+        record.nodes += layout->phase[p].nodes;
+    }
+    return record;
+}
+
+void moray_campaign_record(struct campaign *c, moray_solution *solution, double error, int dependences)
+{
+    c->history[c->tried] = moray_record_of(solution, error);
+    c->history[c->tried++].dependences = dependences;
+    solution->history = c->history;
+    solution->meshes = c->tried;
+}
+
+void moray_campaign_drop(moray_solution *solution)
+{
+    solution->history = NULL;
+    moray_solution_free(solution);
+}
+
+// Solves on the meshes in c, and again from there where a function turns out to depend on more than its patterns know.
+static moray_status solve_widened(struct campaign *c, const moray_guess *guess, moray_solution **result)
+{
+    MORAY_TRY(solve_once(c, guess, result));
+    while (c->widenings < most_widenings && (*result)->info.outcome != MORAY_NLP_INTERRUPTED) {
+        int found = 0;
+        moray_solution *old = *result;
+        moray_status status = moray_widen_patterns(old->transcription, &found);
+        if (!moray_failed(status) && found == 0)
+            return status;
+        *result = NULL;
+        if (!moray_failed(status)) {
+            const moray_guess here = moray_guess_from_solution(old);
+            c->widenings++;
+            moray_campaign_record(c, old, NAN, found);
+            status = solve_once(c, &here, result);
+        }
+        moray_campaign_drop(old);
+        MORAY_TRY(status);
+    }
+    return moray_ok();
+}
+
+// Solves again from beside a saddle. Where that fails the saddle is the result, as it was.
+static moray_status solve_beside(struct campaign *c, const double *kept, moray_solution **result)
+{
+    moray_solution *saddle = *result, *next = NULL;
+    const moray_guess beside = moray_guess_from_solution(saddle);
+    moray_campaign_record(c, saddle, NAN, 0);
+    c->escapes++;
+    const moray_status status = solve_widened(c, &beside, &next);
+    if (!moray_failed(status) && moray_is_solved(next)) {
+        *result = next;
+        moray_campaign_drop(saddle);
+        return status;
+    }
+    memcpy(saddle->iterate.x, kept, (size_t)saddle->transcription->nlp.n * sizeof *kept);
+    moray_transcription_jacobians(saddle->transcription, saddle->iterate.x); // accessors read the caches
+    if (next) {
+        if (next->info.outcome == MORAY_NLP_INTERRUPTED)
+            saddle->info.outcome = MORAY_NLP_INTERRUPTED;
+        moray_campaign_drop(next);
+    }
+    return status;
+}
+
+// Where the last step needed no regularisation the Hessian was positive definite on the constraints.
+static bool may_be_saddle(const moray_solution *solution)
+{
+    return moray_is_solved(solution) && solution->info.regularisation != 0;
+}
+
+moray_status moray_campaign_solve(struct campaign *c, const moray_guess *guess, moray_solution **result)
+{
+    MORAY_TRY(solve_widened(c, guess, result));
+    bool moved = !(guess && guess->from);
+    while (moved && c->escapes < most_escapes && may_be_saddle(*result)) {
+        const moray_solution *before = *result;
+        double *kept = calloc((size_t)before->transcription->nlp.n, sizeof *kept);
+        if (!kept)
+            return moray_error(MORAY_MEMORY, "no memory to leave a saddle");
+        moray_status status = moray_leave_saddle(*result, kept, &moved);
+        if (!moray_failed(status) && moved)
+            status = solve_beside(c, kept, result);
+        free(kept);
+        MORAY_TRY(status);
+        moved = *result != before;
+    }
+    return moray_ok();
+}
+
+void moray_solution_free(moray_solution *solution)
+{
+    if (!solution)
+        return;
+    moray_transcription_free(solution->transcription);
+    free(solution->iterate.x);
+    free(solution->history);
+    free(solution);
+}
