@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The first-principles model with its joints on the gait, as a map: six states, or eight with a moving offset; exact
-// Jacobians by complex step, exact Hessians by complex step through the adjoint.
+// The first-principles model with its joints on the gait, as a map: six states, or eight with a moving offset; rows of
+// the Jacobian by the adjoint, the Hessian by complex step through it.
 #include "snake/model/fp_adjoint.h"
 
 #include <stdlib.h>
@@ -14,150 +14,96 @@
 #include "snake/model/taper.h"
 
 enum { body = MORAY_BODY_STATES, most_inputs = 13 };
+enum { anew = 16 }; // joints after which a recurrence of sines begins again
 
-struct fp_plant {
+typedef struct fp_setting {
     moray_plant_spec spec;
     fp_robot robot;
     moray_plant_size size;
-    double complex *block;
-    double complex *sine, *cosine, *growth;                           // of omega t + (i-1) delta; 1 + taper s_i
-    double complex *theta, *dtheta, *phi, *dphi, *ubar, *ddtheta, *u; // N or N-1 each, in the block
-    double complex *on_theta, *on_dtheta, *on_ddtheta, *on_joints;    // derivatives of a weighted sum
-    fp_link_z *links;
-    fp_dual_link *dual;
-    moray_map by_step; // values, Jacobian and patterns
-};
+} fp_setting;
 
-// (25) and its derivatives; the offset and its own. sin and cos of the next joint's angle are those of this one turned
-// by delta, and worked out anew before rounding adds up.
-enum { anew = 16 };
-static void gait_motion(struct fp_plant *plant, const double complex *s, double complex taper, double complex t,
-                        const double complex offset[3])
-{
-    const double complex alpha = s[0], omega = s[1], delta = s[2];
-    const int joints = plant->spec.robot.links - 1;
-    double complex sine = 0, cosine = 1, sine_delta, cosine_delta;
-    circle_z(delta, &cosine_delta, &sine_delta);
-    for (int i = 0; i < joints; i++) {
-        if (i % anew == 0)
-            circle_z(omega * t + i * delta, &cosine, &sine);
-        plant->sine[i] = sine;
-        plant->cosine[i] = cosine;
-        const double complex growth = plant->growth[i] = 1 + taper * taper_place(i, joints);
-        plant->phi[i] = alpha * growth * sine + offset[0];
-        plant->dphi[i] = alpha * growth * omega * cosine + offset[1];
-        plant->ubar[i] = -alpha * growth * omega * omega * sine + offset[2];
-        sine = plant->sine[i] * cosine_delta + plant->cosine[i] * sine_delta;
-        cosine = plant->cosine[i] * cosine_delta - plant->sine[i] * sine_delta;
-    }
-}
+#define REAL double
+#define TYPED(name) name##_d
+#include "snake/plant/fp_gait.inc"
+#undef REAL
+#undef TYPED
 
-// Motion of the links at the input [heading, p_x, p_y, their rates, alpha, omega, delta, phi_0, taper, t], or with
-// phi_0, phi_0', phi_0'' before alpha and no taper; then their accelerations and torques. Returns the joint power.
-static double complex move(struct fp_plant *plant, const double complex *in, fp_motion_z *motion, double complex ddp[2])
+#define REAL double complex
+#define TYPED(name) name##_z
+#include "snake/plant/fp_gait.inc"
+#undef REAL
+#undef TYPED
+
+typedef struct fp_plant {
+    fp_setting of;
+    fp_gait_d real;
+    fp_gait_z stepped;
+    double *rows, *weight; // of the Jacobian, n_out x n_in; n_out
+    moray_map by_step;     // patterns
+} fp_plant;
+
+static void value(void *self, const double *in, double *out)
 {
-    const fp_robot *robot = &plant->robot;
-    const double complex *s = in + plant->size.nx + plant->size.nu;
-    if (plant->spec.joints == MORAY_JOINTS_STEERED)
-        gait_motion(plant, s, 0, s[3], in + body);
-    else
-        gait_motion(plant, s, s[4], s[5], (double complex[]){s[3], 0, 0});
-    moray_fp_angles_z(robot->links, in[MORAY_STATE_THETA], plant->phi, plant->theta);
-    moray_fp_angles_z(robot->links, in[MORAY_STATE_V_THETA], plant->dphi, plant->dtheta);
-    *motion = (fp_motion_z){plant->theta, plant->dtheta, in[MORAY_STATE_V_1], in[MORAY_STATE_V_2], plant->ubar};
-    if (!moray_fp_accelerations_z(robot, plant->spec.current, motion, plant->links, plant->ddtheta, ddp))
-        ddp[0] = ddp[1] = NAN;
-    return moray_fp_torques_z(robot, motion, plant->links, plant->ddtheta, plant->u);
+    evaluate_d(&((fp_plant *)self)->real, in, out);
 }
 
 static void evaluate(void *self, const double complex *in, double complex *out)
 {
-    struct fp_plant *plant = self;
-    const int N = plant->spec.robot.links;
-    fp_motion_z motion;
-    double complex ddp[2], mean = 0;
-    const double complex power = move(plant, in, &motion, ddp);
-    for (int i = 0; i < N; i++)
-        mean += plant->ddtheta[i] / N;
-    memcpy(out, in + MORAY_STATE_V_THETA, 3 * sizeof *out);
-    out[MORAY_STATE_V_THETA] = mean;
-    out[MORAY_STATE_V_1] = ddp[0];
-    out[MORAY_STATE_V_2] = ddp[1];
-    if (plant->spec.joints == MORAY_JOINTS_STEERED)
-        memcpy(out + body, in + body + 1, 2 * sizeof *out);
-    out += plant->size.nx;
-    for (int i = 0; i < N - 1 && plant->spec.path_forces; i++)
-        *out++ = plant->u[i];
-    for (int i = 0; i < N && plant->spec.path_angles; i++)
-        *out++ = plant->theta[i] - in[MORAY_STATE_THETA];
-    *out = power;
+    evaluate_z(&((fp_plant *)self)->stepped, in, out);
 }
 
-// ---- Hessian
-
-// Adds the gradient by alpha, omega, delta, t, taper and by the offset from that by the rank-th derivative of the
-// joints.
-static void pull_gait(const struct fp_plant *plant, int rank, const double complex *s, double complex t,
-                      const double complex *on_joints, double complex by[5], double complex *by_offset)
+// Row i of the angles, less the heading: not to be asked for the derivative by it.
+static void angle_row(fp_plant *plant, const double *in, int i, double *row)
 {
-    const double complex alpha = s[0], omega = s[1];
-    const int joints = plant->spec.robot.links - 1;
-    *by_offset = 0;
-    for (int i = 0; i < joints; i++) {
-        const double complex S = plant->sine[i], C = plant->cosine[i], on = plant->growth[i] * on_joints[i];
-        const double complex wave = rank == 0 ? S : rank == 1 ? omega * C : -omega * omega * S;
-        const double complex turn = alpha * (rank == 0 ? C : rank == 1 ? -omega * S : -omega * omega * C);
-        const double complex faster = alpha * (rank == 0 ? 0 : rank == 1 ? C : -2 * omega * S);
-        by[0] += on * wave;
-        by[1] += on * (faster + t * turn);
-        by[2] += on * i * turn;
-        by[3] += on * omega * turn;
-        by[4] += on_joints[i] * taper_place(i, joints) * alpha * wave;
-        *by_offset += on_joints[i];
-    }
+    const size_t bytes = (size_t)plant->of.spec.robot.links * sizeof(double);
+    fp_gait_d *at = &plant->real;
+    const fp_gradient_d by = {at->on_theta, at->on_dtheta, at->on_ddtheta, 0, 0};
+    memset(by.theta, 0, bytes);
+    memset(by.dtheta, 0, bytes);
+    memset(by.ddtheta, 0, bytes);
+    by.theta[i] = 1;
+    pull_input_d(at, in, &by, row);
 }
 
-// Gradient of weight . out, but for what is constant in it.
-static void weighted_gradient(struct fp_plant *plant, const double complex *in, const double *weight,
-                              double complex *gradient)
+// The input that an output of the state is; -1: none.
+static int input_of(const fp_plant *plant, int output)
 {
-    const moray_plant_size *size = &plant->size;
-    const moray_plant_spec *spec = &plant->spec;
-    const int N = spec->robot.links, s = size->nx + size->nu, t = s + size->ns;
-    const double *path = weight + size->nx, *on_angles = path + (spec->path_forces ? N - 1 : 0);
-    const fp_weights weights = {weight + MORAY_STATE_V_THETA, spec->path_forces ? path : NULL,
-                                weight[size->nx + size->nc]};
-    fp_gradient by = {plant->on_theta, plant->on_dtheta, plant->on_ddtheta, 0, 0};
-    double complex *const by_rank[] = {by.theta, by.dtheta, by.ddtheta}, by_gait[5] = {0}, by_offset[3], mean[3],
-                          ddp[2];
-    fp_motion_z motion;
-    move(plant, in, &motion, ddp);
-    moray_fp_adjoint(&plant->robot, spec->current, &motion, plant->links, plant->ddtheta, plant->u, &weights,
-                     plant->dual, &by);
-    for (int i = 0; i < N && spec->path_angles; i++)
-        by.theta[i] += on_angles[i];
-    for (int rank = 0; rank < 3; rank++) {
-        mean[rank] = moray_fp_pull_angles(N, by_rank[rank], plant->on_joints);
-        pull_gait(plant, rank, in + s, in[t], plant->on_joints, by_gait, &by_offset[rank]);
-    }
-    memset(gradient, 0, (size_t)(t + 1) * sizeof *gradient);
-    gradient[MORAY_STATE_THETA] = mean[0];
-    gradient[MORAY_STATE_V_THETA] = mean[1];
-    gradient[MORAY_STATE_V_1] = by.v_x;
-    gradient[MORAY_STATE_V_2] = by.v_y;
-    if (spec->joints == MORAY_JOINTS_STEERED) {
-        memcpy(gradient + body, by_offset, sizeof by_offset);
+    if (output < MORAY_STATE_V_THETA)
+        return MORAY_STATE_V_THETA + output;
+    return output >= body && output < plant->of.size.nx ? output + 1 : -1;
+}
+
+static void jacobian_row(fp_plant *plant, const double *in, int output, double *row)
+{
+    const moray_plant_spec *spec = &plant->of.spec;
+    const int input = input_of(plant, output);
+    const int angles = plant->of.size.nx + (spec->path_forces ? spec->robot.links - 1 : 0);
+    if (input >= 0) {
+        row[input] = 1;
+    } else if (output >= angles && output < plant->by_step.n_out - 1) {
+        angle_row(plant, in, output - angles, row);
     } else {
-        gradient[s + 3] = by_offset[0];
-        gradient[s + 4] = by_gait[4];
+        plant->weight[output] = 1;
+        weighted_gradient_d(&plant->real, in, plant->weight, row);
+        plant->weight[output] = 0;
     }
-    memcpy(gradient + s, by_gait, 3 * sizeof *gradient);
-    gradient[t] = by_gait[3];
 }
 
-static void moray_plant_hessian(void *self, const double *in, const double *weight, double *values)
+static void jacobian(void *self, const double *in, double *values)
 {
-    struct fp_plant *plant = self;
+    fp_plant *plant = self;
+    const int n_in = plant->by_step.n_in, n_out = plant->by_step.n_out;
+    const moray_pattern *pattern = &plant->by_step.jac;
+    move_d(&plant->real, in);
+    for (int output = 0; output < n_out; output++)
+        jacobian_row(plant, in, output, plant->rows + output * n_in);
+    for (int k = 0; k < pattern->nnz; k++)
+        values[k] = plant->rows[pattern->row[k] * n_in + pattern->col[k]];
+}
+
+static void hessian(void *self, const double *in, const double *weight, double *values)
+{
+    fp_plant *plant = self;
     const moray_pattern *pattern = &plant->by_step.hess;
     const double step = 1e-50;
     double complex z[most_inputs], gradient[most_inputs];
@@ -168,65 +114,47 @@ static void moray_plant_hessian(void *self, const double *in, const double *weig
             for (int i = 0; i < plant->by_step.n_in; i++)
                 z[i] = in[i];
             z[col] += step * I;
-            weighted_gradient(plant, z, weight, gradient);
+            move_z(&plant->stepped, z);
+            weighted_gradient_z(&plant->stepped, z, weight, gradient);
             before = col;
         }
         values[k] = cimag(gradient[pattern->row[k]]) / step;
     }
 }
 
-static void moray_plant_value(void *self, const double *in, double *out)
-{
-    const moray_map *by_step = &((struct fp_plant *)self)->by_step;
-    by_step->value(by_step->self, in, out);
-}
-
-static void moray_plant_jacobian(void *self, const double *in, double *values)
-{
-    const moray_map *by_step = &((struct fp_plant *)self)->by_step;
-    by_step->jacobian(by_step->self, in, values);
-}
-
 // ---- Construction
 
-static void moray_plant_free(struct fp_plant *plant)
+static void plant_free(fp_plant *plant)
 {
     if (!plant)
         return;
     moray_map_release(&plant->by_step);
-    free(plant->block);
-    free(plant->links);
-    free(plant->dual);
+    gait_free_d(&plant->real);
+    gait_free_z(&plant->stepped);
+    free(plant->rows);
     free(plant);
 }
 
 static void release(moray_map *map)
 {
-    moray_plant_free(map->self);
+    plant_free(map->self);
 }
 
-static moray_status plant_new(struct fp_plant **result, const moray_plant_spec *spec)
+static moray_status plant_new(fp_plant **result, const moray_plant_spec *spec)
 {
-    const size_t N = (size_t)spec->robot.links;
-    struct fp_plant *plant = calloc(1, sizeof *plant);
-    if (plant) {
-        plant->spec = *spec;
-        plant->robot = moray_fp_robot_of(&spec->robot);
-        plant->size = moray_plant_sizes(spec);
-        plant->block = calloc(14 * N, sizeof *plant->block);
-        plant->links = calloc(N, sizeof *plant->links);
-        plant->dual = calloc(N, sizeof *plant->dual);
+    fp_plant *plant = calloc(1, sizeof *plant);
+    bool made = plant != NULL;
+    if (made) {
+        plant->of = (fp_setting){*spec, moray_fp_robot_of(&spec->robot), moray_plant_sizes(spec)};
+        made = gait_new_d(&plant->real, &plant->of) && gait_new_z(&plant->stepped, &plant->of);
+        const size_t n_out = (size_t)(plant->of.size.nx + plant->of.size.nc + 1);
+        plant->rows = calloc(n_out * (most_inputs + 1), sizeof *plant->rows);
+        plant->weight = plant->rows ? plant->rows + n_out * most_inputs : NULL;
     }
-    if (!plant || !plant->block || !plant->links || !plant->dual) {
-        moray_plant_free(plant);
+    if (!made || !plant->rows) {
+        plant_free(plant);
         return moray_error(MORAY_MEMORY, "no memory for a plant of %d links", spec->robot.links);
     }
-    double complex **parts[] = {&plant->sine,       &plant->cosine,   &plant->growth,   &plant->theta,
-                                &plant->dtheta,     &plant->phi,      &plant->dphi,     &plant->ubar,
-                                &plant->ddtheta,    &plant->u,        &plant->on_theta, &plant->on_dtheta,
-                                &plant->on_ddtheta, &plant->on_joints};
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-        *parts[i] = plant->block + i * N;
     *result = plant;
     return moray_ok();
 }
@@ -245,7 +173,7 @@ static void probe(const moray_plant_spec *spec, double *in)
 
 moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec)
 {
-    struct fp_plant *plant = NULL;
+    fp_plant *plant = NULL;
     double in[most_inputs];
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));
@@ -257,18 +185,18 @@ moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec)
         return moray_error(MORAY_INPUT, "joints: the first-principles plant has none in closed loop");
     MORAY_TRY(plant_new(&plant, spec));
     probe(spec, in);
-    const moray_plant_size *size = &plant->size;
+    const moray_plant_size *size = &plant->of.size;
     const moray_status status = moray_map_from_complex(&plant->by_step, size->nx + size->nu + size->ns + 1,
                                                        size->nx + size->nc + 1, evaluate, plant, NULL, in);
     if (moray_failed(status)) {
-        moray_plant_free(plant);
+        plant_free(plant);
         return status;
     }
     *map = plant->by_step;
     map->self = plant;
-    map->value = moray_plant_value;
-    map->jacobian = moray_plant_jacobian;
-    map->hessian = moray_plant_hessian;
+    map->value = value;
+    map->jacobian = jacobian;
+    map->hessian = hessian;
     map->release = release;
     return status;
 }
