@@ -100,19 +100,32 @@ moray_status moray_periodic_orbit_mean_gradient(moray_periodic_orbit *orbit, int
     return pull_back(orbit, by);
 }
 
+static moray_status check_time(const moray_periodic_orbit *orbit, double t)
+{
+    const double T = moray_orbit_period(&orbit->system);
+    if (t >= 0 && t <= T)
+        return moray_ok();
+    return moray_error(MORAY_INPUT, "t = %g: must lie between 0 and the period, %g", t, T);
+}
+
+moray_status moray_periodic_orbit_point_gradient(moray_periodic_orbit *orbit, const double *slope, double t, double *by)
+{
+    MORAY_TRY(start(orbit, by));
+    MORAY_TRY(check_time(orbit, t));
+    const int interval = moray_periodic_orbit_locate(orbit, t);
+    add_direct(orbit, slope, t, 1, by);
+    for (int r = 0; r < orbit->system.nx; r++)
+        add_state(orbit, interval, r, slope[r], by);
+    return pull_back(orbit, by);
+}
+
 moray_status moray_periodic_orbit_output_gradient(moray_periodic_orbit *orbit, int row, double t, double *by)
 {
     orbit_system *system = &orbit->system;
     MORAY_TRY(check_row(orbit, row));
     MORAY_TRY(start(orbit, by));
-    if (!(t >= 0 && t <= moray_orbit_period(system)))
-        return moray_error(MORAY_INPUT, "t = %g: must lie between 0 and the period, %g", t, moray_orbit_period(system));
+    MORAY_TRY(check_time(orbit, t));
     moray_periodic_orbit_state(orbit, t, orbit->x);
     moray_orbit_plant_slope(system, orbit->x, t, orbit->slope);
-    const double *slope = orbit->slope + row * system->inputs;
-    const int interval = moray_periodic_orbit_locate(orbit, t);
-    add_direct(orbit, slope, t, 1, by);
-    for (int r = 0; r < system->nx; r++)
-        add_state(orbit, interval, r, slope[r], by);
-    return pull_back(orbit, by);
+    return moray_periodic_orbit_point_gradient(orbit, orbit->slope + row * system->inputs, t, by);
 }

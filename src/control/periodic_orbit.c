@@ -11,6 +11,8 @@
 enum { MOST_ITERATIONS = 40, MOST_HALVINGS = 8 };
 static const double CLOSED = 1e-11; // largest defect that counts as none
 static const double SETTLED = 1e-8; // largest step after which the next is lost in rounding
+static const double BRISK = 0.2;    // of the residual that old slopes may leave
+static const double LOST = 1e-13;   // step that is lost in rounding
 
 static moray_status make_memory(moray_periodic_orbit *orbit)
 {
@@ -118,24 +120,57 @@ static bool advance(moray_periodic_orbit *orbit, double *residual)
     return false;
 }
 
+// A whole step by slopes and factors of an earlier point, if it leaves little of the residual: it costs a fraction of
+// one by its own. False where it does not, and all is as before.
+static bool advance_by_old(moray_periodic_orbit *orbit, double *residual)
+{
+    double after;
+    if (try_step(orbit, 1, &after) && after <= fmax(BRISK * *residual, CLOSED)) {
+        memcpy(orbit->z, orbit->trial, (size_t)orbit->system.unknowns * sizeof *orbit->z);
+        *residual = after;
+        return true;
+    }
+    moray_orbit_residual(&orbit->system, orbit->z, orbit->F);
+    return false;
+}
+
+// Whether nothing is left to do after a step; by old slopes the next is as much shorter as the residual is.
+static bool is_there(const moray_periodic_orbit *orbit, double residual, double before, bool old)
+{
+    const double step = largest(orbit, orbit->step, orbit->system.nodes);
+    return residual <= CLOSED && (old ? step * residual <= LOST * before : step <= SETTLED);
+}
+
+static moray_status find_step(moray_periodic_orbit *orbit, bool old)
+{
+    if (!old) {
+        moray_orbit_slopes(&orbit->system, orbit->z);
+        orbit->usable = false;
+        MORAY_TRY(moray_sparse_lu_factor(orbit->lu, orbit->system.values));
+        orbit->usable = true;
+    }
+    memcpy(orbit->step, orbit->F, (size_t)orbit->system.unknowns * sizeof *orbit->step);
+    return moray_sparse_lu_solve(orbit->lu, 1, orbit->step);
+}
+
 static moray_status newton(moray_periodic_orbit *orbit, moray_periodic_orbit_info *info)
 {
-    orbit_system *system = &orbit->system;
-    const size_t size = (size_t)system->unknowns * sizeof(double);
+    bool old = orbit->usable;
     info->residual = INFINITY;
-    if (!moray_orbit_residual(system, orbit->z, orbit->F))
+    if (!moray_orbit_residual(&orbit->system, orbit->z, orbit->F))
         return moray_error(MORAY_NOT_SOLVED, "the plant is not finite where the search for an orbit starts");
     info->residual = residual_of(orbit);
-    for (int k = 0; k < MOST_ITERATIONS; k++) {
-        moray_orbit_slopes(system, orbit->z);
-        MORAY_TRY(moray_sparse_lu_factor(orbit->lu, system->values));
-        memcpy(orbit->step, orbit->F, size);
-        MORAY_TRY(moray_sparse_lu_solve(orbit->lu, 1, orbit->step));
-        if (!advance(orbit, &info->residual))
+    while (info->iterations < MOST_ITERATIONS) {
+        const double before = info->residual;
+        MORAY_TRY(find_step(orbit, old));
+        const bool forward = old ? advance_by_old(orbit, &info->residual) : advance(orbit, &info->residual);
+        if (!forward && !old)
             break;
-        info->iterations++;
-        if (info->residual <= CLOSED && largest(orbit, orbit->step, system->nodes) <= SETTLED)
+        info->iterations += forward;
+        info->slopes += !old;
+        if (forward && is_there(orbit, info->residual, before, old))
             return moray_ok();
+        old = forward;
     }
     return moray_error(MORAY_NOT_SOLVED, "defects of %.2g are left after %d steps of Newton's method", info->residual,
                        info->iterations);
@@ -175,8 +210,10 @@ moray_status moray_periodic_orbit_solve(moray_periodic_orbit *orbit, const doubl
         return moray_error(MORAY_INPUT, "no orbit to begin from");
     memcpy(system->p, p, ((size_t)system->ns + 1) * sizeof *p);
     orbit->factored = orbit->found = false;
-    if (guess)
+    if (guess) {
         begin(orbit, guess);
+        orbit->usable = false; // those of another orbit
+    }
     const moray_status status = newton(orbit, info);
     orbit->found = !moray_failed(status);
     return status;
@@ -189,8 +226,9 @@ moray_status moray_periodic_orbit_factor(moray_periodic_orbit *orbit)
     if (orbit->factored)
         return moray_ok();
     moray_orbit_slopes(&orbit->system, orbit->z);
+    orbit->usable = false;
     MORAY_TRY(moray_sparse_lu_factor(orbit->lu, orbit->system.values));
-    orbit->factored = true;
+    orbit->factored = orbit->usable = true;
     return moray_ok();
 }
 

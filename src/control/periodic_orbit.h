@@ -16,9 +16,10 @@ struct moray_periodic_orbit {
     double *slope;            // [outputs][inputs] of the plant there
     bool found;
     bool factored; // slopes and factors are those of the orbit
+    bool usable;   // there are factors, of a point not far from it
 };
 
-// Slopes and factors at the orbit, where Newton's method has left those of the step before. Error: MORAY_NUMERIC,
+// Slopes and factors at the orbit, where Newton's method has left those of a step before. Error: MORAY_NUMERIC,
 // MORAY_MEMORY; MORAY_INPUT without an orbit.
 moray_status moray_periodic_orbit_factor(moray_periodic_orbit *orbit);
 

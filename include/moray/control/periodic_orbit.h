@@ -58,7 +58,8 @@ typedef struct moray_periodic_orbit_guess {
 } moray_periodic_orbit_guess;
 
 typedef struct moray_periodic_orbit_info {
-    int iterations;  // of Newton's method
+    int iterations;  // of Newton's method, by slopes of its own or, where these do, of a point before
+    int slopes;      // how many had their own
     double residual; // largest defect that is left, in units of the states' scale, or condition
 } moray_periodic_orbit_info;
 
@@ -91,6 +92,9 @@ MORAY_API double moray_periodic_orbit_integral(moray_periodic_orbit *orbit, int 
 MORAY_API moray_status moray_periodic_orbit_ends_gradient(moray_periodic_orbit *orbit, const double *slope, double *by);
 // Mean over the period of output `row` of the plant.
 MORAY_API moray_status moray_periodic_orbit_mean_gradient(moray_periodic_orbit *orbit, int row, double *by);
+// q(x(t), s, t) at the phase of 0 <= t <= T, given its own derivatives `slope`[nx + ns + 1] by these.
+MORAY_API moray_status moray_periodic_orbit_point_gradient(moray_periodic_orbit *orbit, const double *slope, double t,
+                                                           double *by);
 // Output `row` at the phase of 0 <= t <= T.
 MORAY_API moray_status moray_periodic_orbit_output_gradient(moray_periodic_orbit *orbit, int row, double t, double *by);
 

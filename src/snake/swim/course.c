@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 #include "moray/control/path.h"
-#include "moray/snake/orbit.h"
+#include "snake/swim/orbit.h"
 #include "snake/swim/steady.h"
 
 static const double ON_COURSE = 1e-6; // [rad]
@@ -115,7 +115,7 @@ typedef struct {
 static moray_status try_gait(trier *by, const moray_gait *gait, moray_steady *steady)
 {
     if (by->orbit) {
-        MORAY_TRY(moray_orbit_solve(by->orbit, gait, &by->found));
+        MORAY_TRY(moray_orbit_find(by->orbit, gait, &by->found));
         *steady = by->found.steady;
         return moray_ok();
     }
@@ -149,7 +149,7 @@ moray_status moray_orbit_match_power(moray_orbit *orbit, moray_gait *gait, doubl
     trier by = {.orbit = orbit};
     MORAY_TRY(match_by(&by, gait, &(aim){"mean power", "W", power, 2, true}, &result->steady));
     *result = by.found;
-    return moray_ok();
+    return moray_orbit_measure(orbit, &result->steady);
 }
 
 static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,

@@ -38,22 +38,21 @@ static moray_status make_memory(moray_orbit *orbit)
     return moray_ok();
 }
 
-static moray_status make_plant(moray_orbit *orbit)
+moray_status moray_orbit_plant(const moray_orbit *orbit, bool efforts, moray_map *plant)
 {
     const moray_orbit_spec *spec = &orbit->spec;
-    const moray_plant_spec plant = {.robot = spec->robot,
-                                    .joints = MORAY_JOINTS_ON_GAIT,
-                                    .current = {spec->current[0], spec->current[1]},
-                                    .path_forces = true};
-    return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&orbit->plant, &plant)
-                                                 : moray_fp_plant(&orbit->plant, &plant);
+    const moray_plant_spec of = {.robot = spec->robot,
+                                 .joints = MORAY_JOINTS_ON_GAIT,
+                                 .current = {spec->current[0], spec->current[1]},
+                                 .path_forces = efforts};
+    return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(plant, &of) : moray_fp_plant(plant, &of);
 }
 
 static moray_status make(moray_orbit *orbit, const char *scheme)
 {
     static const int found[] = {ORBIT_OFFSET};
     const moray_orbit_spec *spec = &orbit->spec;
-    MORAY_TRY(make_plant(orbit));
+    MORAY_TRY(moray_orbit_plant(orbit, false, &orbit->plant));
     MORAY_TRY(moray_orbit_closing(orbit));
     const moray_periodic_orbit_spec engine = {.nx = ORBIT_STATES,
                                               .ns = ORBIT_GAIT,
@@ -93,6 +92,7 @@ void moray_orbit_free(moray_orbit *orbit)
         return;
     moray_periodic_orbit_free(orbit->engine);
     moray_map_release(&orbit->plant);
+    moray_map_release(&orbit->efforts);
     moray_map_release(&orbit->closing);
     moray_swimmer_free(orbit->swimmer);
     free(orbit->x);
@@ -151,22 +151,27 @@ static moray_status search(moray_orbit *orbit, const double p[ORBIT_PARAMETERS],
     return no_orbit(orbit, &status);
 }
 
-moray_status moray_orbit_solve(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result)
+moray_status moray_orbit_find(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result)
 {
     *result = (moray_orbit_result){.gait = *gait};
     MORAY_TRY(check_gait(gait));
     const double p[ORBIT_PARAMETERS] = {gait->amplitude, gait->omega, gait->delta,
                                         gait->offset,    gait->taper, 2 * M_PI / gait->omega};
     orbit->gait = *gait;
-    moray_status status = search(orbit, p, result);
+    const moray_status status = search(orbit, p, result);
     orbit->found = !moray_failed(status);
     if (moray_failed(status))
         return status;
     orbit->gait.offset = moray_periodic_orbit_parameters(orbit->engine)[ORBIT_OFFSET];
     result->gait = orbit->gait;
-    status = moray_orbit_measure(orbit, &result->steady);
-    orbit->found = !moray_failed(status);
-    return status;
+    result->steady = moray_orbit_means(orbit);
+    return moray_ok();
+}
+
+moray_status moray_orbit_solve(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result)
+{
+    MORAY_TRY(moray_orbit_find(orbit, gait, result));
+    return moray_orbit_measure(orbit, &result->steady);
 }
 
 double moray_orbit_turn(const moray_orbit *orbit)

@@ -9,6 +9,7 @@
 // What is found is the offset where the heading returns, else the turn a period, the w of the orbit.
 enum { ORBIT_STATES = 6, ORBIT_GAIT = 5, ORBIT_PARAMETERS = ORBIT_GAIT + 1 };
 enum { ORBIT_OMEGA = 1, ORBIT_OFFSET = 3, ORBIT_PERIOD = ORBIT_GAIT };
+enum { ORBIT_INPUTS = ORBIT_STATES + ORBIT_GAIT + 1 };     // of the plant
 enum { ORBIT_ENDS = 2 * ORBIT_STATES + ORBIT_PARAMETERS }; // inputs of the closing conditions, without w
 
 // Where the largest joint effort was sampled.
@@ -20,7 +21,8 @@ typedef struct orbit_peak {
 
 struct moray_orbit {
     moray_orbit_spec spec; // without the scheme's name
-    moray_map plant;       // with joint efforts and, last, their power
+    moray_map plant;       // with the power of the joints
+    moray_map efforts;     // the same with the efforts of the joints, once they are asked for
     moray_map closing;
     moray_periodic_orbit *engine;
     moray_swimmer *swimmer;   // shows the orbit as simulations do
@@ -29,6 +31,9 @@ struct moray_orbit {
     bool found;
     orbit_peak peak;
 };
+
+// Makes orbit->plant or, with efforts, orbit->efforts. Error: that of moray_fp_plant.
+moray_status moray_orbit_plant(const moray_orbit *orbit, bool efforts, moray_map *plant);
 
 // How the orbit closes: p(0) = 0; heading, rate of turn and velocity through the water return, turned; no displacement
 // across the course. Uses orbit->spec. Error: MORAY_MEMORY.
@@ -43,7 +48,14 @@ moray_status moray_orbit_check_found(const moray_orbit *orbit);
 // The swimmer on the orbit at time t; points into the orbit. Energy counts from t = 0. Error: MORAY_NUMERIC.
 moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample *sample);
 
-// Means over the period and peaks over samples of every degree; sets orbit->peak. Error: MORAY_NUMERIC.
+// moray_orbit_solve with nothing but means in result->steady. Peaks and the mean heading are moray_orbit_measure's.
+moray_status moray_orbit_find(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result);
+
+// Adds the mean heading, and peaks over samples of every degree; sets orbit->peak. Error: MORAY_NUMERIC, after which
+// there is no orbit.
 moray_status moray_orbit_measure(moray_orbit *orbit, moray_steady *steady);
+
+// Means over the period.
+moray_steady moray_orbit_means(moray_orbit *orbit);
 
 #endif

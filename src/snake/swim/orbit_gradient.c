@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "snake/swim/orbit.h"
 
@@ -50,12 +52,37 @@ static moray_status steering_gradient(moray_orbit *orbit, double gradient[5])
     return moray_ok();
 }
 
+// Derivatives of a joint's effort by the plant's inputs at the time of the peak. The orbit's own plant has no efforts,
+// each of which would cost as much as a rate of the state at every node.
+static moray_status effort_slope(moray_orbit *orbit, const orbit_peak *peak, double slope[ORBIT_INPUTS])
+{
+    const moray_map *plant = &orbit->efforts;
+    const moray_pattern *pattern = &plant->jac;
+    double in[ORBIT_INPUTS];
+    if (!plant->value)
+        MORAY_TRY(moray_orbit_plant(orbit, true, &orbit->efforts));
+    double *values = malloc((size_t)(pattern->nnz + 1) * sizeof *values);
+    if (!values)
+        return moray_error(MORAY_MEMORY, "no memory for %d derivatives", pattern->nnz);
+    moray_periodic_orbit_state(orbit->engine, peak->time, in);
+    memcpy(in + ORBIT_STATES, moray_periodic_orbit_parameters(orbit->engine), ORBIT_GAIT * sizeof *in);
+    in[ORBIT_INPUTS - 1] = peak->time;
+    plant->jacobian(plant->self, in, values);
+    memset(slope, 0, ORBIT_INPUTS * sizeof *slope);
+    for (int e = 0; e < pattern->nnz; e++)
+        if (pattern->row[e] == ORBIT_STATES + peak->joint)
+            slope[pattern->col[e]] = values[e];
+    free(values);
+    return moray_ok();
+}
+
 // At the phase of the largest sample; how that phase shifts with the gait has no say where it is a maximum.
 static moray_status peak_effort_gradient(moray_orbit *orbit, double gradient[5])
 {
     const orbit_peak *peak = &orbit->peak;
-    double by[ORBIT_PARAMETERS];
-    MORAY_TRY(moray_periodic_orbit_output_gradient(orbit->engine, ORBIT_STATES + peak->joint, peak->time, by));
+    double by[ORBIT_PARAMETERS], slope[ORBIT_INPUTS];
+    MORAY_TRY(effort_slope(orbit, peak, slope));
+    MORAY_TRY(moray_periodic_orbit_point_gradient(orbit->engine, slope, peak->time, by));
     by_gait(orbit, by, peak->negative ? -1 : 1, gradient);
     return moray_ok();
 }

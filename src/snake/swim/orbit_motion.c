@@ -74,19 +74,26 @@ static moray_status measure_samples(moray_orbit *orbit, moray_steady *steady)
 
 moray_status moray_orbit_measure(moray_orbit *orbit, moray_steady *steady)
 {
+    const moray_status status = measure_samples(orbit, steady);
+    orbit->found = orbit->found && !moray_failed(status);
+    return status;
+}
+
+moray_steady moray_orbit_means(moray_orbit *orbit)
+{
     const double T = period_of(orbit), *V = orbit->spec.current;
     double first[ORBIT_STATES], last[ORBIT_STATES];
     moray_periodic_orbit_state(orbit->engine, 0, first);
     moray_periodic_orbit_state(orbit->engine, T, last);
-    *steady = (moray_steady){.v_x = (last[1] - first[1]) / T,
-                             .v_y = (last[2] - first[2]) / T,
-                             .power = moray_periodic_orbit_integral(orbit->engine, orbit->plant.n_out - 1, T) / T,
-                             .heading_drift = (last[0] - first[0]) / T,
-                             .start_heading = first[0]};
-    steady->speed = hypot(steady->v_x - V[0], steady->v_y - V[1]);
-    steady->cost_of_transport = steady->speed > 0 ? steady->power / steady->speed : INFINITY;
-    steady->turning = fabs(last[0] - first[0]) > TURNING;
-    return measure_samples(orbit, steady);
+    moray_steady steady = {.v_x = (last[1] - first[1]) / T,
+                           .v_y = (last[2] - first[2]) / T,
+                           .power = moray_periodic_orbit_integral(orbit->engine, orbit->plant.n_out - 1, T) / T,
+                           .heading_drift = (last[0] - first[0]) / T,
+                           .start_heading = first[0]};
+    steady.speed = hypot(steady.v_x - V[0], steady.v_y - V[1]);
+    steady.cost_of_transport = steady.speed > 0 ? steady.power / steady.speed : INFINITY;
+    steady.turning = fabs(last[0] - first[0]) > TURNING;
+    return steady;
 }
 
 static moray_status fill_track(moray_orbit *orbit, int points, moray_swim_track *track)
