@@ -4,6 +4,8 @@
 
 #include "job.h"
 
+enum { START_SAMPLES = 101 }; // of the motion that a solve begins from
+
 static double limit(double value)
 {
     return isfinite(value) ? value : MORAY_INFINITY;
@@ -79,20 +81,49 @@ moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *proble
     return moray_gait_problem_solve(problem, &settings, gait, orbit, solution);
 }
 
-// The orbit is swum straight along the course where the gait cannot hold it.
-static moray_status solve_in(gait_job *job, const stage *at, const double current[2], const moray_gait_problem *problem,
-                             const moray_gait *gait, moray_solution **solution)
+// Steady swimming by simulation from rest, straight along the course where the gait cannot hold it.
+static moray_status swim_start(gait_job *job, const stage *at, const double current[2], const moray_gait *gait,
+                               moray_swim_track *track)
 {
     moray_swim_setup setup = moray_test_rig_setup(&job->rig, at->model);
     memcpy(setup.current, current, sizeof setup.current);
     moray_steady steady;
-    moray_swim_track orbit = {0};
-    moray_status status = moray_swim_hold_course(&setup, gait, job->snake.course, &steady);
+    const moray_status status = moray_swim_hold_course(&setup, gait, job->snake.course, &steady);
     const double heading = moray_failed(status) ? job->snake.course : steady.start_heading;
-    status = moray_swim_steady(&setup, gait, heading, &steady, &orbit, 101);
+    return moray_swim_steady(&setup, gait, heading, &steady, track, START_SAMPLES);
+}
+
+// The same as the gait's periodic orbit, with the offset that holds the course; from a glide, so that it depends on
+// nothing solved before.
+static moray_status find_start(gait_job *job, const stage *at, const double current[2], moray_gait *gait,
+                               moray_swim_track *track)
+{
+    moray_orbit_spec spec = moray_orbit_spec_default(&job->snake.robot, at->model);
+    moray_orbit *orbit;
+    moray_orbit_result found;
+    memcpy(spec.current, current, sizeof spec.current);
+    spec.course = job->snake.course;
+    MORAY_TRY(moray_orbit_new(&orbit, &spec));
+    moray_status status = moray_orbit_solve(orbit, gait, &found);
     if (!moray_failed(status))
-        status = gait_job_solve_from(job, problem, gait, &orbit, solution);
-    moray_swim_track_free(&orbit);
+        status = moray_orbit_track(orbit, START_SAMPLES, track);
+    if (!moray_failed(status))
+        *gait = found.gait;
+    moray_orbit_free(orbit);
+    return status;
+}
+
+static moray_status solve_in(gait_job *job, const stage *at, const double current[2], const moray_gait_problem *problem,
+                             const moray_gait *gait, moray_solution **solution)
+{
+    moray_swim_track track = {0};
+    moray_gait start = *gait;
+    moray_status status = moray_ok();
+    if (moray_failed(find_start(job, at, current, &start, &track)))
+        status = swim_start(job, at, current, &start, &track);
+    if (!moray_failed(status))
+        status = gait_job_solve_from(job, problem, &start, &track, solution);
+    moray_swim_track_free(&track);
     return status;
 }
 

@@ -97,6 +97,21 @@ typedef struct {
     double target, exponent;
     bool is_power;
 } aim;
+#define POWER(target)                                                                                                  \
+    {                                                                                                                  \
+        "mean power", "W", (target), 2, true                                                                           \
+    }
+#define SPEED(target)                                                                                                  \
+    {                                                                                                                  \
+        "speed through the water", "m/s", (target), 1, false                                                           \
+    }
+
+static moray_status check_target(const aim *to)
+{
+    if (to->target > 0 && isfinite(to->target))
+        return moray_ok();
+    return moray_error(MORAY_INPUT, "%s to match = %g %s: must be finite and above 0", to->name, to->target, to->unit);
+}
 
 static double mismatch(const aim *to, const moray_steady *steady)
 {
@@ -147,9 +162,17 @@ static moray_status match_by(trier *by, moray_gait *gait, const aim *to, moray_s
 moray_status moray_orbit_match_power(moray_orbit *orbit, moray_gait *gait, double power, moray_orbit_result *result)
 {
     trier by = {.orbit = orbit};
-    MORAY_TRY(match_by(&by, gait, &(aim){"mean power", "W", power, 2, true}, &result->steady));
+    MORAY_TRY(match_by(&by, gait, &(aim)POWER(power), &result->steady));
     *result = by.found;
     return moray_orbit_measure(orbit, &result->steady);
+}
+
+moray_status moray_orbit_match(moray_orbit *orbit, moray_gait *gait, bool power, double target, moray_steady *steady)
+{
+    const aim to = power ? (aim)POWER(target) : (aim)SPEED(target);
+    trier by = {.orbit = orbit};
+    MORAY_TRY(check_target(&to));
+    return match_by(&by, gait, &to, steady);
 }
 
 static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
@@ -172,9 +195,7 @@ static moray_status match_on_orbits(const moray_swim_setup *setup, moray_gait *g
 static moray_status match(const moray_swim_setup *setup, moray_gait *gait, double course, const aim *to,
                           moray_steady *steady)
 {
-    if (!(to->target > 0 && isfinite(to->target)))
-        return moray_error(MORAY_INPUT, "%s to match = %g %s: must be finite and above 0", to->name, to->target,
-                           to->unit);
+    MORAY_TRY(check_target(to));
     trier by = {.setup = setup, .course = course, .heading = course};
     moray_gait tried = *gait;
     if (!gait->series && !moray_failed(match_on_orbits(setup, &tried, course, to, steady)))
@@ -185,11 +206,11 @@ static moray_status match(const moray_swim_setup *setup, moray_gait *gait, doubl
 moray_status moray_swim_match_power(const moray_swim_setup *setup, moray_gait *gait, double course, double power,
                                     moray_steady *steady)
 {
-    return match(setup, gait, course, &(aim){"mean power", "W", power, 2, true}, steady);
+    return match(setup, gait, course, &(aim)POWER(power), steady);
 }
 
 moray_status moray_swim_match_speed(const moray_swim_setup *setup, moray_gait *gait, double course, double speed,
                                     moray_steady *steady)
 {
-    return match(setup, gait, course, &(aim){"speed through the water", "m/s", speed, 1, false}, steady);
+    return match(setup, gait, course, &(aim)SPEED(speed), steady);
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "moray/parallel.h"
-#include "moray/snake/orbit.h"
+#include "snake/swim/orbit.h"
 
 // ---- The rungs -----------------------------------------------------------------------------------------------------
 
@@ -95,19 +95,6 @@ static void place_free(place *at)
     moray_swimmer_free(at->setup.swimmer);
 }
 
-// Nobody swims an orbit that deviations leave; one that they leave by less than a thousandth a period is swum for the
-// time that a comparison needs, as the heading is in a current.
-static moray_status check_stable(moray_orbit *orbit)
-{
-    const double most = 1 + 1e-3;
-    moray_floquet floquet;
-    MORAY_TRY(moray_orbit_floquet(orbit, &floquet));
-    if (!(floquet.largest < most))
-        return moray_error(MORAY_NOT_SOLVED, "the orbit is not stable: a deviation grows %.4g times a period",
-                           floquet.largest);
-    return moray_ok();
-}
-
 moray_status moray_makes_way(const moray_robot *robot, const moray_gait *gait, const moray_steady *steady)
 {
     const double period = 2 * M_PI / gait->omega;
@@ -121,7 +108,7 @@ static moray_status swim_baseline(place *at, moray_steady *steady)
     const moray_gait *gait = &at->spec->baseline;
     moray_orbit_result found;
     if (!gait->series && !moray_failed(moray_orbit_solve(at->orbit, gait, &found)) &&
-        !moray_failed(check_stable(at->orbit))) {
+        !moray_failed(moray_orbit_stays(at->orbit))) {
         *steady = found.steady;
         return moray_ok();
     }
@@ -133,7 +120,7 @@ static moray_status swim_gait(place *at, moray_gait *gait, double power, moray_s
     moray_gait tried = *gait;
     moray_orbit_result found;
     if (!gait->series && !moray_failed(moray_orbit_match_power(at->orbit, &tried, power, &found)) &&
-        !moray_failed(check_stable(at->orbit))) {
+        !moray_failed(moray_orbit_stays(at->orbit))) {
         *gait = found.gait;
         *steady = found.steady;
         return moray_ok();

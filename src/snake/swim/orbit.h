@@ -55,6 +55,15 @@ moray_status moray_orbit_find(moray_orbit *orbit, const moray_gait *gait, moray_
 // there is no orbit.
 moray_status moray_orbit_measure(moray_orbit *orbit, moray_steady *steady);
 
+// Rescales gait->omega, as moray_orbit_match_power does, until the mean power (else the speed) is `target`; nothing but
+// means in *steady, and gait->offset stays. Error: that of moray_orbit_match_power; MORAY_INPUT (target).
+moray_status moray_orbit_match(moray_orbit *orbit, moray_gait *gait, bool power, double target, moray_steady *steady);
+
+// Whether a robot swims the orbit. Nobody swims one that deviations leave; one that they leave by less than a
+// thousandth a period is swum for the time that a comparison needs, as the heading is in a current. Error:
+// MORAY_NOT_SOLVED, and those of moray_orbit_floquet.
+moray_status moray_orbit_stays(moray_orbit *orbit);
+
 // Means over the period.
 moray_steady moray_orbit_means(moray_orbit *orbit);
 

@@ -59,3 +59,14 @@ moray_status moray_orbit_floquet(moray_orbit *orbit, moray_floquet *floquet)
     sort_out(orbit, floquet);
     return moray_ok();
 }
+
+moray_status moray_orbit_stays(moray_orbit *orbit)
+{
+    const double most = 1 + 1e-3;
+    moray_floquet floquet;
+    MORAY_TRY(moray_orbit_floquet(orbit, &floquet));
+    if (!(floquet.largest < most))
+        return moray_error(MORAY_NOT_SOLVED, "the orbit is not stable: a deviation grows %.4g times a period",
+                           floquet.largest);
+    return moray_ok();
+}

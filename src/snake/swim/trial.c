@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "moray/snake/trial.h"
 #include "snake/model/model.h"
+#include "snake/swim/orbit.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "moray/angle.h"
 
@@ -67,25 +69,63 @@ moray_status moray_gait_trial_run(const moray_test_rig *rig, const moray_gait *g
     return moray_ok();
 }
 
+// ---- Gain ----------------------------------------------------------------------------------------------------------
+
+// The orbit of the trial's gait, where it may stand for simulations at other omegas: it does not lose deviations, and
+// the simulation of the gait itself, from rest, came to it. NULL where it may not.
+static moray_orbit *proved_orbit(const moray_test_rig *rig, const moray_gait_trial *trial, moray_model model)
+{
+    const double alike = 1e-5; // of speed and power
+    const moray_steady *swum = &trial->steady[model];
+    moray_orbit_spec spec = moray_orbit_spec_default(moray_swimmer_robot(rig->swimmer[model]), model);
+    moray_orbit *orbit = NULL;
+    moray_orbit_result found;
+    memcpy(spec.current, rig->current, sizeof spec.current);
+    spec.course = rig->course;
+    if (trial->gait[model].series || moray_failed(moray_orbit_new(&orbit, &spec)))
+        return NULL;
+    if (!moray_failed(moray_orbit_find(orbit, &trial->gait[model], &found)) &&
+        fabs(found.steady.speed - swum->speed) <= alike * swum->speed &&
+        fabs(found.steady.power - swum->power) <= alike * swum->power && !moray_failed(moray_orbit_stays(orbit)))
+        return orbit;
+    moray_orbit_free(orbit);
+    return NULL;
+}
+
+// On the orbit, and simulated from rest where there is none.
+static moray_status match(const moray_test_rig *rig, moray_orbit *orbit, moray_model model, bool power, double target,
+                          moray_gait *gait, moray_steady *steady)
+{
+    const moray_swim_setup setup = moray_test_rig_setup(rig, model);
+    if (orbit && !moray_failed(moray_orbit_match(orbit, gait, power, target, steady)) &&
+        !moray_failed(moray_orbit_stays(orbit)))
+        return moray_ok();
+    return power ? moray_swim_match_power(&setup, gait, rig->course, target, steady)
+                 : moray_swim_match_speed(&setup, gait, rig->course, target, steady);
+}
+
 moray_gait_gain moray_gait_gain_over(const moray_test_rig *rig, const moray_gait_trial *trial,
                                      const moray_gait_trial *baseline)
 {
     const moray_model model = MORAY_FIRST_PRINCIPLES;
-    const moray_swim_setup setup = moray_test_rig_setup(rig, model);
     const moray_steady *base = &baseline->steady[model];
     moray_gait faster = trial->gait[model], thriftier = trial->gait[model];
+    moray_orbit *orbit = proved_orbit(rig, trial, model);
     moray_steady steady;
     moray_gait_gain gain = {NAN, NAN, NAN, {0}, {0}};
-    gain.why_no_speed = moray_swim_match_power(&setup, &faster, rig->course, base->power, &steady);
+    gain.why_no_speed = match(rig, orbit, model, true, base->power, &faster, &steady);
     if (!moray_failed(gain.why_no_speed)) {
         gain.speed_percent_at_equal_power = 100 * (steady.speed / base->speed - 1);
         gain.omega_at_equal_power = faster.omega;
     }
-    gain.why_no_power = moray_swim_match_speed(&setup, &thriftier, rig->course, base->speed, &steady);
+    gain.why_no_power = match(rig, orbit, model, false, base->speed, &thriftier, &steady);
     if (!moray_failed(gain.why_no_power))
         gain.power_percent_at_equal_speed = 100 * (steady.power / base->power - 1);
+    moray_orbit_free(orbit);
     return gain;
 }
+
+// ---- From rest -----------------------------------------------------------------------------------------------------
 
 // Positions along the course at 2n times: of the samples, and one period before each (or the start).
 struct progress_along {
