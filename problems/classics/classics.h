@@ -6,7 +6,9 @@
 
 #include "moray/ocp.h"
 
-// The textbook's start: x and u of a phase at tau in [0, 1] of its guessed duration. Returns the time.
+// The textbook's start: x and u of a phase at tau in [0, 1] of its guessed duration. Returns the time. Asked phase after
+// phase at tau = 0, 1 / CLASSIC_PARTS, ..., 1; x arrives as it was left the time before, so that it can be simulated.
+enum { CLASSIC_PARTS = 128 };
 typedef double classic_start_fn(int phase, double tau, double *x, double *u, const void *data);
 
 struct classic {

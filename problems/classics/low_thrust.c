@@ -79,12 +79,14 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
 {
     (void)phase;
     (void)data;
-    for (int i = 0; i < 7; i++)
+    const double duration = 90000;
+    for (int i = 0; i < 7 && tau == 0; i++)
         x[i] = x0[i];
-    orbit_propagate(spiral, 7, x, (const moray_num[]){0, 1, 0}, (const moray_num[]){-25}, 90000 * tau);
+    if (tau > 0)
+        orbit_propagate(spiral, 7, x, (const moray_num[]){0, 1, 0}, (const moray_num[]){-25}, duration / CLASSIC_PARTS);
     u[0] = u[2] = 0;
     u[1] = 1;
-    return 90000 * tau;
+    return duration * tau;
 }
 
 // |u|^2 = 1, or to within `slack`.

@@ -49,7 +49,7 @@ void orbit_velocity(const moray_num *element, moray_num *radial, moray_num *tran
     *transverse = root * (1 + f * cos(L) + g * sin(L));
 }
 
-enum { steps = 400, max_states = 8 };
+enum { steps = 4, max_states = 8 };
 
 void orbit_propagate(moray_continuous_fn *dynamics, int n, double *x, const moray_num *u, const moray_num *s,
                      double time)

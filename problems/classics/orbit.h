@@ -13,8 +13,8 @@ void orbit_rates(const moray_num *element, const moray_num *delta, moray_num *ra
 // Radial and transverse velocity.
 void orbit_velocity(const moray_num *element, moray_num *radial, moray_num *transverse);
 
-// A start by simulation: x[n], n <= 8, carried from time 0 to `time` by the dynamics under constant controls and
-// parameters, with 400 steps of the classical Runge-Kutta method.
+// A part of a start by simulation: x[n], n <= 8, carried on for `time` by the dynamics under constant controls and
+// parameters, with four steps of the classical Runge-Kutta method.
 void orbit_propagate(moray_continuous_fn *dynamics, int n, double *x, const moray_num *u, const moray_num *s,
                      double time);
 

@@ -7,7 +7,7 @@
 
 #include "classics.h"
 
-enum { samples = 129, max_phases = 4, max_states = 8, max_controls = 4 };
+enum { samples = CLASSIC_PARTS + 1, max_phases = 4, max_states = 8, max_controls = 4 };
 
 // ---- Problems of one phase -----------------------------------------------------------------------------------------
 
@@ -55,14 +55,16 @@ static double straight_start(const moray_samples *between, int nx, int nu, doubl
 
 static void sample_start(const struct classic *classic, const moray_ocp *ocp, struct start *start)
 {
+    double x[max_states] = {0};
     for (int p = 0; p < moray_ocp_phases(ocp); p++) {
         int nx, nu;
         moray_ocp_widths(ocp, p, &nx, &nu);
         for (int k = 0; k < samples; k++) {
-            const double tau = (double)k / (samples - 1);
-            double *x = start->x[p] + k * nx, *u = start->u[p] + k * nu;
+            const double tau = (double)k / CLASSIC_PARTS;
+            double *u = start->u[p] + k * nu;
             start->time[p][k] = classic->start ? classic->start(p, tau, x, u, classic->data)
                                                : straight_start(classic->straight, nx, nu, tau, x, u);
+            memcpy(start->x[p] + k * nx, x, (size_t)nx * sizeof *x);
         }
         start->phase[p] = (moray_samples){samples, start->time[p], start->x[p], start->u[p]};
     }

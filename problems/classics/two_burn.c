@@ -95,18 +95,15 @@ static double start(int phase, double tau, double *x, double *u, const void *dat
     (void)data;
     static const moray_num angles[4][2] = {
         {0}, {0.148637e-2 * M_PI / 180, -9.08446 * M_PI / 180}, {0}, {-0.136658e-2 * M_PI / 180, 49.7892 * M_PI / 180}};
-    double state[7];
-    for (int i = 0; i < 7; i++)
-        state[i] = x0[i];
-    for (int p = 0; p <= phase; p++) {
-        const double time = (p < phase ? 1 : tau) * (begin[p + 1] - begin[p]);
-        orbit_propagate(p % 2 ? burn : coast, p % 2 ? 7 : 6, state, angles[p], NULL, time);
-    }
-    for (int i = 0; i < (phase % 2 ? 7 : 6); i++)
-        x[i] = state[i];
-    for (int i = 0; i < (phase % 2 ? 2 : 0); i++)
+    const double duration = begin[phase + 1] - begin[phase];
+    const bool burns = phase % 2 == 1;
+    for (int i = 0; i < 7 && phase == 0 && tau == 0; i++)
+        x[i] = x0[i];
+    if (tau > 0)
+        orbit_propagate(burns ? burn : coast, burns ? 7 : 6, x, angles[phase], NULL, duration / CLASSIC_PARTS);
+    for (int i = 0; i < 2 && burns; i++)
         u[i] = creal(angles[phase][i]);
-    return begin[phase] + tau * (begin[phase + 1] - begin[phase]);
+    return begin[phase] + tau * duration;
 }
 
 const struct classic classic_two_burn = {.name = "two-burn",
