@@ -26,9 +26,8 @@ static void compare(const struct witness *w, int p, int n, const double *in_use,
     const struct transcription *t = w->solution->transcription;
     const moray_map *map = p < 0 ? t->endpoint : t->phase[p].map;
     const int block = map->n_in * map->n_out;
-    const double *jac = p < 0 ? w->end_jac : w->phase[p].jac + n * block;
-    const double *doubt = p < 0 ? w->end_doubt : w->phase[p].doubt + n * block;
-    const double *kink = p < 0 ? w->end_kink : w->phase[p].kink + n * block;
+    const struct kept *found = moray_witness_at(w, p, n);
+    const double *jac = found->jac, *doubt = found->doubt, *kink = found->kink;
     const double *size = p < 0 ? w->end_size : w->phase[p].size;
     const double *out_size = p < 0 ? w->end_out_size : w->phase[p].out_size;
     const bool timeless = p >= 0 && t->layout.phase[p].t0 < 0 && t->layout.phase[p].tf < 0; // no variable moves t

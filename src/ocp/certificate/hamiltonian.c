@@ -16,7 +16,7 @@ struct course {
 static bool is_timeless(const struct witness *w, int p, int n)
 {
     const moray_map *map = w->solution->transcription->phase[p].map;
-    const double *slope = w->phase[p].jac + ((n + 1) * map->n_in - 1) * map->n_out;
+    const double *slope = moray_witness_at(w, p, n)->jac + (map->n_in - 1) * map->n_out;
     for (int i = 0; i < map->n_out; i++)
         if (slope[i] != 0) // nor is it where differences find none
             return false;
@@ -33,7 +33,7 @@ static double rate_at(const struct course *c, int n, const double *costate, doub
     const double *lambda = c->w->solution->iterate.lambda, T = cache->tf - cache->t0;
     const double *out = cache->out + n * cache->map->n_out;
     const int n_out = cache->map->n_out, nx = phase->nx, nc = phase->nc;
-    const double *slope = c->w->phase[c->p].jac + ((n + 1) * cache->map->n_in - 1) * n_out;
+    const double *slope = moray_witness_at(c->w, c->p, n)->jac + (cache->map->n_in - 1) * n_out;
     double rate = 0;
     *size = 0;
     for (int i = 0; i < n_out; i++) {

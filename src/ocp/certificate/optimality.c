@@ -15,18 +15,17 @@ struct measure {
     double *weight, *in_use, *lambda_f;  // scratch
 };
 
-// Entry j of A' weight, of a block that begins there, the derivatives in use where differences say nothing.
-static double weighted(const struct measure *m, const struct phase_witness *p, const moray_map *map, size_t block,
-                       int j)
+// Entry j of A' weight, of the block at hand (p: NULL for the endpoint), the derivatives in use where differences say
+// nothing.
+static double weighted(const struct measure *m, const struct phase_witness *p, int j)
 {
-    const double *jac = (p ? p->jac : m->e->end_jac) + block, *doubt = (p ? p->doubt : m->e->end_doubt) + block;
-    const double *kink = (p ? p->kink : m->e->end_kink) + block;
+    const struct kept *at = p ? &p->kept : &m->e->end;
     const double *size = p ? p->size : m->e->end_size, *out_size = p ? p->out_size : m->e->end_out_size;
     double sum = 0;
-    for (int i = 0; i < map->n_out; i++) {
-        const int k = j * map->n_out + i;
-        const bool speaks = moray_witness_speaks(doubt[k], kink[k], size[j], out_size[i]);
-        sum += m->weight[i] * (speaks ? jac[k] : m->in_use[k]);
+    for (int i = 0; i < at->map->n_out; i++) {
+        const int k = j * at->map->n_out + i;
+        const bool speaks = moray_witness_speaks(at->doubt[k], at->kink[k], size[j], out_size[i]);
+        sum += m->weight[i] * (speaks ? at->jac[k] : m->in_use[k]);
     }
     return sum;
 }
@@ -56,12 +55,13 @@ static void add_node(struct measure *m, int p, int n)
     for (int i = 0; i < n_out; i++)
         if (i < nx || i >= nx + nc)
             by_duration += m->weight[i] / T * cache->out[n * n_out + i];
-    const size_t block = (size_t)n * (size_t)n_in * (size_t)n_out;
+    const struct phase_witness *witness = &m->e->phase[p];
     const int *column = moray_node_columns(t, p, node);
+    moray_witness_at(m->e, p, n);
     moray_witness_in_use(m->e, p, n, m->in_use);
     for (int j = 0; j < n_in - 1; j++)
-        m->gradient[column[j]] += weighted(m, &m->e->phase[p], cache->map, block, j);
-    const double by_time = weighted(m, &m->e->phase[p], cache->map, block, n_in - 1);
+        m->gradient[column[j]] += weighted(m, witness, j);
+    const double by_time = weighted(m, witness, n_in - 1);
     add_time(m, layout, by_time * (1 - node->tau) - by_duration, by_time * node->tau + by_duration);
 }
 
@@ -92,10 +92,11 @@ static void add_endpoint(struct measure *m)
     m->weight[0] = 1;
     memcpy(m->weight + 1, m->e->solution->iterate.lambda + m->t->layout.events,
            (size_t)m->t->ocp->ne * sizeof *m->weight);
+    moray_witness_at(m->e, -1, 0);
     moray_witness_in_use(m->e, -1, 0, m->in_use);
     for (int j = 0; j < map->n_in; j++)
         if (m->t->end_column[j] >= 0)
-            m->gradient[m->t->end_column[j]] += weighted(m, NULL, map, 0, j);
+            m->gradient[m->t->end_column[j]] += weighted(m, NULL, j);
 }
 
 static void fill_gradient(struct measure *m)

@@ -35,18 +35,14 @@ static moray_status allocate_phase(struct witness *e, int p, bool differences)
     const moray_map *map = cache_of(e, p)->map;
     const size_t n_in = (size_t)map->n_in, n_out = (size_t)map->n_out,
                  nq = (size_t)e->solution->transcription->ocp->phase[p].nq;
-    const size_t block = n_in * n_out, entries = differences ? (size_t)layout_of(e, p)->nodes * block : 0;
     struct phase_witness *phase = &e->phase[p];
-    phase->size = calloc(n_in + n_out + nq + block + 3 * entries, sizeof *phase->size);
+    phase->size = calloc(n_in + n_out + nq + n_in * n_out, sizeof *phase->size);
     if (!phase->size)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     phase->out_size = phase->size + n_in;
     phase->integral = phase->out_size + n_out;
     phase->slope = phase->integral + nq;
-    phase->jac = phase->slope + block;
-    phase->doubt = phase->jac + entries;
-    phase->kink = phase->doubt + entries;
-    return moray_ok();
+    return differences ? moray_kept_new(&phase->kept, map, layout_of(e, p)->nodes) : moray_ok();
 }
 
 static moray_status allocate(struct witness *e, bool differences)
@@ -54,13 +50,12 @@ static moray_status allocate(struct witness *e, bool differences)
     const struct transcription *t = e->solution->transcription;
     const size_t n_in = (size_t)t->endpoint->n_in, n_out = (size_t)t->endpoint->n_out;
     e->phase = calloc((size_t)t->ocp->phases, sizeof *e->phase);
-    e->end_size = calloc(n_in + n_out + 3 * n_in * n_out, sizeof *e->end_size);
+    e->end_size = calloc(n_in + n_out, sizeof *e->end_size);
     if (!e->phase || !e->end_size)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     e->end_out_size = e->end_size + n_in;
-    e->end_jac = e->end_out_size + n_out;
-    e->end_doubt = e->end_jac + n_in * n_out;
-    e->end_kink = e->end_doubt + n_in * n_out;
+    if (differences)
+        MORAY_TRY(moray_kept_new(&e->end, t->endpoint, 1));
     for (int p = 0; p < t->ocp->phases; p++)
         MORAY_TRY(allocate_phase(e, p, differences));
     return moray_ok();
@@ -68,8 +63,11 @@ static moray_status allocate(struct witness *e, bool differences)
 
 void moray_witness_free(struct witness *e)
 {
-    for (int p = 0; e->phase && p < e->solution->transcription->ocp->phases; p++)
+    for (int p = 0; e->phase && p < e->solution->transcription->ocp->phases; p++) {
         free(e->phase[p].size);
+        moray_kept_free(&e->phase[p].kept);
+    }
+    moray_kept_free(&e->end);
     free(e->phase);
     free(e->end_size);
     *e = (struct witness){0};
@@ -137,23 +135,31 @@ static void take_in_use(struct witness *e, int p)
                        cache_of(e, p)->jac[n * map->jac.nnz + k]);
 }
 
+static moray_status difference_node(struct phase_witness *w, const double *in, const double *step)
+{
+    struct kept *k = &w->kept;
+    const size_t block = (size_t)k->map->n_in * (size_t)k->map->n_out;
+    MORAY_TRY(moray_difference_columns(k->map, in, step, k->jac, k->doubt, k->kink));
+    for (size_t i = 0; i < block; i++)
+        note_slope(&w->slope[i], k->jac[i]);
+    return moray_kept_add(k);
+}
+
 static moray_status difference_phase(struct witness *e, int p)
 {
     const struct phase_cache *cache = cache_of(e, p);
-    const size_t n_in = (size_t)cache->map->n_in, block = n_in * (size_t)cache->map->n_out;
+    const size_t n_in = (size_t)cache->map->n_in;
     double *step = calloc(n_in, sizeof *step);
     moray_status status = step ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for the certificate");
     for (size_t i = 0; i < n_in && step; i++) {
         step[i] = fmax(e->phase[p].size[i], 0.1 * least_part * width_of(bounds_of(e, p, (int)i)));
         step[i] = step[i] > 0 ? step[i] : 1;
     }
-    const struct phase_witness *w = &e->phase[p];
     for (size_t n = 0; n < (size_t)layout_of(e, p)->nodes && !moray_failed(status); n++)
         if (layout_of(e, p)->node[n].collocated)
-            status = moray_difference_columns(cache->map, cache->in + n * n_in, step, w->jac + n * block,
-                                              w->doubt + n * block, w->kink + n * block);
-    for (size_t k = 0; k < (size_t)layout_of(e, p)->nodes * block; k++)
-        note_slope(&w->slope[k % block], w->jac[k]);
+            status = difference_node(&e->phase[p], cache->in + n * n_in, step);
+        else
+            moray_kept_skip(&e->phase[p].kept);
     free(step);
     return status;
 }
@@ -319,7 +325,8 @@ static moray_status gather(struct witness *e, bool differences)
     MORAY_TRY(size_end_outputs(e));
     if (!differences)
         return moray_ok();
-    return moray_difference_columns(t->endpoint, t->end_in, e->end_size, e->end_jac, e->end_doubt, e->end_kink);
+    MORAY_TRY(moray_difference_columns(t->endpoint, t->end_in, e->end_size, e->end.jac, e->end.doubt, e->end.kink));
+    return moray_kept_add(&e->end);
 }
 
 static moray_status create(struct witness *e, const moray_solution *solution, bool differences)
@@ -344,6 +351,13 @@ moray_status moray_witness_of_sizes(struct witness *e, const moray_solution *sol
 bool moray_witness_speaks(double doubt, double kink, double size, double out_size)
 {
     return (doubt + fabs(kink)) * size <= silent * out_size;
+}
+
+const struct kept *moray_witness_at(const struct witness *e, int p, int node)
+{
+    const struct kept *kept = p < 0 ? &e->end : &e->phase[p].kept;
+    moray_kept_show(kept, p < 0 ? 0 : node);
+    return kept;
 }
 
 void moray_witness_in_use(const struct witness *e, int p, int node, double *jac)

@@ -6,23 +6,23 @@
 #ifndef SRC_OCP_WITNESS_H
 #define SRC_OCP_WITNESS_H
 
+#include "ocp/certificate/kept.h"
 #include "ocp/solution.h"
 
 struct phase_witness {
-    double *size;        // [n_in] of x, u, s, t: how far each moves in the phase
-    double *out_size;    // [n_out] of f, c, g: how far each moves where an input moves by its size
-    double *integral;    // [nq] size of q
-    double *slope;       // [n_in][n_out] the largest derivatives along the phase
-    double *jac, *doubt; // [nodes][n_in][n_out]; doubt: how far off rounding and bends may have led
-    double *kink;        // [nodes][n_in][n_out]: the slopes on either side are jac + kink and jac - kink
+    double *size;     // [n_in] of x, u, s, t: how far each moves in the phase
+    double *out_size; // [n_out] of f, c, g: how far each moves where an input moves by its size
+    double *integral; // [nq] size of q
+    double *slope;    // [n_in][n_out] the largest derivatives along the phase
+    struct kept kept; // differences at every node; doubt: how far off rounding and bends may have led
 };
 
 struct witness {
     const moray_solution *solution;
     struct phase_witness *phase;
-    double *end_size, *end_out_size;        // [n_in], [n_out] of the endpoint
-    double *end_jac, *end_doubt, *end_kink; // [n_in][n_out]
-    double duration;                        // of the longest phase
+    double *end_size, *end_out_size; // [n_in], [n_out] of the endpoint
+    struct kept end;                 // its differences, as of one node
+    double duration;                 // of the longest phase
 };
 
 // Error: MORAY_MEMORY. Free with moray_witness_free, which is safe after an error.
@@ -36,6 +36,9 @@ moray_status moray_witness_of_sizes(struct witness *e, const moray_solution *sol
 // Entries that differences of this quality, or a kink, say nothing about keep the derivatives in use: whether they do
 // not.
 bool moray_witness_speaks(double doubt, double kink, double size, double out_size);
+
+// Differences at a node of phase p, or at the endpoint (p < 0): its block is the one at hand.
+const struct kept *moray_witness_at(const struct witness *e, int p, int node);
 
 // size[columns] and size[rows] of the programme.
 void moray_witness_columns(const struct witness *e, double *size);
