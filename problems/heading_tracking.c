@@ -21,7 +21,7 @@ static const moray_option options[] = {
     STEER_NUMBER(INT, heading_job, gait_evaluations, "solver", "gait_evaluations", 0, 10000, NULL,
                  "gaits tried for the first-principles plan; 0: the paper's"),
     STEER_RECEDING_OPTIONS(heading_job),
-    STEER_TUNING_OPTION(heading_job, "simulations spent on tuning each gain, twice as many for a gain and a lead"),
+    STEER_TUNING_OPTIONS(heading_job),
 };
 
 static const moray_program program = {
@@ -38,8 +38,7 @@ int main(int argc, char **argv)
                        .horizon = NAN,
                        .max_error = INFINITY,
                        .gait_evaluations = 12};
-    job.steer.weight_steering = 0.003;
+    job.steer.weight_steering = 3e-5; // the rivals pay for none
     job.steer.refinements = 8;
-    job.steer.evaluations = 15;
     return steer_main(&program, &heading_steering, argc, argv, &job.steer);
 }

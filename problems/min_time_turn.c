@@ -17,7 +17,7 @@ static const moray_option options[] = {
     STEER_NUMBER(REAL, turn_job, band, "problem", "band_deg", 1e-3, 90, "deg",
                  "around the heading wanted, within which the turn counts as done"),
     STEER_MESH_OPTIONS(turn_job),
-    STEER_TUNING_OPTION(turn_job, "simulations spent on tuning, for every number that is tuned"),
+    STEER_TUNING_OPTIONS(turn_job),
 };
 
 static const moray_program program = {
@@ -35,7 +35,6 @@ int main(int argc, char **argv)
     const double theta_max = 20 * DEG, omega = 120 * DEG, delta = 40 * DEG;
     job.steer.weight_steering = 0.001;
     job.steer.intervals_per_period = 6;
-    job.steer.evaluations = 30;
     job.steer.snake.current[0] = job.steer.snake.current[1] = 0.1;
     job.steer.input.theta_max[0] = job.steer.input.theta_max[1] = theta_max;
     job.steer.input.omega[0] = job.steer.input.omega[1] = omega;

@@ -28,7 +28,7 @@ static const moray_option options[] = {
               .help =
                   "first-principles plan on the gait fastest straight ahead within the limits; no: on the first gait"),
     STEER_RECEDING_OPTIONS(path_job),
-    STEER_TUNING_OPTION(path_job, "simulations spent on tuning, for every number that is tuned"),
+    STEER_TUNING_OPTIONS(path_job),
 };
 
 static const moray_program program = {
@@ -50,7 +50,6 @@ int main(int argc, char **argv)
                     .reach = 3,
                     .find_gait = true};
     job.steer.weight_steering = 0.3;
-    job.steer.evaluations = 10;
     job.steer.snake.current[0] = -0.05;
     job.steer.snake.current[1] = 0.1;
     return steer_main(&program, &path_steering, argc, argv, &job.steer);

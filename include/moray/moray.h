@@ -13,6 +13,7 @@
 #include "moray/control/path.h"
 #include "moray/control/periodic_orbit.h"
 #include "moray/control/receding_horizon.h"
+#include "moray/control/tuning.h"
 #include "moray/dense.h"
 #include "moray/export.h"
 #include "moray/key_value.h"

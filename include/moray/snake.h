@@ -11,6 +11,7 @@
 #include "moray/snake/gait_problem.h"
 #include "moray/snake/gait_search.h"
 #include "moray/snake/heading.h"
+#include "moray/snake/heading_law.h"
 #include "moray/snake/ladder.h"
 #include "moray/snake/model.h"
 #include "moray/snake/options.h"

@@ -42,7 +42,15 @@
         STEER_NUMBER(REAL, settings, steer.look_ahead_periods, "receding", "look_ahead_periods", 0.1, 1000, NULL,      \
                      "undulations that a plan looks ahead")
 
-#define STEER_TUNING_OPTION(settings, text)                                                                            \
-    STEER_NUMBER(INT, settings, steer.evaluations, "baseline", "evaluations", 1, 10000, NULL, text)
+#define STEER_TUNING_OPTIONS(settings)                                                                                 \
+    STEER_NUMBER(INT, settings, steer.starts, "baseline", "starts", 1, 1000, NULL,                                     \
+                 "searches for the numbers of each rival, from the best of four times as many points and from the "    \
+                 "rivals that have fewer numbers"),                                                                    \
+        STEER_NUMBER(INT, settings, steer.evaluations, "baseline", "evaluations", 1, 10000, NULL,                      \
+                     "simulations spent on each search, for every number"),                                            \
+    {                                                                                                                  \
+        .flag = "jobs", .argument = "N", .type = MORAY_OPTION_INT, MORAY_AT(settings, steer.jobs), .min = 0,           \
+        .max = 10000, .help = "processes that tune; 0: one a processor"                                                \
+    }
 
 #endif

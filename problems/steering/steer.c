@@ -17,6 +17,8 @@ steer_job steer_defaults(void)
                      .refinements = 4,
                      .replan_periods = 1,
                      .look_ahead_periods = 6,
+                     .starts = 12,
+                     .evaluations = 20,
                      .receding = true};
     job.snake.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "radau5");

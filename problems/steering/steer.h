@@ -11,7 +11,7 @@
 #include "moray/moray.h"
 #include "moray/snake.h"
 
-enum { STEER_TRIALS = 10, STEER_GAITS = 3, STEER_NUMBERS = 4, STEER_SCORES = 6, STEER_TEXT = 1200 };
+enum { STEER_TRIALS = 16, STEER_GAITS = 3, STEER_NUMBERS = 5, STEER_SUBSETS = 3, STEER_SCORES = 6, STEER_TEXT = 1600 };
 
 typedef struct steer_input {
     double theta_max[2], omega[2], delta[2]; // ranges
@@ -26,11 +26,10 @@ typedef struct steer_trial steer_trial;
 
 // A number that laws are tuned by.
 typedef struct steer_number {
-    const char *key;     // in JSON
-    const char *column;  // of the table
-    double unit;         // there
-    bool logarithmic;    // searched so
-    double lower, upper; // searched within
+    const char *key;    // in JSON
+    const char *column; // of the table
+    double unit;        // there
+    moray_tuned_number searched;
 } steer_number;
 
 // A mean or largest value by which a trial is judged, in JSON.
@@ -61,6 +60,7 @@ typedef struct steer_steersman {
     moray_path_seeker seeker;
     union {
         moray_guidance guidance;
+        moray_heading_law law;
         moray_heading_replanner heading;
         moray_path_replanner path;
         struct steer_bang {
@@ -79,7 +79,6 @@ typedef struct steer_law {
     moray_status (*set)(steer_steersman *steersman); // the controller; NULL: the plan, blindly
     unsigned tuned;                                  // bits of the numbers that are
     double start[STEER_NUMBERS];                     // of the search; of those not tuned the value, NaN: it has none
-    bool afresh;                                     // searched from there even after another law
     int curve;                                       // from 1: which of the figures; 0: none
 } steer_law;
 
@@ -94,7 +93,7 @@ typedef struct steer_program {
     const steer_law *laws;
     const steer_number *numbers; // [n_numbers], or copied to the job where the ranges are found along the way
     int n_numbers;
-    double x_tolerance, f_tolerance, rough_per_second; // of tuning; samples a second of its simulations
+    double rough_per_second; // samples of the simulations that tune
     // Where and how long the trial swims.
     void (*start)(steer_steersman *steersman, moray_swim_closed_loop_spec *spec);
     // Fills score[] in SI units; returns what tuning minimises.
@@ -130,13 +129,15 @@ typedef struct steer_program {
 struct steer_trial {
     const char *name;
     const steer_law *law;
-    int gait;                               // swum
-    moray_model plan;                       // whose plan
-    const steer_trial *like;                // whose numbers the search starts from; NULL: none
-    double number[STEER_NUMBERS];           // tuned; gains of the control-oriented model
-    int evaluations;                        // spent on tuning these
-    bool run, barred;                       // barred: takes more than the power allowed
-    double score[2][STEER_SCORES], cost[2]; // by the model swum on
+    int gait;                                 // swum
+    moray_model plan;                         // whose plan
+    const steer_trial *subset[STEER_SUBSETS]; // laws that leave some of its numbers out: tuned before, its search
+                                              // starts from theirs too, so that it is never worse; NULL: none
+    double number[STEER_NUMBERS];             // tuned; gains of the control-oriented model
+    double tuned_cost;                        // of these, as tuning had it
+    int evaluations, searches, agree;         // spent on tuning; local searches, and those that came to the same
+    bool run, barred;                         // barred: takes more than the power allowed
+    double score[2][STEER_SCORES], cost[2];   // by the model swum on
     moray_receding_horizon_record record[2];
 };
 
@@ -147,7 +148,8 @@ struct steer_job {
     moray_snake_options snake; // model: of the last plan; with fp there is one on the control-oriented model before
     steer_input input;
     double weight_steering;
-    int intervals_per_period, refinements, evaluations;
+    int intervals_per_period, refinements;
+    int starts, evaluations, jobs; // of tuning, as of moray_tuning_settings
     double replan_periods, look_ahead_periods;
     bool receding;
     // found along the way

@@ -3,11 +3,13 @@
 // A trial swims on both models, its numbers tuned on the first-principles one.
 #include "steer.h"
 
-// How a simulation is run: tolerance, samples a second.
+// How a simulation is run: with the joints' own dynamics to a tolerance, or exactly on the gait; samples a second.
 typedef struct accuracy {
+    const moray_swim_on_gait *on_gait;
     double tolerance, per_second;
 } accuracy;
-static const accuracy careful = {1e-8, 20};
+static const accuracy careful = {.tolerance = 1e-8, .per_second = 20};
+static const moray_swim_on_gait quick = {.steps = 24};
 
 // ---- Swimming ------------------------------------------------------------------------------------------------------
 
@@ -32,7 +34,8 @@ static moray_status swim(steer_steersman *h, accuracy how, moray_swim_closed_loo
                                         .straight = &job->straight[h->trial->gait][h->model],
                                         .current = {job->snake.current[0], job->snake.current[1]},
                                         .controller = &h->controller,
-                                        .tolerance = how.tolerance};
+                                        .tolerance = how.tolerance,
+                                        .on_gait = how.on_gait};
     job->program->start(h, &spec);
     spec.intervals = (int)ceil(how.per_second * spec.duration);
     return moray_swim_closed_loop_run(closed_loop, &spec);
@@ -64,8 +67,7 @@ static moray_status try(const steer_job *job, steer_trial *trial, moray_model mo
 
 typedef struct tuning {
     const steer_job *job;
-    steer_trial *trial;
-    moray_status status; // of the last simulation
+    const steer_trial *trial;
 } tuning;
 
 static bool tuned(const steer_trial *trial, int number)
@@ -73,69 +75,71 @@ static bool tuned(const steer_trial *trial, int number)
     return trial->law->tuned & 1u << number;
 }
 
-static void read(const steer_job *job, steer_trial *trial, const double *x)
+static void set_numbers(steer_trial *trial, const double *x)
 {
     for (int k = 0; k < STEER_NUMBERS; k++)
         if (tuned(trial, k))
-            trial->number[k] = job->number[k].logarithmic ? exp(*x++) : *x++;
+            trial->number[k] = *x++;
 }
 
-static bool evaluate(void *self, const double *x, double *f, double *c, double *gradient, double *jacobian)
+static bool evaluate(void *self, const double *x, double *cost)
 {
-    tuning *t = self;
-    const accuracy rough = {1e-6, t->job->program->rough_per_second};
-    (void)c, (void)gradient, (void)jacobian;
-    read(t->job, t->trial, x);
-    t->status = try(t->job, t->trial, MORAY_FIRST_PRINCIPLES, rough);
-    *f = t->trial->cost[MORAY_FIRST_PRINCIPLES];
-    moray_ticker_show(&t->job->ticker, "%s: tuning %s: %s %.4g: cost %.5g", t->job->name, t->trial->name,
-                      t->job->number[0].key, t->trial->number[0], *f);
-    return !moray_failed(t->status);
+    const tuning *t = self;
+    const accuracy how = {.on_gait = &quick, .per_second = t->job->program->rough_per_second};
+    steer_trial own = *t->trial;
+    set_numbers(&own, x);
+    const moray_status status = try(t->job, &own, MORAY_FIRST_PRINCIPLES, how);
+    *cost = own.cost[MORAY_FIRST_PRINCIPLES];
+    return !moray_failed(status);
 }
 
-// From these numbers on; keeps what is better than what the trial has.
-static moray_status tune_from(const steer_job *job, steer_trial *trial, const double *number)
+static bool go_on(void *observer)
 {
-    steer_trial own = *trial;
-    tuning t = {.job = job, .trial = &own};
-    double x[STEER_NUMBERS], lower[STEER_NUMBERS], upper[STEER_NUMBERS];
-    moray_search_problem problem = {.lower = lower, .upper = upper, .self = &t, .evaluate = evaluate};
-    for (int k = 0; k < STEER_NUMBERS; k++)
-        if (tuned(trial, k)) {
-            const steer_number *row = &job->number[k];
-            lower[problem.n] = row->logarithmic ? log(row->lower) : row->lower;
-            upper[problem.n] = row->logarithmic ? log(row->upper) : row->upper;
-            x[problem.n++] = row->logarithmic ? log(number[k]) : number[k];
-        }
-    moray_search_settings settings = moray_search_settings_default();
-    moray_search_info info;
-    settings.method = MORAY_SEARCH_COBYLA;
-    settings.x_tolerance = job->program->x_tolerance;
-    settings.f_tolerance = job->program->f_tolerance;
-    settings.max_evaluations = job->evaluations * problem.n;
-    settings.progress = steer_go_on;
-    const moray_status status = moray_search(&problem, &settings, x, &info);
-    MORAY_TRY(steer_interruption());
-    if (moray_failed(status))
-        return status.code == MORAY_NUMERIC ? t.status : status;
-    read(job, &own, x);
-    own.cost[MORAY_FIRST_PRINCIPLES] = info.objective;
-    own.evaluations = trial->evaluations + info.evaluations;
-    if (trial->evaluations == 0 || info.objective < trial->cost[MORAY_FIRST_PRINCIPLES])
-        *trial = own;
-    trial->evaluations = own.evaluations;
-    return moray_ok();
+    (void)observer;
+    return !moray_interrupted();
 }
 
-// From its own start, or from what another law was tuned to, or from both.
+// Where the search starts besides: the law's own numbers, and those of the laws that leave some of them out.
+static int starts_of(const steer_trial *trial, double *at)
+{
+    int rows = 0;
+    for (int i = -1; i < STEER_SUBSETS; i++) {
+        const steer_trial *of = i < 0 ? trial : trial->subset[i];
+        if (!of)
+            continue;
+        for (int k = 0; k < STEER_NUMBERS; k++)
+            if (tuned(trial, k))
+                *at++ = of->number[k];
+        rows++;
+    }
+    return rows;
+}
+
 static moray_status tune(const steer_job *job, steer_trial *trial)
 {
-    double again[STEER_NUMBERS];
+    moray_tuned_number number[STEER_NUMBERS];
+    double from[(STEER_SUBSETS + 1) * STEER_NUMBERS], x[STEER_NUMBERS];
+    tuning t = {job, trial};
+    moray_tuning_problem problem = {.number = number, .cost = evaluate, .self = &t};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
     for (int k = 0; k < STEER_NUMBERS; k++)
-        again[k] = trial->like && tuned(trial->like, k) ? trial->like->number[k] : trial->number[k];
-    if (!trial->like || trial->law->afresh)
-        MORAY_TRY(tune_from(job, trial, trial->number));
-    return trial->like ? tune_from(job, trial, again) : moray_ok();
+        if (tuned(trial, k))
+            number[problem.n++] = job->number[k].searched;
+    settings.starts = job->starts;
+    settings.evaluations = job->evaluations;
+    settings.jobs = job->jobs;
+    settings.go_on = go_on;
+    const int rows = starts_of(trial, from);
+    const moray_status status = moray_tune(&problem, &settings, from, rows, x, &info);
+    MORAY_TRY(steer_interruption());
+    MORAY_TRY(status);
+    set_numbers(trial, x);
+    trial->tuned_cost = info.cost;
+    trial->evaluations = info.evaluations;
+    trial->searches = info.searches;
+    trial->agree = info.agree;
+    return moray_ok();
 }
 
 // ---- All -----------------------------------------------------------------------------------------------------------
@@ -151,8 +155,10 @@ static moray_status run_trial(const steer_job *job, steer_trial *trial)
 {
     const steer_score *first = job->program->scores;
     moray_ticker_show(&job->ticker, "%s: %s", job->name, trial->name);
-    if (trial->law->tuned)
+    if (trial->law->tuned) {
+        moray_ticker_show(&job->ticker, "%s: tuning %s", job->name, trial->name);
         MORAY_TRY(tune(job, trial));
+    }
     for (int model = 0; model < 2; model++) {
         MORAY_TRY(steer_interruption());
         MORAY_TRY(try(job, trial, (moray_model)model, careful));

@@ -2,7 +2,7 @@
 # The program min_time_turn as a user meets it. Arguments: the program, the source directory.
 . "$2/tests/program.sh"
 
-run --quiet --json --out results --angle 45 --set evaluations=2
+run --quiet --json --out results --angle 45 --set starts=1 --set evaluations=2
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
 for file in summary.json report.html trajectory.csv heading.svg offset.svg path.svg joints.svg; do
     check "--out has $file" [ -s results/$file ]
@@ -15,18 +15,18 @@ check "swum blindly on its own model the plan comes to its heading" near "$final
 check "the offset keeps its limit" eval \
     'awk -F , "NR > 1 && (\$7 > 0.0797 || \$7 < -0.0797) { bad = 1 } END { exit bad }" results/trajectory.csv'
 
-run --quiet --model control --current 0,0 --angle -30 --set evaluations=1
+run --quiet --model control --current 0,0 --angle -30 --set starts=1 --set evaluations=1
 check "the other way round: $(cat err)" [ $code -eq 0 ]
 check "it says what limits the turn" grep -q 'limit of the offset decides\|rate of the offset decides\|decide together' out
 check "and how the undulation counts" grep -q 'heading swings with every stroke' out
 
 if thorough; then
-run --quiet --model control --current 0,0 --angle 45 --set end_m=4,1.5 --set evaluations=1
+run --quiet --model control --current 0,0 --angle 45 --set end_m=4,1.5 --set starts=1 --set evaluations=1
 check "from pose to pose: $(cat err)" [ $code -eq 0 ]
 check "near the end position" grep -q 'control-oriented plan comes within\|plan + feedback comes within' out
 fi
 
-run --quiet --model control --angle 90 --set end_m=-4,2 --current 0.4,0 --set evaluations=1
+run --quiet --model control --angle 90 --set end_m=-4,2 --current 0.4,0 --set starts=1 --set evaluations=1
 check "a current too strong: exit 1" [ $code -eq 1 ]
 check "said with its numbers: $(cat err)" eval 'one_line && grep -q "current of 0.4 m/s is stronger than the robot" err'
 

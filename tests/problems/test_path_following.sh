@@ -3,7 +3,7 @@
 . "$2/tests/program.sh"
 
 printf 'x_m,y_m\n0,0\n5,0\n9,2\n' >way.csv
-run --quiet --json --out results --path way.csv --set start_m=0,0.2 --set evaluations=2 --set intervals_per_period=4 \
+run --quiet --json --out results --path way.csv --set start_m=0,0.2 --set starts=1 --set evaluations=2 --set intervals_per_period=4 \
     --set weight_steering=3
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
 for file in summary.json report.html trajectory.csv across.svg offset.svg path.svg joints.svg; do
@@ -23,10 +23,10 @@ check "and stays on the path" near "$(block 'first-principles plan' settled_larg
 check "receding horizon arrives" near "$(block 'receding, first-principles' time_s)" "$planned" 3
 check "faster than real time" eval '[ "$(number times_real_time | cut -d . -f 1)" -ge 1 ]'
 
-run --quiet --model control --path "0,0 6,0" --current=0,0.3 --set evaluations=1
+run --quiet --model control --path "0,0 6,0" --current=0,0.3 --set starts=1 --set evaluations=1
 check "a current too strong: exit 1" [ $code -eq 1 ]
 check "said with leg and numbers: $(cat err)" eval 'one_line && grep -q "on leg 1.*0.3 m/s run across.*through the water is 0.2" err'
-run --quiet --model control --path "0,0 5,0 5,5" --set radius_m=0.3 --set tube_m=0.1 --set evaluations=1 \
+run --quiet --model control --path "0,0 5,0 5,5" --set radius_m=0.3 --set tube_m=0.1 --set starts=1 --set evaluations=1 \
     --set receding=no --current 0,0
 check "a corner too tight for the tube: exit 1" [ $code -eq 1 ]
 check "said with leg and numbers: $(cat err)" eval 'one_line && grep -q "tube_m = 0.1.*behind leg 1.*0.3 m.*deg/s" err'

@@ -22,6 +22,7 @@ typedef struct moray_swim_closed_loop_spec {
     double duration;                         // [s]
     int intervals;                           // recorded, of equal length
     double tolerance;                        // of the simulation, relative and absolute
+    const moray_swim_on_gait *on_gait;       // simulated so, to no tolerance; NULL: with the joints' own dynamics
     moray_swim_observer *observe;            // of the samples; false ends the closed_loop; NULL: nobody
     void *observer;
 } moray_swim_closed_loop_spec;

@@ -64,6 +64,18 @@ typedef struct moray_swim_plan {
 MORAY_API moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings,
                                       const moray_swim_plan *plan, double *x, double *energy);
 
+// How a swimmer is simulated whose joints are on its gait.
+typedef struct moray_swim_on_gait {
+    int steps;              // of the classical Runge-Kutta method, at least so many a period; at least 8
+    double current_turning; // of the swimmer's current, from t0 on [rad/s]
+} moray_swim_on_gait;
+
+// The same for a swimmer whose joints begin on the gait, one without a series, with the offset first commanded: (34)
+// keeps them on it, and how the offset follows its command is known in closed form, so that only the body is
+// integrated. Ten times faster. Error: MORAY_INPUT, MORAY_MEMORY, MORAY_NUMERIC, that of the controller's `measure`.
+MORAY_API moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_plan *plan,
+                                              const moray_swim_on_gait *how, double *x, double *energy);
+
 // A recorded motion of n samples; row k of x and u belongs to t[k].
 typedef struct moray_swim_track {
     int capacity, n, n_states, n_joints;

@@ -8,27 +8,31 @@ static const double command_change = DEG; // that calls for a new plan
 
 // ---- Laws ----------------------------------------------------------------------------------------------------------
 
-// phi_0 = k (theta_ref - theta), or of theta_ref ahead of its time; a plan, blindly, and with k (theta_plan - theta);
-// plans made anew from the measured state, without knowing the reference ahead too.
-enum { FEEDBACK, FEEDBACK_AHEAD, PLAN, BOTH, RECEDING, RECEDING_UNKNOWING };
-enum { GAIN, LEAD, NUMBERS };
+// Laws of moray_heading_gains, by what they know and have; a plan, blindly, and with k (theta_plan - theta); plans made
+// anew from the measured state, without knowing the reference ahead too.
+enum { P, P_FORWARD, PID, P_AHEAD, ALL, PLAN, BOTH, RECEDING, RECEDING_UNKNOWING };
+enum { GAIN, FORWARD, LEAD, INTEGRAL, DERIVATIVE, NUMBERS };
 enum { RMS, FINAL, LARGEST, POWER, SCORES }; // as of moray_heading_score
 
 static const steer_number numbers[NUMBERS] = {
-    [GAIN] = {"gain_m_rad", "gain, cm/deg", 100 * DEG, .logarithmic = true, .lower = 0.002, .upper = 2},
-    [LEAD] = {"lead_s", "ahead, s", 1, .upper = 8},
+    [GAIN] = {"gain_m_rad", "gain, cm/deg", 100 * DEG, .searched = {MORAY_TUNED_LOGARITHMIC, 0.002, 20, 0}},
+    [FORWARD] = {"forward_m_s_rad", "forward, cm s/deg", 100 * DEG, .searched = {MORAY_TUNED_WITH_ZERO, 0, 20, 0.05}},
+    [LEAD] = {"lead_s", "ahead, s", 1, .searched = {MORAY_TUNED_LINEAR, 0, 8, 0}},
+    [INTEGRAL] = {"integral_1_s", "integral, 1/s", 1, .searched = {MORAY_TUNED_WITH_ZERO, 0, 20, 0.01}},
+    [DERIVATIVE] = {"derivative_s", "derivative, s", 1, .searched = {MORAY_TUNED_WITH_ZERO, 0, 5, 0.05}},
 };
-
-static double reference_ahead(const moray_swim_sample *sample, void *self)
-{
-    const steer_steersman *h = self;
-    double rate;
-    return moray_reference_at(&((const heading_job *)h->job)->reference, sample->t + h->trial->number[LEAD], &rate);
-}
+static const double smoothing = 0.5; // of the heading whose rate the derivative is [s]
 
 static moray_status set_feedback(steer_steersman *h)
 {
-    steer_set_feedback(h, h->trial->number[GAIN], reference_ahead, NULL, h);
+    const double *number = h->trial->number;
+    h->own.law = (moray_heading_law){
+        .gains = {number[GAIN], number[FORWARD], number[LEAD], number[INTEGRAL], number[DERIVATIVE]},
+        .reference = &((const heading_job *)h->job)->reference,
+        .feedback = &h->feedback,
+        .scale = steer_offset_ratio(h->job, h->trial->gait, MORAY_CONTROL_ORIENTED, h->model),
+        .smoothing = smoothing};
+    steer_set_feedback(h, number[GAIN], moray_heading_law_target, moray_heading_law_feed, &h->own.law);
     return moray_ok();
 }
 
@@ -48,25 +52,37 @@ static moray_status set_receding(steer_steersman *h)
 }
 
 static const steer_law laws[] = {
-    [FEEDBACK] = {"feedback", .set = set_feedback, .tuned = 1 << GAIN, .start = {0.12, 0}, .curve = 1},
-    [FEEDBACK_AHEAD] = {"feedback", .preview = true, .set = set_feedback, .tuned = 1 << GAIN | 1 << LEAD,
-                        .start = {0.12, 2.5}, .curve = 2},
-    [PLAN] = {"plan", STEER_PLANNED, .preview = true, .start = {NAN, 0}, .curve = 3},
+    [P] = {"feedback", .set = set_feedback, .tuned = 1 << GAIN, .start = {0.12}, .curve = 1},
+    [P_FORWARD] = {"feedback and rate", .set = set_feedback, .tuned = 1 << GAIN | 1 << FORWARD, .start = {0.12, 0.2}},
+    [PID] = {"PID", .set = set_feedback, .tuned = 1 << GAIN | 1 << INTEGRAL | 1 << DERIVATIVE,
+             .start = {0.12, .0, 0, 0.05, 0.5}},
+    [P_AHEAD] = {"feedback", .preview = true, .set = set_feedback, .tuned = 1 << GAIN | 1 << LEAD,
+                 .start = {0.12, 0, 2.5}},
+    [ALL] = {"PID and rate", .preview = true, .set = set_feedback, .tuned = (1 << NUMBERS) - 1,
+             .start = {0.12, 0.2, 2.5, 0.05, 0.5}, .curve = 2},
+    [PLAN] = {"plan", STEER_PLANNED, .preview = true, .start = {NAN, NAN, 0, NAN, NAN}, .curve = 3},
     [BOTH] = {"plan and feedback", STEER_PLANNED, .preview = true, .set = steer_set_both, .tuned = 1 << GAIN,
-              .start = {0.12, 0}},
-    [RECEDING] = {"receding", STEER_RECEDING, .preview = true, .set = set_receding, .start = {NAN, 0}},
-    [RECEDING_UNKNOWING] = {"receding", STEER_RECEDING, .set = set_receding, .start = {NAN, 0}},
+              .start = {0.12, NAN, 0, NAN, NAN}},
+    [RECEDING] = {"receding", STEER_RECEDING, .preview = true, .set = set_receding, .start = {NAN, NAN, 0, NAN, NAN}},
+    [RECEDING_UNKNOWING] = {"receding", STEER_RECEDING, .set = set_receding, .start = {NAN, NAN, 0, NAN, NAN}},
 };
 
+// On the gait of the last plan all that feedback can be given; on the paper's, where another was found, the plainest.
 static void choose_trials(steer_job *job)
 {
     const moray_model any = MORAY_CONTROL_ORIENTED;
     const int found = 1 + (int)job->snake.model;
-    const bool given = steer_gait_given(job);
-    if (!given)
-        steer_add(job, "feedback, paper's gait", &laws[FEEDBACK], 0, any);
-    steer_add(job, given ? "feedback" : "feedback, gait found", &laws[FEEDBACK], found, any);
-    steer_add(job, given ? "feedback ahead" : "feedback ahead, gait found", &laws[FEEDBACK_AHEAD], found, any);
+    if (!steer_gait_given(job))
+        steer_add(job, "P, paper's gait", &laws[P], 0, any);
+    steer_trial *p = steer_add(job, "P", &laws[P], found, any);
+    steer_trial *rate = steer_add(job, "P, rate fed forward", &laws[P_FORWARD], found, any);
+    steer_trial *pid = steer_add(job, "PID", &laws[PID], found, any);
+    steer_trial *ahead = steer_add(job, "P ahead", &laws[P_AHEAD], found, any);
+    steer_trial *all = steer_add(job, "PID ahead, rate fed forward", &laws[ALL], found, any);
+    rate->subset[0] = pid->subset[0] = ahead->subset[0] = p;
+    all->subset[0] = rate;
+    all->subset[1] = pid;
+    all->subset[2] = ahead;
     steer_add_plans(job, &laws[PLAN], &laws[BOTH]);
     steer_add_receding(job, &laws[RECEDING]);
     if (job->receding)
@@ -142,20 +158,38 @@ static void headline(const steer_job *steer, FILE *file)
     fprintf(file, "reference %s over %g s", job->reference_text, job->horizon);
 }
 
+static const steer_trial *trial_of(const steer_job *job, int law)
+{
+    return steer_best(job, 1u << law, RMS);
+}
+
+static void say_errors(const steer_job *job, const char *before, const int *of, int n, char *text, size_t size)
+{
+    moray_text_add(text, size, "%s", before);
+    for (int k = 0; k < n; k++) {
+        const steer_trial *trial = trial_of(job, of[k]);
+        if (trial)
+            moray_text_add(text, size, "%s%s %.4g", k ? ", " : " ", trial->name, trial->score[1][RMS] / DEG);
+    }
+}
+
+// Rivals beside the plan of the same gait, each group with who knows as much.
 static void conclude(const steer_job *job, char *text, size_t size)
 {
-    const steer_trial *optimised = steer_best(job, 1 << PLAN | 1 << BOTH | 1 << RECEDING, RMS);
-    const steer_trial *plain = steer_best(job, 1 << FEEDBACK, RMS);
-    const steer_trial *ahead = steer_best(job, 1 << FEEDBACK_AHEAD, RMS);
-    const double ours = optimised->score[1][RMS] / DEG, theirs = plain->score[1][RMS] / DEG;
-    const double cunning = ahead->score[1][RMS] / DEG;
-    snprintf(
+    static const int ahead[] = {P_AHEAD, ALL}, now[] = {P, P_FORWARD, PID}, planner[] = {BOTH, RECEDING},
+                     unknowing[] = {RECEDING_UNKNOWING};
+    const steer_trial *best = steer_best(job, 1 << P_AHEAD | 1 << ALL, RMS), *plan = trial_of(job, BOTH);
+    const double ratio = plan->score[1][RMS] / best->score[1][RMS];
+    *text = 0;
+    moray_text_add(
         text, size,
-        "First-principles model, same limits: the best optimised steering (%s) has an RMS heading error of %.3f "
-        "deg, the tuned heading feedback (%s) %.3f deg%s. Given the reference ahead of its time, as the plans are, "
-        "the tuned feedback comes to %.3f deg: %s.",
-        optimised->name, ours, plain->name, theirs, ours < theirs ? "" : ": the optimised one LOSES", cunning,
-        ours < cunning ? "still behind" : "ahead of the plans");
+        "First-principles model, same limits, RMS heading error in deg. Told the reference ahead of its time:");
+    say_errors(job, "", planner, 2, text, size);
+    say_errors(job, "; tuned feedback:", ahead, 2, text, size);
+    say_errors(job, ". Told no more than the reference and its rate now:", unknowing, job->receding, text, size);
+    say_errors(job, "; tuned feedback:", now, 3, text, size);
+    moray_text_add(text, size, ". Plan with feedback against the best rival who knows as much: %.3g times its error%s.",
+                   ratio, ratio < 1 ? "" : ": the plan LOSES");
 }
 
 static void notes(const steer_job *steer, FILE *file)
@@ -282,8 +316,6 @@ const steer_program heading_steering = {
     .laws = laws,
     .numbers = numbers,
     .n_numbers = NUMBERS,
-    .x_tolerance = 3e-3,
-    .f_tolerance = 3e-4,
     .rough_per_second = 10,
     .start = start,
     .judge = judge,

@@ -11,10 +11,10 @@ enum { GAIN, LOOKAHEAD, AHEAD, INTEGRAL, NUMBERS };
 enum { RMS, SETTLED_RMS, SETTLED_LARGEST, TIME, POWER, COST, SCORES }; // as of moray_path_score; what tuning minimises
 
 static const steer_number numbers[NUMBERS] = {
-    [GAIN] = {"gain_m_rad", "gain, cm/deg", 100 * DEG, .logarithmic = true, .lower = 0.002, .upper = 2},
-    [LOOKAHEAD] = {"lookahead_m", "lookahead, m", 1, .logarithmic = true, .lower = 0.1, .upper = 20},
-    [AHEAD] = {"ahead_m", "ahead, m", 1, .upper = 5},
-    [INTEGRAL] = {"integral_gain_m_s", "integral, cm/s", 100, .upper = 0.3},
+    [GAIN] = {"gain_m_rad", "gain, cm/deg", 100 * DEG, .searched = {MORAY_TUNED_LOGARITHMIC, 0.002, 20, 0}},
+    [LOOKAHEAD] = {"lookahead_m", "lookahead, m", 1, .searched = {MORAY_TUNED_LOGARITHMIC, 0.1, 20, 0}},
+    [AHEAD] = {"ahead_m", "ahead, m", 1, .searched = {MORAY_TUNED_LINEAR, 0, 5, 0}},
+    [INTEGRAL] = {"integral_gain_m_s", "integral, cm/s", 100, .searched = {MORAY_TUNED_WITH_ZERO, 0, 0.3, 1e-3}},
 };
 
 static moray_status set_guidance(steer_steersman *h)
@@ -49,23 +49,31 @@ static moray_status set_receding(steer_steersman *h)
 enum { SIGHT = 1 << GAIN | 1 << LOOKAHEAD | 1 << AHEAD };
 
 static const steer_law laws[] = {
-    [LOS] = {"line of sight", .set = set_guidance, .tuned = SIGHT, .start = {0.06, 0.4, 0.4, 0}, .afresh = true,
-             .curve = 1},
-    [ILOS] = {"line of sight", .set = set_guidance, .tuned = SIGHT | 1 << INTEGRAL, .start = {0.06, 0.4, 0.4, 0.02},
-              .afresh = true, .curve = 2},
+    [LOS] = {"line of sight", .set = set_guidance, .tuned = SIGHT, .start = {0.06, 2.8, 0.4, 0}, .curve = 1},
+    [ILOS] = {"line of sight", .set = set_guidance, .tuned = SIGHT | 1 << INTEGRAL, .start = {0.06, 2.8, 0.4, 0.02},
+              .curve = 2},
     [PLAN] = {"plan", STEER_PLANNED, .start = {NAN, NAN, NAN, NAN}},
     [BOTH] = {"plan and feedback", STEER_PLANNED, .set = set_guidance, .tuned = 1 << GAIN | 1 << LOOKAHEAD,
               .start = {0.06, 1.5, NAN, NAN}, .curve = 3},
     [RECEDING] = {"receding", STEER_RECEDING, .set = set_receding, .start = {NAN, NAN, NAN, NAN}},
 };
 
+// Both guidance laws on the gait found and, the first within its time, on the paper's.
 static void choose_trials(steer_job *job)
 {
-    const int found = 1 + (int)job->snake.model;
-    steer_trial *paper = steer_add(job, "ILOS, paper's gait", &laws[ILOS], 0, MORAY_CONTROL_ORIENTED);
-    steer_trial *sight = steer_add(job, "LOS, gait found", &laws[LOS], found, MORAY_CONTROL_ORIENTED);
-    sight->like = paper;
-    steer_add(job, "ILOS, gait found", &laws[ILOS], found, MORAY_CONTROL_ORIENTED)->like = sight;
+    static const char *const names[][2] = {{"LOS, paper's gait", "ILOS, paper's gait"},
+                                           {"LOS, gait found", "ILOS, gait found"}};
+    const int gaits[2] = {0, 1 + (int)job->snake.model};
+    const steer_trial *before[2] = {NULL, NULL};
+    for (int g = 0; g < 2; g++) {
+        steer_trial *sight = steer_add(job, names[g][0], &laws[LOS], gaits[g], MORAY_CONTROL_ORIENTED);
+        steer_trial *integral = steer_add(job, names[g][1], &laws[ILOS], gaits[g], MORAY_CONTROL_ORIENTED);
+        sight->subset[0] = before[0]; // of the other gait
+        integral->subset[0] = sight;
+        integral->subset[1] = before[1];
+        before[0] = sight;
+        before[1] = integral;
+    }
     steer_add_plans(job, &laws[PLAN], &laws[BOTH]);
     steer_add_receding(job, &laws[RECEDING]);
 }
@@ -253,8 +261,6 @@ const steer_program path_steering = {
     .laws = laws,
     .numbers = numbers,
     .n_numbers = NUMBERS,
-    .x_tolerance = 1e-3,
-    .f_tolerance = 1e-4,
     .rough_per_second = 20,
     .start = start,
     .judge = judge,

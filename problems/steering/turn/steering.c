@@ -16,7 +16,7 @@ enum { SETTLED, WEIGHTED, FINAL, MISS, POWER, SCORES };
 static const steer_number numbers[NUMBERS] = {
     [HOLD] = {"hold_s"}, // their ranges: by the turn
     [BRAKING] = {"brake_s"},
-    [GAIN] = {"gain_m_rad", .logarithmic = true, .lower = 0.002, .upper = 2},
+    [GAIN] = {"gain_m_rad", .searched = {MORAY_TUNED_LOGARITHMIC, 0.002, 20, 0}},
 };
 
 // The offset ramps up to its limit, stays there, goes to the other limit if it brakes, and comes to rest.
@@ -65,11 +65,11 @@ static void choose_trials(turn_job *job)
     const double steady = fabs(job->angle / steer->turn_rate[MORAY_FIRST_PRINCIPLES]);
     const moray_steering_limits limits = steer_limits(steer, MORAY_FIRST_PRINCIPLES);
     const double ramp = limits.offset / limits.offset_rate;
-    steer->number[HOLD].upper = 2 * steady + 2 * ramp;
-    steer->number[BRAKING].upper = 4 * ramp;
+    steer->number[HOLD].searched.upper = 2 * steady + 2 * ramp;
+    steer->number[BRAKING].searched.upper = 4 * ramp;
     steer_trial *bang = steer_add(steer, "bang-bang", &laws[BANG], 0, MORAY_CONTROL_ORIENTED);
     bang->number[HOLD] = fmax(steady - ramp, 0);
-    steer_add(steer, "bang-bang, braking", &laws[BRAKE], 0, MORAY_CONTROL_ORIENTED)->like = bang;
+    steer_add(steer, "bang-bang, braking", &laws[BRAKE], 0, MORAY_CONTROL_ORIENTED)->subset[0] = bang;
     steer_add_plans(steer, &laws[PLAN], &laws[BOTH]);
 }
 
@@ -231,8 +231,6 @@ const steer_program turn_steering = {
     .laws = laws,
     .numbers = numbers,
     .n_numbers = NUMBERS,
-    .x_tolerance = 1e-4,
-    .f_tolerance = 1e-5,
     .rough_per_second = 20,
     .start = start,
     .judge = judge,

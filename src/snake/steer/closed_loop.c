@@ -56,6 +56,8 @@ static moray_status sail(moray_swim_closed_loop *closed_loop, const moray_swim_c
     for (int k = 0; k < n; k++)
         times[k] = fmin(plan->duration * k / plan->intervals, plan->duration); // not beyond by rounding
     start(plan, closed_loop->swimmer, x);
+    if (plan->on_gait)
+        return moray_swim_run_on_gait(closed_loop->swimmer, &swim, plan->on_gait, x, NULL);
     return moray_swim_run(closed_loop->swimmer, &settings, &swim, x, NULL);
 }
 

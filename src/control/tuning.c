@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "moray/control/tuning.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "moray/parallel.h"
+#include "moray/search.h"
+
+enum { most = MORAY_TUNED_NUMBERS, SPREAD = 4, POLISHED = 3, ROUNDS = 2 };
+
+// A point in the box of all scales, each of which goes from 0 to 1.
+typedef struct place {
+    double z[most], cost; // INFINITY: there is none
+    int evaluations;
+    bool stopped;
+} place;
+
+typedef struct tuning {
+    const moray_tuning_problem *problem;
+    const moray_tuning_settings *settings;
+    const place *from;
+    double reach;    // half the width of the box that is searched
+    bool stopped;    // of one task
+    int evaluations; // likewise
+} tuning;
+
+moray_tuning_settings moray_tuning_settings_default(void)
+{
+    return (moray_tuning_settings){.starts = 12, .evaluations = 25, .tolerance = 1e-4};
+}
+
+// ---- Scales --------------------------------------------------------------------------------------------------------
+
+static double on_scale(const moray_tuned_number *number, double x)
+{
+    return number->scale == MORAY_TUNED_LINEAR        ? x
+           : number->scale == MORAY_TUNED_LOGARITHMIC ? log(x)
+                                                      : asinh(x / number->unit);
+}
+
+static double to_unit(const moray_tuned_number *number, double x)
+{
+    const double low = on_scale(number, number->lower), high = on_scale(number, number->upper);
+    return (on_scale(number, fmin(fmax(x, number->lower), number->upper)) - low) / (high - low);
+}
+
+static double from_unit(const moray_tuned_number *number, double z)
+{
+    const double low = on_scale(number, number->lower), high = on_scale(number, number->upper);
+    const double at = low + z * (high - low);
+    const double x = number->scale == MORAY_TUNED_LINEAR        ? at
+                     : number->scale == MORAY_TUNED_LOGARITHMIC ? exp(at)
+                                                                : number->unit * sinh(at);
+    return fmin(fmax(x, number->lower), number->upper);
+}
+
+static moray_status check(const moray_tuning_problem *problem)
+{
+    if (problem->n < 1 || problem->n > most)
+        return moray_error(MORAY_INPUT, "%d numbers to tune: must be from 1 to %d", problem->n, most);
+    for (int k = 0; k < problem->n; k++) {
+        const moray_tuned_number *number = &problem->number[k];
+        if (!(number->lower < number->upper) || (number->scale == MORAY_TUNED_LOGARITHMIC && !(number->lower > 0)) ||
+            (number->scale == MORAY_TUNED_WITH_ZERO && !(number->unit > 0)))
+            return moray_error(MORAY_INPUT, "number %d to tune, from %g to %g: no range on its scale", k + 1,
+                               number->lower, number->upper);
+    }
+    return moray_ok();
+}
+
+// ---- Searches ------------------------------------------------------------------------------------------------------
+
+static bool cost_at(tuning *t, const double *z, double *cost)
+{
+    double x[most];
+    if (t->settings->go_on && !t->settings->go_on(t->settings->observer)) {
+        t->stopped = true;
+        return false;
+    }
+    for (int k = 0; k < t->problem->n; k++)
+        x[k] = from_unit(&t->problem->number[k], z[k]);
+    t->evaluations++;
+    return t->problem->cost(t->problem->self, x, cost) && isfinite(*cost);
+}
+
+static bool evaluate(void *self, const double *z, double *f, double *c, double *gradient, double *jacobian)
+{
+    (void)c, (void)gradient, (void)jacobian;
+    return cost_at(self, z, f);
+}
+
+static bool carry_on(void *observer, const moray_search_progress *progress)
+{
+    (void)progress;
+    return !((const tuning *)observer)->stopped;
+}
+
+// A moray_task_fn; result: the place with its cost.
+static void look(int k, void *result, void *self)
+{
+    tuning t = *(const tuning *)self;
+    place *found = result;
+    *found = t.from[k];
+    if (!cost_at(&t, found->z, &found->cost))
+        found->cost = INFINITY;
+    found->evaluations = t.evaluations;
+    found->stopped = t.stopped;
+}
+
+// Likewise; result: the best place near that one.
+static void improve(int k, void *result, void *self)
+{
+    tuning t = *(const tuning *)self;
+    place *found = result;
+    double z[most], lower[most], upper[most];
+    const int n = t.problem->n;
+    *found = t.from[k];
+    for (int j = 0; j < n; j++) {
+        z[j] = found->z[j];
+        lower[j] = fmax(0, z[j] - t.reach);
+        upper[j] = fmin(1, z[j] + t.reach);
+    }
+    const moray_search_problem problem = {.n = n, .lower = lower, .upper = upper, .self = &t, .evaluate = evaluate};
+    moray_search_settings settings = moray_search_settings_default();
+    moray_search_info info;
+    settings.method = MORAY_SEARCH_COBYLA;
+    settings.x_tolerance = 1e-4;
+    settings.f_tolerance = t.settings->tolerance;
+    settings.max_evaluations = t.settings->evaluations * n;
+    settings.progress = carry_on;
+    settings.observer = &t;
+    if (!moray_failed(moray_search(&problem, &settings, z, &info)) && info.objective < found->cost) {
+        memcpy(found->z, z, sizeof z);
+        found->cost = info.objective;
+    }
+    found->evaluations = t.evaluations;
+    found->stopped = t.stopped;
+}
+
+// ---- All of them ---------------------------------------------------------------------------------------------------
+
+static int by_cost(const void *a, const void *b)
+{
+    const double one = ((const place *)a)->cost, other = ((const place *)b)->cost;
+    return (one > other) - (one < other);
+}
+
+// The points given, then a sequence of low discrepancy: fractional parts of k / g, k / g^2, ... with g^(n+1) = g + 1.
+static void spread(const moray_tuning_problem *problem, const double *from, int n_from, int n, place *places)
+{
+    double g = 2;
+    for (int k = 0; k < 40; k++)
+        g = pow(1 + g, 1.0 / (problem->n + 1));
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < problem->n; j++)
+            places[i].z[j] = i < n_from ? to_unit(&problem->number[j], from[i * problem->n + j])
+                                        : fmod(0.5 + (i - n_from + 1) / pow(g, j + 1), 1);
+}
+
+// Does a task from each of n places, and puts what is found in their place.
+static moray_status from_each(tuning *t, moray_task_fn *task, place *places, int n, moray_tuning_info *info)
+{
+    place *found = calloc((size_t)n, sizeof *found);
+    if (!found)
+        return moray_error(MORAY_MEMORY, "no memory for %d searches", n);
+    t->from = places;
+    const moray_status status = moray_parallel(n, sizeof *found, found, task, t, t->settings->jobs);
+    for (int k = 0; k < n && !moray_failed(status); k++) {
+        places[k] = found[k];
+        info->evaluations += found[k].evaluations;
+        t->stopped |= found[k].stopped;
+    }
+    free(found);
+    return status;
+}
+
+static moray_status search(tuning *t, place *places, int n, int n_from, moray_tuning_info *info)
+{
+    const int starts = t->settings->starts + n_from < n ? t->settings->starts + n_from : n;
+    MORAY_TRY(from_each(t, look, places, n, info));
+    qsort(places + n_from, (size_t)(n - n_from), sizeof *places, by_cost); // those given start whatever they cost
+    t->reach = 1;
+    if (!t->stopped)
+        MORAY_TRY(from_each(t, improve, places, starts, info));
+    qsort(places, (size_t)starts, sizeof *places, by_cost);
+    for (int k = 0; k < starts; k++)
+        info->agree += places[k].cost <= 1.05 * places[0].cost;
+    info->searches = starts;
+    for (int round = 0; round < ROUNDS && !t->stopped; round++) {
+        t->reach = round == 0 ? 0.15 : 0.03;
+        MORAY_TRY(from_each(t, improve, places, starts < POLISHED ? starts : POLISHED, info));
+    }
+    qsort(places, (size_t)starts, sizeof *places, by_cost);
+    return moray_ok();
+}
+
+moray_status moray_tune(const moray_tuning_problem *problem, const moray_tuning_settings *settings, const double *from,
+                        int n_from, double *x, moray_tuning_info *info)
+{
+    MORAY_TRY(check(problem));
+    *info = (moray_tuning_info){.cost = INFINITY};
+    if (settings->starts < 1 || settings->evaluations < 1)
+        return moray_error(MORAY_INPUT, "starts = %d, evaluations = %d: must be at least 1", settings->starts,
+                           settings->evaluations);
+    const int n = n_from + SPREAD * settings->starts;
+    place *places = calloc((size_t)n, sizeof *places);
+    if (!places)
+        return moray_error(MORAY_MEMORY, "no memory for %d starts", n);
+    tuning t = {.problem = problem, .settings = settings};
+    spread(problem, from, n_from, n, places);
+    moray_status status = search(&t, places, n, n_from, info);
+    info->cost = places[0].cost;
+    for (int k = 0; k < problem->n; k++)
+        x[k] = from_unit(&problem->number[k], places[0].z[k]);
+    free(places);
+    if (!moray_failed(status) && t.stopped)
+        status = moray_error(MORAY_INTERRUPTED, "tuning was interrupted after %d evaluations", info->evaluations);
+    if (!moray_failed(status) && !isfinite(info->cost))
+        status = moray_error(MORAY_NUMERIC, "none of %d settings tried has a cost", info->evaluations);
+    return status;
+}

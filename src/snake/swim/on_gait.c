@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+//
+// A swimmer whose joints begin on the gait: by (34) they stay on it, and the deviation of their offset obeys
+// e'' = -k_d e' - k_p e whatever the body does, so that only the body's six states need be integrated.
+#include "moray/snake/swim.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { body = MORAY_BODY_STATES, ENERGY = body, states };
+
+static const double no_wait = 1e-9; // of a step: what is left by rounding
+
+typedef struct on_gait {
+    moray_swimmer *swimmer;
+    const moray_swim_plan *plan;
+    const moray_swim_on_gait *how;
+    moray_gait gait;
+    int n, n_joints;
+    double t, start, y[states];
+    double direction, speed; // of the current at the start
+    double deviation[2];     // of the offset from what is commanded, and its rate, at t
+    int measurements;
+    double *x, *dx, *phi, *v_phi, *ubar, *u;
+} on_gait;
+
+// ---- Joints --------------------------------------------------------------------------------------------------------
+
+// e and e' a time after e[].
+static void relax(const moray_robot *robot, const double e[2], double time, double after[2])
+{
+    const double half = robot->k_d / 2;
+    const double complex root = csqrt(half * half - robot->k_p) + 1e-9 * half; // never zero
+    const double complex c = ccosh(root * time), s = csinh(root * time) / root, slope = e[1] + half * e[0];
+    const double fading = exp(-half * time);
+    after[0] = fading * creal(e[0] * c + slope * s);
+    after[1] = fading * creal(e[0] * root * root * s + slope * c) - half * after[0];
+}
+
+static moray_offset commanded(const on_gait *r, double t)
+{
+    const moray_swim_controller *controller = r->plan->controller;
+    return controller ? controller->offset(t, controller->self) : (moray_offset){.value = r->gait.offset};
+}
+
+// The offset at t, at or after r->t.
+static void set_offset(const on_gait *r, double t, moray_gait *gait)
+{
+    const moray_robot *robot = moray_swimmer_robot(r->swimmer);
+    const moray_offset wanted = commanded(r, t);
+    double e[2];
+    relax(robot, r->deviation, t - r->t, e);
+    gait->offset = wanted.value + e[0];
+    gait->offset_rate = wanted.rate + e[1];
+    gait->offset_acceleration = wanted.acceleration - robot->k_d * e[1] - robot->k_p * e[0];
+}
+
+// ---- Body ----------------------------------------------------------------------------------------------------------
+
+static void set_current(on_gait *r, double t)
+{
+    const double direction = r->direction + r->how->current_turning * (t - r->start);
+    if (r->how->current_turning != 0)
+        moray_swimmer_set_current(r->swimmer, r->speed * cos(direction), r->speed * sin(direction));
+}
+
+// Of the gait as it is at t; leaves the full state in x and the efforts in u.
+static bool rates(on_gait *r, const moray_gait *gait, double t, const double *y, double *dy)
+{
+    const moray_robot *robot = moray_swimmer_robot(r->swimmer);
+    set_current(r, t);
+    moray_gait_reference(gait, r->n_joints, t, r->phi, r->v_phi, r->ubar);
+    moray_swimmer_on_gait(r->swimmer, gait, t, y, r->x);
+    if (!moray_swimmer_rates(r->swimmer, r->x, r->ubar, r->dx, r->u))
+        return false;
+    moray_state_body(moray_swimmer_model(r->swimmer), robot->links, r->dx, dy);
+    dy[ENERGY] = 0;
+    for (int i = 0; i < r->n_joints; i++)
+        dy[ENERGY] += r->u[i] * r->v_phi[i];
+    return true;
+}
+
+static void ahead(const double *y, double h, const double *slope, double *at)
+{
+    for (int i = 0; i < states; i++)
+        at[i] = y[i] + h * slope[i];
+}
+
+// A step of the classical Runge-Kutta method.
+static bool step(on_gait *r, double h)
+{
+    double k[4][states], at[states];
+    moray_gait gait = r->gait;
+    set_offset(r, r->t, &gait);
+    bool good = rates(r, &gait, r->t, r->y, k[0]);
+    set_offset(r, r->t + h / 2, &gait);
+    ahead(r->y, h / 2, k[0], at);
+    good = good && rates(r, &gait, r->t + h / 2, at, k[1]);
+    ahead(r->y, h / 2, k[1], at);
+    good = good && rates(r, &gait, r->t + h / 2, at, k[2]);
+    set_offset(r, r->t + h, &gait);
+    ahead(r->y, h, k[2], at);
+    good = good && rates(r, &gait, r->t + h, at, k[3]);
+    for (int i = 0; i < states; i++)
+        r->y[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
+    relax(moray_swimmer_robot(r->swimmer), (double[]){r->deviation[0], r->deviation[1]}, h, r->deviation);
+    r->t += h;
+    return good;
+}
+
+static moray_status advance(on_gait *r, double t)
+{
+    const double longest = 2 * M_PI / r->gait.omega / r->how->steps;
+    const double way = t - r->t;
+    const int n = way > no_wait * longest ? (int)ceil(way / longest - no_wait) : 0;
+    for (int k = 0; k < n; k++)
+        if (!step(r, way / n))
+            return moray_error(MORAY_NUMERIC, "the swimmer cannot be integrated at t = %.6g s", r->t);
+    r->t = t;
+    return moray_ok();
+}
+
+// ---- Stops ---------------------------------------------------------------------------------------------------------
+
+static moray_swim_sample sample(on_gait *r)
+{
+    double dy[states];
+    moray_gait gait = r->gait;
+    set_offset(r, r->t, &gait);
+    rates(r, &gait, r->t, r->y, dy);
+    return (moray_swim_sample){
+        .t = r->t, .x = r->x, .u = r->u, .pose = moray_swimmer_pose(r->swimmer, r->x), .energy = r->y[ENERGY]};
+}
+
+// What is commanded may jump here; the joints do not.
+static moray_status measure(on_gait *r)
+{
+    const moray_swim_controller *controller = r->plan->controller;
+    const moray_swim_sample shown = sample(r);
+    moray_gait gait = r->gait;
+    set_offset(r, r->t, &gait);
+    MORAY_TRY(controller->measure(&shown, controller->self));
+    const moray_offset wanted = commanded(r, r->t);
+    r->deviation[0] = gait.offset - wanted.value;
+    r->deviation[1] = gait.offset_rate - wanted.rate;
+    r->measurements++;
+    return moray_ok();
+}
+
+static double next_measurement(const on_gait *r)
+{
+    const moray_swim_controller *controller = r->plan->controller;
+    return controller && controller->measure ? r->start + r->measurements * controller->period : INFINITY;
+}
+
+// To t, with every measurement up to and at it.
+static moray_status go(on_gait *r, double t)
+{
+    for (double stop; (stop = next_measurement(r)) <= t;) {
+        MORAY_TRY(advance(r, stop));
+        MORAY_TRY(measure(r));
+    }
+    return advance(r, t);
+}
+
+static moray_status run(on_gait *r)
+{
+    const moray_swim_plan *plan = r->plan;
+    for (int i = 0; i < plan->n_times; i++) {
+        MORAY_TRY(go(r, plan->times[i]));
+        const moray_swim_sample shown = sample(r);
+        if (!plan->observe(&shown, plan->observer))
+            return moray_ok();
+    }
+    return go(r, plan->t1);
+}
+
+static moray_status check(const moray_swim_plan *plan, const moray_swim_on_gait *how)
+{
+    if (plan->n_changes != 1 || plan->schedule[0].gait.series)
+        return moray_error(MORAY_INPUT, "joints exactly on a gait: one gait without a series is needed");
+    if (how->steps < 8)
+        return moray_error(MORAY_INPUT, "steps = %d: must be at least 8 a period", how->steps);
+    if (plan->controller && plan->controller->measure && !(plan->controller->period > 0))
+        return moray_error(MORAY_INPUT, "period of the controller = %g: must be above 0", plan->controller->period);
+    return moray_ok();
+}
+
+moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_plan *plan, const moray_swim_on_gait *how,
+                                    double *x, double *energy)
+{
+    MORAY_TRY(check(plan, how));
+    const int n = moray_swimmer_states(swimmer), n_joints = moray_swimmer_robot(swimmer)->links - 1;
+    double V[2], *memory = calloc((size_t)(2 * n + 4 * n_joints), sizeof *memory);
+    if (!memory)
+        return moray_error(MORAY_MEMORY, "no memory to simulate a swimmer of %d states", n);
+    moray_swimmer_current(swimmer, V);
+    on_gait r = {.swimmer = swimmer,
+                 .plan = plan,
+                 .how = how,
+                 .gait = plan->schedule[0].gait,
+                 .n = n,
+                 .n_joints = n_joints,
+                 .t = plan->t0,
+                 .start = plan->t0,
+                 .direction = atan2(V[1], V[0]),
+                 .speed = hypot(V[0], V[1]),
+                 .x = memory,
+                 .dx = memory + n,
+                 .phi = memory + 2 * n,
+                 .v_phi = memory + 2 * n + n_joints,
+                 .ubar = memory + 2 * n + 2 * n_joints,
+                 .u = memory + 2 * n + 3 * n_joints};
+    moray_state_body(moray_swimmer_model(swimmer), n_joints + 1, x, r.y);
+    const moray_status status = run(&r);
+    sample(&r);
+    memcpy(x, r.x, (size_t)n * sizeof *x);
+    if (energy)
+        *energy = r.y[ENERGY];
+    moray_swimmer_set_current(swimmer, V[0], V[1]);
+    free(memory);
+    return status;
+}
