@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The inner loops. Tiles of eight rows and four columns stay in registers while all pivots are subtracted; on
-// processors with wide registers the loader takes the version made for them.
+// The inner loops. Tiles of up to three registers by four columns stay in registers while all pivots are subtracted. The
+// registers must be the processor's own: gcc takes wider vectors apart by way of memory, which is several times slower.
 #include <stddef.h>
 #include <string.h>
 
@@ -9,6 +9,7 @@
 
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
 #define FOR_EACH_PROCESSOR __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#define SEVERAL_PROCESSORS
 #else
 #define FOR_EACH_PROCESSOR
 #endif
@@ -16,6 +17,8 @@
 
 typedef double lane8 __attribute__((vector_size(64), aligned(8)));
 typedef double lane4 __attribute__((vector_size(32), aligned(8)));
+typedef double lane2 __attribute__((vector_size(16), aligned(8)));
+typedef double lane1;
 
 // One matrix of a product: entry (i, k) at first[i + k step].
 struct view {
@@ -23,53 +26,93 @@ struct view {
     size_t step;
 };
 
+// C[i + j step] -= sum over k of L(i, k) W(j, k) for i of `high` registers and j < columns. Rows from i on, as long as
+// they fill the tile.
 #define TILE(type)                                                                                                     \
-    INLINE void tile_##type(int columns, int depth, struct view L, struct view W, double *C, size_t step)              \
+    INLINE void tile_##type(int high, int columns, int depth, struct view L, struct view W, double *C, size_t step)    \
     {                                                                                                                  \
-        type sum[4];                                                                                                   \
+        enum { wide = sizeof(type) / sizeof(double) };                                                                 \
+        type sum[3][4], l[3];                                                                                          \
         for (int j = 0; j < columns; j++)                                                                              \
-            sum[j] = *(const type *)(C + (size_t)j * step);                                                            \
+            for (int r = 0; r < high; r++)                                                                             \
+                sum[r][j] = *(const type *)(C + (size_t)j * step + r * wide);                                          \
         for (int k = 0; k < depth; k++) {                                                                              \
-            const type l = *(const type *)(L.first + (size_t)k * L.step);                                              \
+            const double *from = L.first + (size_t)k * L.step, *w = W.first + (size_t)k * W.step;                      \
+            for (int r = 0; r < high; r++)                                                                             \
+                l[r] = *(const type *)(from + r * wide);                                                               \
             for (int j = 0; j < columns; j++)                                                                          \
-                sum[j] -= l * W.first[(size_t)j + (size_t)k * W.step];                                                 \
+                for (int r = 0; r < high; r++)                                                                         \
+                    sum[r][j] -= l[r] * w[j];                                                                          \
         }                                                                                                              \
         for (int j = 0; j < columns; j++)                                                                              \
-            *(type *)(C + (size_t)j * step) = sum[j];                                                                  \
+            for (int r = 0; r < high; r++)                                                                             \
+                *(type *)(C + (size_t)j * step + r * wide) = sum[r][j];                                                \
+    }                                                                                                                  \
+    INLINE int tiles_##type(int high, int i, int rows, int columns, int depth, struct view L, struct view W,           \
+                            double *C, size_t step)                                                                    \
+    {                                                                                                                  \
+        const int tall = high * (int)(sizeof(type) / sizeof(double));                                                  \
+        for (; i + tall <= rows; i += tall)                                                                            \
+            tile_##type(high, columns, depth, (struct view){L.first + i, L.step}, W, C + i, step);                     \
+        return i;                                                                                                      \
     }
 TILE(lane8)
 TILE(lane4)
-TILE(double)
+TILE(lane2)
+TILE(lane1)
 
-INLINE void strip(int columns, int rows, int depth, struct view L, struct view W, double *C, size_t step)
+INLINE void strip(int wide, int columns, int rows, int depth, struct view L, struct view W, double *C, size_t step)
 {
     int i = 0;
-    for (; i + 8 <= rows; i += 8)
-        tile_lane8(columns, depth, (struct view){L.first + i, L.step}, W, C + i, step);
-    for (; i + 4 <= rows; i += 4)
-        tile_lane4(columns, depth, (struct view){L.first + i, L.step}, W, C + i, step);
-    for (; i < rows; i++)
-        tile_double(columns, depth, (struct view){L.first + i, L.step}, W, C + i, step);
+    if (wide == 8)
+        i = tiles_lane8(3, i, rows, columns, depth, L, W, C, step);
+    if (wide == 8)
+        i = tiles_lane8(1, i, rows, columns, depth, L, W, C, step);
+    if (wide == 4)
+        i = tiles_lane4(3, i, rows, columns, depth, L, W, C, step);
+    if (wide >= 4)
+        i = tiles_lane4(1, i, rows, columns, depth, L, W, C, step);
+    if (wide == 2)
+        i = tiles_lane2(2, i, rows, columns, depth, L, W, C, step);
+    i = tiles_lane2(1, i, rows, columns, depth, L, W, C, step);
+    tiles_lane1(1, i, rows, columns, depth, L, W, C, step);
 }
 
 // A strip of columns begins at its first diagonal entry; what it writes above the others is not read by anyone.
-FOR_EACH_PROCESSOR
-static void update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw, double *C,
-                   int ldc)
+INLINE void update(int wide, int rows, int columns, int depth, struct view L, struct view W, double *C, size_t step)
 {
-    const size_t step = (size_t)ldc;
     int j = 0;
     for (; j + 4 <= columns; j += 4)
-        strip(4, rows - j, depth, (struct view){L + j, (size_t)ldl}, (struct view){W + j, (size_t)ldw},
+        strip(wide, 4, rows - j, depth, (struct view){L.first + j, L.step}, (struct view){W.first + j, W.step},
               C + j + (size_t)j * step, step);
-    const struct view left = {L + j, (size_t)ldl}, kept = {W + j, (size_t)ldw};
-    double *rest = C + j + (size_t)j * step;
+    L.first += j;
+    W.first += j;
+    C += j + (size_t)j * step;
     if (columns - j == 3)
-        strip(3, rows - j, depth, left, kept, rest, step);
+        strip(wide, 3, rows - j, depth, L, W, C, step);
     else if (columns - j == 2)
-        strip(2, rows - j, depth, left, kept, rest, step);
+        strip(wide, 2, rows - j, depth, L, W, C, step);
     else if (columns - j == 1)
-        strip(1, rows - j, depth, left, kept, rest, step);
+        strip(wide, 1, rows - j, depth, L, W, C, step);
+}
+
+#ifdef SEVERAL_PROCESSORS
+__attribute__((target("arch=x86-64-v4"))) static void update_widest(int rows, int columns, int depth, struct view L,
+                                                                    struct view W, double *C, size_t step)
+{
+    update(8, rows, columns, depth, L, W, C, step);
+}
+
+__attribute__((target("arch=x86-64-v3"))) static void update_wide(int rows, int columns, int depth, struct view L,
+                                                                  struct view W, double *C, size_t step)
+{
+    update(4, rows, columns, depth, L, W, C, step);
+}
+#endif
+
+static void update_plain(int rows, int columns, int depth, struct view L, struct view W, double *C, size_t step)
+{
+    update(2, rows, columns, depth, L, W, C, step);
 }
 
 FOR_EACH_PROCESSOR
@@ -131,7 +174,18 @@ static double largest(int n, const double *x)
 void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw,
                              double *C, int ldc)
 {
-    update(rows, columns, depth, L, ldl, W, ldw, C, ldc);
+    const struct view left = {L, (size_t)ldl}, kept = {W, (size_t)ldw};
+#ifdef SEVERAL_PROCESSORS
+    if (__builtin_cpu_supports("x86-64-v4")) {
+        update_widest(rows, columns, depth, left, kept, C, (size_t)ldc);
+        return;
+    }
+    if (__builtin_cpu_supports("x86-64-v3")) {
+        update_wide(rows, columns, depth, left, kept, C, (size_t)ldc);
+        return;
+    }
+#endif
+    update_plain(rows, columns, depth, left, kept, C, (size_t)ldc);
 }
 
 void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)

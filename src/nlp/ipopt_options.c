@@ -16,6 +16,10 @@ static bool has_dense_columns(const moray_nlp *nlp, double *work)
 
 static bool set_linear_solver(IpoptProblem problem, const moray_nlp *nlp, moray_linear_solver solver, double *work)
 {
+    if (solver == MORAY_LINEAR_MORAY &&
+        // Our solutions are refined where they need it, in their own scale; what Ipopt finds wanting it still refines.
+        !AddIpoptIntOption(problem, (char *)"min_refinement_steps", 0))
+        return false;
     if (solver != MORAY_LINEAR_MUMPS)
         return AddIpoptStrOption(problem, (char *)"linear_solver", (char *)"ma57") &&
                AddIpoptStrOption(problem, (char *)"linear_system_scaling", (char *)"none") &&
