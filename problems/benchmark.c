@@ -4,7 +4,6 @@
 // to a floor of arithmetic, memory and calls. Times are the processor's, medians of several measurements in this run.
 #include "benchmark/benchmark.h"
 
-enum part { ALL, S1, PROBLEMS, CLASSICS, INTERVALS, LINKS, HORIZON, SIMULATION };
 static const char *const parts[] = {"all",   "s1",      "problems",   "classics", "intervals",
                                     "links", "horizon", "simulation", NULL};
 static const char *const unused[] = {"scheme", "intervals", "tol", NULL};

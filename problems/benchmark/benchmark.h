@@ -95,6 +95,10 @@ typedef struct s1_case {
 } s1_case;
 subject s1_subject(s1_case *c);
 
+// Writes its start as s1_start.csv: time and the states of (21) along one period of the start's orbit, for other tools
+// (problems/benchmark/peers). Errors: those of moray_swim_steady and moray_output_file.
+moray_status s1_write_start(moray_output *output);
+
 // Heading tracking with the paper's gait: 30 deg there and back every 40 s, in the current (0.1, 0.1) m/s.
 enum { HORIZON_POINTS = 40 };
 typedef struct horizon_case {
@@ -148,6 +152,8 @@ typedef struct simulated {
     int n, links[MOST_POINTS];
     double rate[2][MOST_POINTS]; // by model
 } simulated;
+
+enum part { ALL, S1, PROBLEMS, CLASSICS, INTERVALS, LINKS, HORIZON, SIMULATION };
 
 typedef struct benchmark {
     moray_common common;

@@ -133,8 +133,9 @@ static moray_status draw_growth(const benchmark *run, const char *over, const ch
 
 moray_status benchmark_draw(const void *found, moray_output *output)
 {
-    (void)output;
     const benchmark *run = found;
+    if (run->part == S1)
+        MORAY_TRY(s1_write_start(output));
     MORAY_TRY(draw_growth(run, "intervals", "growth_intervals", "One iteration, over intervals"));
     return draw_growth(run, "links", "growth_links", "One iteration, over links");
 }

@@ -105,6 +105,41 @@ static void forget(void *self)
     c->ocp = NULL;
 }
 
+// (21), then what it consists of by joints and body.
+static void name_state(int k, char name[16])
+{
+    static const char *const body[] = {"theta", "p_x", "p_y"}, *const rates[] = {"v_theta", "v_t", "v_n"};
+    const int joints = S1_LINKS - 1, half = S1_STATES / 2, of_half = k % half;
+    if (of_half < joints)
+        snprintf(name, 16, "%s_%d", k < half ? "phi" : "v_phi", of_half + 1);
+    else
+        snprintf(name, 16, "%s", (k < half ? body : rates)[of_half - joints]);
+}
+
+static void write_orbit(const moray_swim_track *orbit, FILE *file)
+{
+    char names[S1_STATES][16];
+    moray_column columns[1 + S1_STATES] = {{"t", "s", orbit->t, 1}};
+    for (int k = 0; k < S1_STATES; k++) {
+        name_state(k, names[k]);
+        columns[1 + k] = (moray_column){names[k], NULL, orbit->x + k, S1_STATES};
+    }
+    moray_csv_write(file, columns, 1 + S1_STATES, orbit->n);
+}
+
+moray_status s1_write_start(moray_output *output)
+{
+    s1_case s1 = {0};
+    FILE *file;
+    moray_status status = begin(&s1);
+    if (!moray_failed(status))
+        status = moray_output_file(output, "s1_start.csv", &file);
+    if (!moray_failed(status))
+        write_orbit(&s1.orbit, file);
+    end(&s1);
+    return status;
+}
+
 subject s1_subject(s1_case *c)
 {
     return (subject){begin, solve, forget, end, c};
