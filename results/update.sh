@@ -13,6 +13,18 @@ print() {
     show "$@"
     files=yes
 }
+# beside NAME [ARGUMENT...]: the other tools, where they are installed.
+beside() {
+    runner=problems/benchmark/peers/run.sh
+    files=
+    quiet=
+    show "$@"
+    runner=problems/run.sh
+    quiet=--quiet
+    files=yes
+}
+runner=problems/run.sh
+quiet=--quiet
 files=yes
 show() {
     name=$1
@@ -22,13 +34,13 @@ show() {
     *) return 0 ;;
     esac
     mkdir -p "results/$name" || exit 1
-    if ! sh problems/run.sh "$@" --quiet ${files:+--out "results/$name"} >table.tmp; then
+    if ! sh $runner "$@" $quiet ${files:+--out "results/$name"} >table.tmp; then
         rm -f table.tmp
-        echo "failed: sh problems/run.sh $*" >&2
+        echo "failed: sh $runner $*" >&2
         exit 1
     fi
     mv table.tmp "results/$name/table.txt"
-    echo "sh problems/run.sh $*" >"results/$name/command.txt"
+    echo "sh $runner $*" >"results/$name/command.txt"
     for page in README.md results/README.md; do
         awk -v name="$name" -v table="results/$name/table.txt" '
             $0 == "<!-- end -->" { inside = 0 }
@@ -68,3 +80,4 @@ show classics classics all
 print benchmark_s1 benchmark --part s1 --set repeats=9
 print benchmark_horizon benchmark --part horizon --set repeats=3
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
+beside peers 5

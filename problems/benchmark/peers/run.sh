@@ -64,7 +64,7 @@ repeat() { # repeat FILE COMMAND...
 }
 
 title() {
-    printf '%s\n%-32s %12s %12s %10s %10s %8s\n' "$1" "" "objective" "theirs" "[ms]" "theirs" "ratio"
+    printf '%s\n%-32s %12s %12s %10s %10s %8s\n' "$1" "" "objective" "theirs" "time [ms]" "theirs" "ratio"
 }
 
 "$moray" --part s1 --set repeats="$repeats" --quiet --out "$work/s1" >"$work/moray" || exit 1
