@@ -42,8 +42,12 @@ static moray_status error_of(const moray_swim_setup *setup, const moray_gait *ga
                              int min_periods, moray_steady *steady, double *error)
 {
     double direction = 0;
-    MORAY_TRY(moray_swim_settle(setup, gait, start_heading, min_periods, steady, NULL, 2));
+    const moray_status settled = moray_swim_settle(setup, gait, start_heading, min_periods, steady, NULL, 2);
+    if (settled.code !=
+        MORAY_NOT_SOLVED) // else a current that is too strong for what it does swim is the better reason
+        MORAY_TRY(settled);
     MORAY_TRY(crab_direction(setup, course, steady, &direction));
+    MORAY_TRY(settled);
     const double swims = atan2(steady->v_y - setup->current[1], steady->v_x - setup->current[0]);
     *error = remainder(swims - direction, 2 * M_PI);
     return moray_ok();
