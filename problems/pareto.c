@@ -75,23 +75,22 @@ static moray_status climb(const pareto *run, pareto_front *front)
 static moray_status prove(pareto *run, pareto_front *front)
 {
     const double no_price = 1e-5; // of a power limit that makes no difference [m/s per W]
-    gait_job *job = &run->job;
-    const moray_integrator integrator = moray_sim_integrator(&job->rig.settings.sim);
     const int all = front->n;
+    stage *kept[PARETO_POINTS];
     front->n = 0;
-    for (int k = 0; k < all && !moray_interrupted(); k++) {
+    for (int k = 0; k < all; k++) {
         stage *at = &front->at[k];
         if (!solved(at) || (k > 0 && at->prediction.power_price < no_price)) {
             gait_job_stage_free(at);
             continue;
         }
-        show(run, front, k, "swum on both models");
-        MORAY_TRY(moray_certify(at->solution, &integrator, &at->certificate));
-        MORAY_TRY(moray_gait_trial_run(&job->rig, &at->prediction.gait, front->model, &at->trial));
-        const stage kept = *at;
+        const stage moved = *at;
         *at = (stage){0};
-        front->at[front->n++] = kept;
+        kept[front->n] = &front->at[front->n];
+        front->at[front->n++] = moved;
     }
+    show(run, front, front->n - 1, "swum on both models");
+    MORAY_TRY(gait_job_prove(&run->job, kept, front->n));
     return climb(run, front);
 }
 

@@ -37,6 +37,14 @@ refuse() {
     check "nothing printed or written" eval '[ ! -s out ] && [ ! -e fresh ]'
 }
 
+# same_by_jobs ARGUMENTS: whether two processes print the JSON that one does, but for the times taken.
+same_by_jobs() {
+    for jobs in 1 2; do
+        "$program" "$@" --json --jobs $jobs 2>err </dev/null | grep -v '"[a-z_]*time_s"' >by_$jobs
+    done
+    [ -s by_1 ] && cmp -s by_1 by_2
+}
+
 # number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
 number() {
     [ $# -eq 1 ] && set -- . "$1"

@@ -30,6 +30,7 @@ check "the first line of trajectory.csv names and has units" \
 # ---- The whole pipeline: control-oriented optimum, first-principles optimum, the gait optimised for several models, proof
 run --json --jobs 2
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
+check "two processes find what one does" same_by_jobs
 check "first-principles optimum gains at least 3.9 % at equal power: $(number first_principles_optimum speed_percent_at_equal_power)" \
     awk -v g="$(number first_principles_optimum speed_percent_at_equal_power)" 'BEGIN { exit !(g >= 3.9) }'
 check "simulation confirms its speed" near "$(number predicted speed_m_s)" "$(number validated speed_m_s)" 1e-5

@@ -32,6 +32,8 @@ done
 check "nothing else" [ "$(ls -A results | wc -l)" -eq 4 ]
 check "summary.json is what --json prints" cmp -s out results/summary.json
 
+check "two processes find what one does" same_by_jobs --set random_starts=3 --set global=none
+
 if thorough; then
 # ---- Other goal, model and methods
 run --quiet --model control --set goal=economy --set random_starts=2 --set global=none --set local=cobyla

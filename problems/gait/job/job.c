@@ -120,33 +120,6 @@ moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at)
     return demand(job, model, "speed_m_s", job->speed, speed, &at->speed);
 }
 
-void gait_job_try(const gait_job *job, const moray_gait *gait, moray_model from, moray_gait_trial *trial)
-{
-    const moray_steady none = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, false, NAN, 0};
-    for (int model = 0; model < 2; model++) {
-        trial->gait[model] = moray_gait_map(&job->snake.robot, gait, from, (moray_model)model);
-        moray_status status = gait_job_turning(job, (moray_model)model);
-        if (!moray_failed(status))
-            status = moray_gait_trial_swim(&job->rig, (moray_model)model, trial);
-        if (!moray_failed(status))
-            continue;
-        trial->steady[model] = none;
-        trial->held[model] = false;
-        trial->why[model] = status;
-    }
-}
-
-void gait_job_prove(gait_job *job, stage *at)
-{
-    const moray_status no_paper = job->no_paper[MORAY_FIRST_PRINCIPLES];
-    moray_ticker_show(&job->ticker, "%s: the optimised gait on both models", job->name);
-    gait_job_try(job, &at->prediction.gait, at->model, &at->trial);
-    if (moray_failed(no_paper))
-        at->gain = (moray_gait_gain){NAN, NAN, NAN, no_paper, no_paper};
-    else
-        at->gain = moray_gait_gain_over(&job->rig, &at->trial, &job->paper);
-}
-
 // Leaves the best solution so far for --continue.
 static moray_status keep_iterate(gait_job *job, const stage *at)
 {
@@ -165,8 +138,7 @@ static moray_status optimise_and_prove(gait_job *job, moray_model model, const g
     if (status.code == MORAY_INTERRUPTED && at->solution)
         return keep_iterate(job, at);
     MORAY_TRY(status);
-    gait_job_prove(job, at);
-    return moray_ok();
+    return gait_job_prove(job, &at, 1);
 }
 
 // By delta = 2 pi/(N-1) of the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and longer robots, and
@@ -199,7 +171,7 @@ moray_status gait_job_prepare(gait_job *job)
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     MORAY_TRY(moray_test_rig_new(&job->rig, &job->snake.robot, job->snake.current, job->snake.course));
     moray_ticker_show(&job->ticker, "%s: the paper's gait on both models", job->name);
-    gait_job_try(job, &paper, MORAY_CONTROL_ORIENTED, &job->paper);
+    MORAY_TRY(gait_job_try(job, &paper, MORAY_CONTROL_ORIENTED, &job->paper));
     for (int model = 0; model < 2; model++)
         job->no_paper[model] = baseline_check(job, (moray_model)model);
     return moray_ok();

@@ -173,13 +173,15 @@ moray_status gait_job_continue(gait_job *job, stage *at, const stage *from);
 moray_gait gait_job_random(const gait_job *job, const stage *at); // by drand48, within the limits of the gait
 
 // Certificate of a stage's solution. Error: those of moray_certify.
-moray_status gait_job_certify(gait_job *job, stage *at);
+moray_status gait_job_certify(const gait_job *job, stage *at);
 
-// Swims the gait of a model on both. Where it cannot be swum the numbers are NaN, the reason in trial->why.
-void gait_job_try(const gait_job *job, const moray_gait *gait, moray_model model, moray_gait_trial *trial);
+// Swims the gait of a model on both. Where it cannot be swum the numbers are NaN, the reason in trial->why. Error: that
+// of moray_parallel.
+moray_status gait_job_try(const gait_job *job, const moray_gait *gait, moray_model model, moray_gait_trial *trial);
 
-// The same of the predicted gait, and compares it with the paper's.
-void gait_job_prove(gait_job *job, stage *at);
+// Certificates of n stages, their predicted gaits swum on both models and compared with the paper's, side by side.
+// Error: those of moray_certify and moray_parallel; MORAY_MEMORY.
+moray_status gait_job_prove(gait_job *job, stage *const *at, int n);
 
 // Optimises job->ladder for the models of job->over, from the gaits known. Where that cannot be, or there is no
 // baseline on one of the models, it is left out, with its reason. Error: MORAY_INPUT (over), MORAY_MEMORY,
@@ -202,7 +204,7 @@ const char *gait_job_baseline(const gait_job *job, char text[64]);
 enum { GAIT_STAGES = 3 };
 int gait_job_stages(const gait_job *job, const stage *at[GAIT_STAGES]);
 
-// Problem, best solution from the starts and random ones, prediction and certificate of a stage whose model, power,
+// Problem, best solution from the starts and random ones, and prediction of a stage whose model, power,
 // speed and taper are set. Error: MORAY_NOT_SOLVED saying why, MORAY_INTERRUPTED, and those of the above.
 moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known);
 

@@ -237,7 +237,7 @@ static moray_status optimise(gait_job *job, scenario_set *set, const gait_starts
         set->over->at[k].gain =
             moray_gait_over_prediction(at->over, at->solution, k).speed / set->scenario[k].speed - 1;
     choose_omega(job, set, at);
-    MORAY_TRY(gait_job_certify(job, at));
+    MORAY_TRY(gait_job_prove(job, &at, 1));
     return check_gain(job, at);
 }
 
@@ -259,7 +259,5 @@ moray_status gait_job_over(gait_job *job, const gait_starts *known)
                            job->no_paper[MORAY_FIRST_PRINCIPLES].text);
     const moray_status status = optimise(job, &set, known);
     set_free(&set);
-    if (!moray_failed(status))
-        gait_job_prove(job, at);
     return status;
 }

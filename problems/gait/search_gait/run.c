@@ -3,6 +3,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "moray/parallel.h"
 #include "search_gait.h"
 
 const char *const search_gait_locals[] = {"slsqp", "mma", "cobyla", NULL};
@@ -52,22 +53,47 @@ static moray_search_settings local_settings(search_gait *run)
     return settings;
 }
 
+// A local search and where it ends.
+typedef struct descent {
+    moray_gait gait; // where it starts, then where it ends
+    moray_orbit_result orbit;
+    moray_search_info info;
+    bool found; // an optimum
+    int orbits;
+    double seconds;
+    moray_status status; // there was no search
+} descent;
+
 // Searches until a search from its own end gains no more: SLSQP may lose its way at first.
-static bool search_locally(search_gait *run, moray_gait *gait, moray_orbit_result *orbit, moray_search_info *info)
+static void search_from(search_gait *run, moray_gait_search *search, descent *d)
 {
     const moray_search_settings settings = local_settings(run);
     const double start = now();
     double before = INFINITY;
     bool found = true;
     for (int round = 0; round < 3 && found && !moray_interrupted(); round++) {
-        found = !moray_failed(moray_gait_search_run(run->search, &settings, gait, orbit, info));
-        run->orbits += info->evaluations;
-        if (info->violation <= KEPT && before - info->objective < 1e-9)
+        found = !moray_failed(moray_gait_search_run(search, &settings, &d->gait, &d->orbit, &d->info));
+        d->orbits += d->info.evaluations;
+        if (d->info.violation <= KEPT && before - d->info.objective < 1e-9)
             break;
-        before = info->violation <= KEPT ? info->objective : INFINITY;
+        before = d->info.violation <= KEPT ? d->info.objective : INFINITY;
     }
-    run->seconds += now() - start;
-    return found && info->outcome != MORAY_SEARCH_FAILED && info->violation <= KEPT;
+    d->seconds = now() - start;
+    d->found = found && d->info.outcome != MORAY_SEARCH_FAILED && d->info.violation <= KEPT;
+}
+
+// By a search of its own, so that it depends on none before; its orbits begin from that of the paper's gait, if there
+// is one.
+static void search_locally(search_gait *run, descent *d)
+{
+    moray_gait_search *search;
+    moray_orbit_result paper;
+    d->status = moray_gait_search_new(&search, &run->spec, run->job.common.scheme, run->job.common.intervals);
+    if (moray_failed(d->status))
+        return;
+    (void)moray_orbit_solve(moray_gait_search_orbit(search), &run->job.paper.gait[run->spec.model], &paper);
+    search_from(run, search, d);
+    moray_gait_search_free(search);
 }
 
 static bool same_gait(const search_gait *run, const moray_gait *a, const moray_gait *b)
@@ -116,42 +142,67 @@ static moray_status start_gait(search_gait *run, int k, moray_gait *gait)
     return moray_ok();
 }
 
-static moray_status search_from_starts(search_gait *run)
+// The optimum where a search ended; NULL if at none.
+static optimum *take(search_gait *run, const descent *d)
 {
+    run->orbits += d->orbits;
+    run->seconds += d->seconds;
+    return d->found ? place(run, &d->gait, &d->orbit, d->info.objective) : NULL;
+}
+
+// A moray_task_fn; result: a descent, in which the gait is where it starts.
+static void search_task(int k, void *result, void *self)
+{
+    search_gait *run = self;
     char activity[64];
-    srand48(run->seed);
-    run->starts = 1 + run->job.random_starts;
+    snprintf(activity, sizeof activity, "start %d of %d", k + 1, run->starts);
     run->activity = activity;
+    if (!moray_interrupted())
+        search_locally(run, result);
+}
+
+static moray_status search_side_by_side(search_gait *run, descent *d)
+{
+    for (int k = 0; k < run->starts; k++)
+        MORAY_TRY(start_gait(run, k, &d[k].gait));
+    MORAY_TRY(moray_parallel(run->starts, sizeof *d, d, search_task, run, run->job.jobs));
+    if (moray_interrupted())
+        return interrupted();
     for (int k = 0; k < run->starts; k++) {
-        moray_gait gait;
-        moray_orbit_result orbit;
-        moray_search_info info;
-        snprintf(activity, sizeof activity, "start %d of %d", k + 1, run->starts);
-        MORAY_TRY(start_gait(run, k, &gait));
-        const bool found = search_locally(run, &gait, &orbit, &info);
-        optimum *at = found ? place(run, &gait, &orbit, info.objective) : NULL;
+        MORAY_TRY(d[k].status);
+        optimum *at = take(run, &d[k]);
         run->lost += at == NULL;
         if (at)
             at->hits++;
-        if (moray_interrupted())
-            return interrupted();
     }
     return moray_ok();
+}
+
+static moray_status search_from_starts(search_gait *run)
+{
+    srand48(run->seed);
+    run->starts = 1 + run->job.random_starts;
+    descent *d = calloc((size_t)run->starts, sizeof *d);
+    if (!d)
+        return moray_error(MORAY_MEMORY, "no memory for %d starts", run->starts);
+    const moray_status status = search_side_by_side(run, d);
+    free(d);
+    return status;
 }
 
 // The global search's end counts as the optimum to which a local search leads from it.
 static moray_status search_globally(search_gait *run)
 {
     moray_search_settings settings = local_settings(run);
-    moray_gait gait = run->job.paper.gait[run->spec.model];
-    moray_orbit_result orbit;
-    moray_search_info info;
+    descent d = {.gait = run->job.paper.gait[run->spec.model]};
     settings.method = global_methods[run->global_method];
     settings.max_evaluations = run->global_orbits;
     settings.seed = (unsigned long)run->seed;
     run->activity = search_gait_globals[run->global_method];
-    MORAY_TRY(moray_gait_search_run(run->search, &settings, &gait, &orbit, &run->global));
-    optimum *at = search_locally(run, &gait, &orbit, &info) ? place(run, &gait, &orbit, info.objective) : NULL;
+    MORAY_TRY(moray_gait_search_run(run->search, &settings, &d.gait, &d.orbit, &run->global));
+    search_locally(run, &d);
+    MORAY_TRY(d.status);
+    optimum *at = take(run, &d);
     if (at)
         at->global = true;
     return moray_interrupted() ? interrupted() : moray_ok();
@@ -201,8 +252,6 @@ static moray_status polish(search_gait *run, optimum *o)
     o->at.prediction = moray_gait_problem_prediction(o->at.problem, o->at.solution);
     o->at.starts = run->starts;
     o->at.agreeing = o->hits;
-    MORAY_TRY(gait_job_certify(&run->job, &o->at));
-    gait_job_prove(&run->job, &o->at);
     return moray_ok();
 }
 
@@ -241,6 +290,7 @@ moray_status search_gait_run(search_gait *run)
     stage *at[SEARCH_GAIT_SHOWN];
     for (int k = 0; k < run->shown; k++)
         at[k] = &run->optimum[k].at;
+    MORAY_TRY(gait_job_prove(&run->job, at, run->shown));
     return gait_job_climb(&run->job, at, run->shown);
 }
 
