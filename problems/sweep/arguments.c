@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE // strdup
+#include "sweep/arguments.h"
+
+#include <argp.h>
+#include <errno.h>
+#include <glob.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "moray/app/options.h"
+#include "moray/app/program.h"
+
+enum { KEY_GRID = 0x100, KEY_LIST, KEY_RANDOM, KEY_RANGE, KEY_SEED, KEY_FILE, KEY_OUT, KEY_JOBS, KEY_TIME, KEY_MEMORY,
+       KEY_OBJECTIVE, KEY_SHOW, KEY_COLD, KEY_QUIET, KEY_JSON, KEY_VERSION };
+
+static const struct argp_option options[] = {
+    {"grid", KEY_GRID, "KEY=LOW:HIGH:COUNT|V,V,...", 0, "values of a key of the program, numbers or words; again for every further axis", 1},
+    {"list", KEY_LIST, "[KEY=]FILES", 0, "files as values of a key (robot, where none is named); a pattern, quoted, or several names behind it", 1},
+    {"random", KEY_RANDOM, "COUNT", 0, "draws of the keys of --range, besides all grids", 1},
+    {"range", KEY_RANGE, "KEY=LOW:HIGH", 0, "a key drawn evenly; again for every further one", 1},
+    {"seed", KEY_SEED, "NUMBER", 0, "of the draws [1]", 1},
+    {"file", KEY_FILE, "FILE", 0, "results, NetCDF-4 [PROGRAM.nc]; an unfinished one is gone on with", 2},
+    {"out", KEY_OUT, "DIR", 0, "figures and a report", 2},
+    {"show", KEY_SHOW, "NUMBER", 0, "a number of the program's summary to draw, as gain.speed_percent_at_equal_power; again for further ones", 2},
+    {"jobs", KEY_JOBS, "N", 0, "processes [one a processor]; with mpirun or srun, one a rank instead", 3},
+    {"time", KEY_TIME, "SECONDS", 0, "most for one point [no limit]", 3},
+    {"memory", KEY_MEMORY, "MB", 0, "most for one point [no limit]", 3},
+    {"objective", KEY_OBJECTIVE, "NUMBER", 0, "number that tells the better of two solutions, the lower one [the solver's objective]", 3},
+    {"cold", KEY_COLD, NULL, 0, "every point from its own start, not from a solved neighbour", 3},
+    {"quiet", KEY_QUIET, NULL, 0, "no progress", 4},
+    {"json", KEY_JSON, NULL, 0, "what came of it as one JSON object", 4},
+    {"version", KEY_VERSION, NULL, 0, "print the version", 4},
+    {0}};
+
+// A copy that lasts as long as the arguments.
+static moray_status copy_of(sweep_arguments *a, const char *text, char **copy)
+{
+    char **owned = realloc(a->owned, (size_t)(a->n_owned + 1) * sizeof *owned);
+    if (owned)
+        a->owned = owned;
+    *copy = owned ? strdup(text) : NULL;
+    if (!*copy)
+        return moray_error(MORAY_MEMORY, "no memory for an argument");
+    owned[a->n_owned++] = *copy;
+    return moray_ok();
+}
+
+// KEY=REST, or REST for a key given: both point into text.
+static moray_status split(char *text, const char *flag, char *default_key, char **key, char **rest)
+{
+    char *equals = strchr(text, '=');
+    if (equals == text || (!equals && !default_key) || (equals && !equals[1]))
+        return moray_error(MORAY_INPUT, "--%s %.60s: must be KEY=%s", flag, text, "VALUES");
+    *key = equals ? text : default_key;
+    *rest = equals ? equals + 1 : text;
+    if (equals)
+        *equals = 0;
+    return moray_ok();
+}
+
+static moray_status next_axis(sweep_arguments *a, moray_sweep_axis **axis)
+{
+    if (a->axes == MORAY_SWEEP_AXES)
+        return moray_error(MORAY_INPUT, "more than %d axes", MORAY_SWEEP_AXES);
+    *axis = &a->axis[a->axes];
+    return moray_ok();
+}
+
+static moray_status add_grid(sweep_arguments *a, const char *argument)
+{
+    moray_sweep_axis *axis = NULL;
+    char *text, *key, *rest;
+    double *value;
+    const char **word;
+    MORAY_TRY(next_axis(a, &axis));
+    MORAY_TRY(copy_of(a, argument, &text));
+    MORAY_TRY(split(text, "grid", NULL, &key, &rest));
+    MORAY_TRY(moray_sweep_values(rest, &value, &word, &axis->n));
+    axis->key = key;
+    axis->value = value;
+    axis->word = word;
+    a->axes++;
+    return moray_ok();
+}
+
+static moray_status add_word(sweep_arguments *a, moray_sweep_axis *axis, const char *name)
+{
+    char *copy;
+    const char **word = realloc((void *)(uintptr_t)axis->word, (size_t)(axis->n + 1) * sizeof *word);
+    if (!word)
+        return moray_error(MORAY_MEMORY, "no memory for %d names", axis->n + 1);
+    axis->word = word;
+    MORAY_TRY(copy_of(a, name, &copy));
+    word[axis->n++] = copy;
+    return moray_ok();
+}
+
+static moray_status add_files(sweep_arguments *a, moray_sweep_axis *axis, const char *pattern)
+{
+    glob_t found = {0};
+    moray_status status = moray_ok();
+    if (glob(pattern, GLOB_NOCHECK, NULL, &found) != 0)
+        status = moray_error(MORAY_IO, "%.200s cannot be looked up", pattern);
+    for (size_t k = 0; !moray_failed(status) && k < found.gl_pathc; k++)
+        status = add_word(a, axis, found.gl_pathv[k]);
+    globfree(&found);
+    return status;
+}
+
+static moray_status add_list(sweep_arguments *a, const char *argument)
+{
+    static char robot[] = "robot";
+    moray_sweep_axis *axis = NULL;
+    char *text, *key, *rest;
+    MORAY_TRY(next_axis(a, &axis));
+    MORAY_TRY(copy_of(a, argument, &text));
+    MORAY_TRY(split(text, "list", robot, &key, &rest));
+    *axis = (moray_sweep_axis){.key = key};
+    a->axes++;
+    return add_files(a, axis, rest);
+}
+
+static moray_status add_range(sweep_arguments *a, const char *argument)
+{
+    char *text, *key, *rest;
+    int used = 0;
+    if (a->ranges == MORAY_SWEEP_RANGES)
+        return moray_error(MORAY_INPUT, "more than %d keys to draw", MORAY_SWEEP_RANGES);
+    moray_sweep_range *range = &a->range[a->ranges];
+    MORAY_TRY(copy_of(a, argument, &text));
+    MORAY_TRY(split(text, "range", NULL, &key, &rest));
+    if (sscanf(rest, "%lf:%lf%n", &range->low, &range->high, &used) < 2 || rest[used])
+        return moray_error(MORAY_INPUT, "--range %s=%.60s: must be LOW:HIGH", key, rest);
+    range->key = key;
+    a->ranges++;
+    return moray_ok();
+}
+
+static moray_status number(const char *flag, const char *text, double low, double high, double *value)
+{
+    char *end;
+    errno = 0;
+    *value = strtod(text, &end);
+    if (end == text || *end || errno || !(*value >= low && *value <= high))
+        return moray_error(MORAY_INPUT, "--%s %.60s: must be a number within %g:%g", flag, text, low, high);
+    return moray_ok();
+}
+
+static moray_status whole(const char *flag, const char *text, double high, double *value)
+{
+    MORAY_TRY(number(flag, text, 1, high, value));
+    return *value == floor(*value) ? moray_ok()
+                                   : moray_error(MORAY_INPUT, "--%s %.60s: must be a whole number", flag, text);
+}
+
+static moray_status add_show(sweep_arguments *a, const char *name)
+{
+    const int most = (int)(sizeof a->show / sizeof *a->show);
+    if (a->shown == most)
+        return moray_error(MORAY_INPUT, "more than %d numbers to draw", most);
+    a->show[a->shown++] = name;
+    return moray_ok();
+}
+
+typedef struct reading {
+    sweep_arguments *a;
+    bool listing; // names that follow belong to the list
+    moray_status status;
+} reading;
+
+static moray_status take_name(reading *r, const char *name)
+{
+    if (r->listing)
+        return add_files(r->a, &r->a->axis[r->a->axes - 1], name);
+    if (r->a->program)
+        return moray_error(MORAY_INPUT, "unexpected argument %.60s; what the program itself is to be given stands "
+                                        "behind --",
+                           name);
+    r->a->program = sweepable_find(name);
+    return r->a->program ? moray_ok()
+                         : moray_error(MORAY_INPUT, "no program %.60s to sweep; --help lists them", name);
+}
+
+static moray_status take(reading *r, int key, char *value)
+{
+    sweep_arguments *a = r->a;
+    double x = 0;
+    moray_status status = moray_ok();
+    if (key != ARGP_KEY_ARG)
+        r->listing = key == KEY_LIST;
+    switch (key) {
+    case ARGP_KEY_ARG:
+        return take_name(r, value);
+    case KEY_GRID:
+        return add_grid(a, value);
+    case KEY_LIST:
+        return add_list(a, value);
+    case KEY_RANGE:
+        return add_range(a, value);
+    case KEY_SHOW:
+        return add_show(a, value);
+    case KEY_RANDOM:
+        status = whole("random", value, 1e9, &x);
+        a->draws = (long)x;
+        return status;
+    case KEY_SEED:
+        status = whole("seed", value, 0x1p53, &x);
+        a->seed = (uint64_t)x;
+        return status;
+    case KEY_JOBS:
+        status = whole("jobs", value, 10000, &x);
+        a->jobs = (int)x;
+        return status;
+    case KEY_TIME:
+        return number("time", value, 1e-3, 1e9, &a->point_seconds);
+    case KEY_MEMORY:
+        return number("memory", value, 1, 1e9, &a->point_megabytes);
+    case KEY_FILE:
+        a->file = value;
+        return status;
+    case KEY_OUT:
+        a->out = value;
+        return status;
+    case KEY_OBJECTIVE:
+        a->objective = value;
+        return status;
+    case KEY_COLD:
+        a->cold = true;
+        return status;
+    case KEY_QUIET:
+        a->quiet = true;
+        return status;
+    default:
+        a->json = a->json || key == KEY_JSON;
+        return status;
+    }
+}
+
+static error_t parse_one(int key, char *value, struct argp_state *state)
+{
+    reading *r = state->input;
+    if (key == KEY_VERSION) {
+        printf("sweep (moray) %s\n", moray_version());
+        exit(MORAY_EXIT_SOLVED);
+    }
+    if (key != ARGP_KEY_ARG && key < KEY_GRID)
+        return ARGP_ERR_UNKNOWN;
+    if (key > KEY_VERSION)
+        return ARGP_ERR_UNKNOWN;
+    r->status = take(r, key, value);
+    return moray_failed(r->status) ? EINVAL : 0;
+}
+
+static char *list_programs(int key, const char *text, void *input)
+{
+    (void)input;
+    if (key != ARGP_KEY_HELP_POST_DOC)
+        return (char *)(uintptr_t)text;
+    char *list = NULL;
+    size_t size;
+    FILE *file = open_memstream(&list, &size);
+    if (!file)
+        return NULL;
+    fprintf(file, "Programs:");
+    for (const sweepable *one = sweepables; one->name; one++)
+        fprintf(file, " %s", one->name);
+    fprintf(file, "\n");
+    fclose(file);
+    return list;
+}
+
+static moray_status complete(sweep_arguments *a)
+{
+    if (!a->program)
+        return moray_error(MORAY_INPUT, "which program is to be swept? --help lists them");
+    if (!a->objective)
+        a->objective = a->program->objective;
+    if (a->file)
+        return moray_ok();
+    char name[80], *copy;
+    snprintf(name, sizeof name, "%s.nc", a->program->name);
+    MORAY_TRY(copy_of(a, name, &copy));
+    a->file = copy;
+    return moray_ok();
+}
+
+bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *exit_code)
+{
+    static const struct argp parser = {
+        options, parse_one, "PROGRAM [-- ARGUMENTS OF THE PROGRAM]",
+        "Runs a program over all combinations of settings, on all cores or, under mpirun or srun, on many machines.\v",
+        NULL, list_programs, NULL};
+    *found = (sweep_arguments){.seed = 1};
+    reading r = {.a = found, .status = moray_ok()};
+    int own = argc;
+    for (int k = 1; k < argc && own == argc; k++)
+        if (strcmp(argv[k], "--") == 0)
+            own = k;
+    found->rest = argv + own + 1;
+    found->rest_n = own < argc ? argc - own - 1 : 0;
+    argp_err_exit_status = MORAY_EXIT_USAGE; // what argp itself does not understand ends the program there
+    const error_t error = argp_parse(&parser, own, argv, 0, NULL, &r);
+    if (!moray_failed(r.status))
+        r.status = error ? moray_error(MORAY_MEMORY, "the command line: %s", strerror(error)) : complete(found);
+    if (!moray_failed(r.status))
+        return true;
+    fprintf(stderr, "sweep: %s\n", r.status.text);
+    *exit_code = moray_exit_of(r.status.code);
+    sweep_arguments_free(found);
+    return false;
+}
+
+void sweep_arguments_free(sweep_arguments *a)
+{
+    for (int k = 0; k < a->axes; k++) {
+        free((void *)(uintptr_t)a->axis[k].value);
+        free((void *)(uintptr_t)a->axis[k].word);
+    }
+    for (int k = 0; k < a->n_owned; k++)
+        free(a->owned[k]);
+    free(a->owned);
+    *a = (sweep_arguments){0};
+}

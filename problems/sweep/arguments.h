@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// The command line of the program sweep.
+#ifndef PROBLEMS_SWEEP_ARGUMENTS_H
+#define PROBLEMS_SWEEP_ARGUMENTS_H
+
+#include "moray/app/sweep.h"
+#include "sweep/programs.h"
+
+typedef struct sweep_arguments {
+    const sweepable *program;
+    int rest_n; // the program's own arguments
+    char **rest;
+    moray_sweep_axis axis[MORAY_SWEEP_AXES];
+    moray_sweep_range range[MORAY_SWEEP_RANGES];
+    int axes, ranges;
+    long draws;
+    uint64_t seed;
+    const char *file, *out; // out: NULL for none
+    char **owned;           // [n_owned]: texts to be freed
+    int n_owned;
+    const char *objective;  // NULL: the program's
+    const char *show[8];    // numbers to draw
+    int shown, jobs;
+    double point_seconds, point_megabytes;
+    bool cold, quiet, json;
+} sweep_arguments;
+
+// Reads argv with argp; answers --help and --version. False: the program is to end with *exit_code, what is to be said
+// has been said. Everything in *found is freed by sweep_arguments_free.
+bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *exit_code);
+void sweep_arguments_free(sweep_arguments *arguments);
+
+#endif

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+//
+// Round 0 goes down the trees of parents: a point begins with the solution of the nearest solved point above it, and
+// from the default where that fails or is not there. The rounds behind it look for branches: where a line through two
+// neighbours promises a better value than a point has, the point is solved once more from the nearer of the two. All
+// decisions of a round rest on what the round before left, so that they do not depend on who was first.
+#include "sweep/sweep.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { ROUNDS = 3, TREE_LEVELS = 8 };
+
+static moray_status make_trees(struct plan *plan)
+{
+    const size_t n = (size_t)plan->grid->points;
+    plan->child = malloc(n * sizeof *plan->child);
+    plan->sibling = malloc(n * sizeof *plan->sibling);
+    if (!plan->child || !plan->sibling)
+        return moray_error(MORAY_MEMORY, "no memory for a plan of %ld points", plan->grid->points);
+    for (long k = 0; k < plan->grid->points; k++)
+        plan->child[k] = plan->sibling[k] = -1;
+    return moray_ok();
+}
+
+// The ring has room for all: every point waits at most once in a round, and once more for its default start.
+static void add(struct plan *plan, struct task task)
+{
+    if (task.start >= 0)
+        task.start_round = plan->store->round[task.start];
+    plan->ready[(plan->head + plan->n) % plan->room] = task;
+    plan->n++;
+}
+
+moray_status moray_plan_new(struct plan *plan, const struct grid *grid, struct store *store)
+{
+    *plan = (struct plan){.grid = grid, .store = store, .expected = grid->points, .room = 2 * grid->points};
+    plan->ready = malloc((size_t)plan->room * sizeof *plan->ready);
+    moray_status status =
+        plan->ready ? make_trees(plan) : moray_error(MORAY_MEMORY, "no memory for a plan of %ld points", grid->points);
+    for (long k = grid->points - 1; !moray_failed(status) && k >= 0; k--) {
+        const long parent = grid->spec->warm ? moray_grid_parent(grid, k) : -1;
+        if (parent < 0)
+            continue;
+        plan->sibling[k] = plan->child[parent];
+        plan->child[parent] = k;
+    }
+    for (long k = 0; !moray_failed(status) && k < grid->points; k++)
+        if (!grid->spec->warm || moray_grid_parent(grid, k) < 0)
+            add(plan, (struct task){.point = k, .start = -1});
+    if (moray_failed(status))
+        moray_plan_free(plan);
+    return status;
+}
+
+void moray_plan_free(struct plan *plan)
+{
+    free(plan->ready);
+    free(plan->child);
+    free(plan->sibling);
+    *plan = (struct plan){0};
+}
+
+static long solved_above(const struct plan *plan, long point)
+{
+    for (int level = 0; level < TREE_LEVELS && point >= 0; level++) {
+        point = moray_grid_parent(plan->grid, point);
+        if (point >= 0 && plan->store->state[point] == POINT_SOLVED)
+            return point;
+    }
+    return -1;
+}
+
+static void add_children(struct plan *plan, long point)
+{
+    for (long k = plan->child[point]; k >= 0; k = plan->sibling[k])
+        add(plan, (struct task){.point = k, .start = solved_above(plan, k)});
+}
+
+// What the line through the neighbour and the point behind it promises, and how sure that is.
+static bool promises(const struct plan *plan, long point, int axis, int side, long *neighbour, double *lead)
+{
+    const struct store *store = plan->store;
+    const long near = moray_grid_step(plan->grid, point, axis, side),
+               behind = moray_grid_step(plan->grid, point, axis, 2 * side);
+    if (near < 0 || store->state[near] != POINT_SOLVED || !isfinite(store->objective[near]))
+        return false;
+    const double at_near = store->objective[near];
+    const bool line = behind >= 0 && store->state[behind] == POINT_SOLVED && isfinite(store->objective[behind]);
+    const double slope = line ? at_near - store->objective[behind] : 0;
+    const double promised = at_near + slope, margin = fabs(slope) / 2 + 1e-4 * fabs(at_near);
+    *neighbour = near;
+    *lead = store->state[point] == POINT_SOLVED ? store->objective[point] - promised - margin : INFINITY;
+    return *lead > 0 && store->start[point] != near;
+}
+
+static void add_branches(struct plan *plan)
+{
+    for (long point = 0; point < plan->grid->points; point++) {
+        long best = -1;
+        double most = 0;
+        for (int axis = 0; axis < plan->grid->axes; axis++)
+            for (int side = -1; side <= 1 && moray_grid_numeric(plan->grid, axis); side += 2) {
+                long near;
+                double lead;
+                if (promises(plan, point, axis, side, &near, &lead) && lead > most) {
+                    most = lead;
+                    best = near;
+                }
+            }
+        if (best >= 0)
+            add(plan, (struct task){.point = point, .start = best, .round = plan->round});
+    }
+    plan->expected += plan->n;
+}
+
+bool moray_plan_next(struct plan *plan, struct task *next)
+{
+    while (plan->n == 0 && plan->pending == 0 && plan->grid->spec->warm && plan->grid->spec->objective &&
+           plan->round < ROUNDS) {
+        plan->round++;
+        add_branches(plan);
+        if (plan->n == 0)
+            plan->round = ROUNDS;
+    }
+    if (plan->n == 0)
+        return false;
+    *next = plan->ready[plan->head];
+    plan->head = (plan->head + 1) % plan->room;
+    plan->n--;
+    plan->pending++;
+    return true;
+}
+
+moray_status moray_plan_answer(struct plan *plan, const struct record *record, bool *better)
+{
+    const struct task *task = &record->task;
+    const bool solved = record->code == MORAY_OK, had = plan->store->state[task->point] == POINT_SOLVED;
+    plan->pending--;
+    plan->answered++;
+    plan->warm += task->start >= 0 && task->round == 0;
+    plan->held += task->start >= 0 && task->round == 0 && solved;
+    MORAY_TRY(moray_store_add(plan->store, record, better));
+    plan->improved += task->round > 0 && *better && (had || solved);
+    if (task->round == 0 && task->start >= 0 && !solved) {
+        plan->expected++;
+        add(plan, (struct task){.point = task->point, .start = -1});
+    } else if (task->round == 0) {
+        add_children(plan, task->point);
+    }
+    return moray_ok();
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// The one file that calls MPI.
+#include <mpi.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sweep/sweep.h"
+
+// Set by mpirun of Open MPI, of MPICH, and by srun with PMIx or PMI; without one of them nobody started several.
+static bool started_by_many(void)
+{
+    static const char *const signs[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
+    for (unsigned k = 0; k < sizeof signs / sizeof *signs; k++)
+        if (getenv(signs[k]))
+            return true;
+    return false;
+}
+
+static void end(void)
+{
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (!ended)
+        MPI_Finalize();
+}
+
+struct ranks moray_ranks_begin(void)
+{
+    static struct ranks known;
+    int begun = 0;
+    if (known.size > 0)
+        return known;
+    known = (struct ranks){1, 0};
+    if (!started_by_many())
+        return known;
+    MPI_Initialized(&begun);
+    if (!begun && MPI_Init(NULL, NULL) == MPI_SUCCESS)
+        atexit(end);
+    MPI_Comm_size(MPI_COMM_WORLD, &known.size);
+    MPI_Comm_rank(MPI_COMM_WORLD, &known.rank);
+    return known;
+}
+
+int moray_sweep_rank(void)
+{
+    return moray_ranks_begin().rank;
+}
+
+void moray_ranks_send(int to, const char *text)
+{
+    MPI_Send(text, (int)strlen(text) + 1, MPI_CHAR, to, 0, MPI_COMM_WORLD);
+}
+
+char *moray_ranks_receive(int *from)
+{
+    int there = 0, length = 0;
+    MPI_Status about;
+    MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &there, &about);
+    if (!there)
+        return NULL;
+    MPI_Get_count(&about, MPI_CHAR, &length);
+    char *text = malloc((size_t)length + 1);
+    if (!text)
+        return NULL;
+    MPI_Recv(text, length, MPI_CHAR, about.MPI_SOURCE, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    text[length] = 0;
+    *from = about.MPI_SOURCE;
+    return text;
+}

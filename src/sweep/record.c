@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE // strndup
+#include "sweep/sweep.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void moray_record_free(struct record *record)
+{
+    free(record->reason);
+    free(record->found);
+    *record = (struct record){0};
+}
+
+char *moray_record_line(const struct record *record)
+{
+    cJSON *line = cJSON_CreateObject();
+    bool ok = cJSON_AddNumberToObject(line, "point", (double)record->task.point) &&
+              cJSON_AddNumberToObject(line, "round", record->task.round) &&
+              cJSON_AddNumberToObject(line, "start", (double)record->task.start) &&
+              cJSON_AddNumberToObject(line, "start_round", record->task.start_round) &&
+              cJSON_AddNumberToObject(line, "code", record->code) &&
+              cJSON_AddNumberToObject(line, "seconds", record->seconds) &&
+              cJSON_AddStringToObject(line, "reason", record->reason ? record->reason : "");
+    if (ok && record->found)
+        ok = cJSON_AddRawToObject(line, "found", record->found);
+    char *text = ok ? cJSON_PrintUnformatted(line) : NULL;
+    cJSON_Delete(line);
+    return text;
+}
+
+static double member(const cJSON *line, const char *key)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(line, key);
+    return cJSON_IsNumber(item) ? item->valuedouble : NAN;
+}
+
+// As it stands at the end of the line: printed anew, numbers would lose digits.
+static char *raw_found(const char *line)
+{
+    static const char key[] = ",\"found\":"; // inside a text the quotes would be escaped
+    const char *at = strstr(line, key), *end = strrchr(line, '}');
+    return at && end ? strndup(at + sizeof key - 1, (size_t)(end - at) - (sizeof key - 1)) : NULL;
+}
+
+moray_status moray_record_read(const char *text, struct record *record)
+{
+    *record = (struct record){0};
+    cJSON *line = cJSON_Parse(text);
+    const double point = member(line, "point"), round = member(line, "round"), start = member(line, "start"),
+                 start_round = member(line, "start_round"), code = member(line, "code"), seconds = member(line, "seconds");
+    const cJSON *reason = cJSON_GetObjectItemCaseSensitive(line, "reason");
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(line, "found");
+    moray_status status = moray_ok();
+    if (!(point >= 0 && round >= 0 && start >= -1 && start_round >= 0 && code >= MORAY_OK && code <= MORAY_INTERRUPTED && seconds >= 0 &&
+          cJSON_IsString(reason) && (!found || cJSON_IsObject(found)))) {
+        status = moray_error(MORAY_INPUT, "no record of a sweep: %.60s", text);
+    } else {
+        record->task = (struct task){(long)point, (long)start, (int)round, (int)start_round};
+        record->code = (moray_code)code;
+        record->seconds = seconds;
+        record->reason = strdup(reason->valuestring);
+        record->found = found ? raw_found(text) : NULL;
+        if (!record->reason || (found && !record->found))
+            status = moray_error(MORAY_MEMORY, "no memory for a record");
+    }
+    cJSON_Delete(line);
+    if (moray_failed(status))
+        moray_record_free(record);
+    return status;
+}
+
+moray_status moray_json_on_one_line(const char *text, char **line)
+{
+    cJSON *object = text ? cJSON_Parse(text) : NULL;
+    const bool is_object = cJSON_IsObject(object);
+    cJSON_Delete(object);
+    *line = is_object ? strdup(text) : NULL;
+    if (*line)
+        cJSON_Minify(*line);
+    const bool failed = is_object && !*line;
+    return failed ? moray_error(MORAY_MEMORY, "no memory for a summary") : moray_ok();
+}

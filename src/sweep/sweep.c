@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "sweep/sweep.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "moray/app/options.h"
+#include "moray/app/results.h"
+
+typedef struct run {
+    const moray_sweep_spec *spec;
+    struct grid grid;
+    struct store store;
+    struct plan plan;
+    struct journal journal;
+    struct crew crew;
+    moray_ticker ticker;
+    moray_sweep_result *result;
+    double begun, saved, saving; // clock; of the last saving; what that took
+    long fresh, refused;         // attempts of this run; of all, those that were bad input
+} run;
+
+// What has to be the same for a file to be gone on with, on one line.
+static char *identity_of(const struct grid *grid)
+{
+    const moray_sweep_spec *spec = grid->spec;
+    moray_json *json = moray_json_new();
+    moray_json_text(json, "sweep of moray", moray_version());
+    moray_json_text(json, "configuration", spec->configuration);
+    moray_json_text(json, "objective", spec->objective);
+    moray_json_bool(json, "warm", spec->warm);
+    for (int k = 0; k < spec->axes; k++) {
+        const moray_sweep_axis *axis = &spec->axis[k];
+        if (axis->value)
+            moray_json_numbers(json, axis->key, axis->value, axis->n);
+        moray_json_open_list(json, axis->key);
+        for (int i = 0; !axis->value && i < axis->n; i++)
+            moray_json_text(json, NULL, axis->word[i]);
+        moray_json_close(json);
+    }
+    for (int r = 0; r < spec->ranges; r++)
+        moray_json_numbers(json, spec->range[r].key, (const double[]){spec->range[r].low, spec->range[r].high}, 2);
+    moray_json_numbers(json, "draws, seed", (const double[]){(double)spec->draws, (double)spec->seed}, 2);
+    char *text = NULL, *line = NULL;
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    const bool written = file && !moray_failed(moray_json_write(json, file));
+    if (file)
+        fclose(file);
+    if (written && moray_failed(moray_json_on_one_line(text, &line)))
+        line = NULL;
+    free(text);
+    moray_json_free(json);
+    return line;
+}
+
+static void path_of(const moray_sweep_spec *spec, const char *end, char path[4200])
+{
+    snprintf(path, 4200, "%s.%s", spec->file, end);
+}
+
+static moray_status make_folder(const moray_sweep_spec *spec)
+{
+    char path[4200];
+    path_of(spec, "solutions", path);
+    if (!spec->warm || mkdir(path, 0777) == 0 || errno == EEXIST)
+        return moray_ok();
+    return moray_error(MORAY_IO, "%.200s: %s", path, strerror(errno));
+}
+
+static void remove_folder(const moray_sweep_spec *spec)
+{
+    char path[4200], name[4600];
+    path_of(spec, "solutions", path);
+    DIR *folder = opendir(path);
+    for (const struct dirent *entry; folder && (entry = readdir(folder));) {
+        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
+        if (entry->d_name[0] != '.')
+            unlink(name);
+    }
+    if (folder)
+        closedir(folder);
+    rmdir(path);
+}
+
+static moray_status save(run *r, bool finished)
+{
+    const double begun = moray_clock();
+    const moray_status status = moray_store_write(&r->store, finished);
+    r->saved = moray_clock();
+    r->saving = r->saved - begun;
+    r->result->saving += r->saving;
+    return status;
+}
+
+// Often enough to be looked at, and never so often that it costs more than a few percent.
+static moray_status save_at_times(run *r)
+{
+    const double least = r->spec->save_seconds > 0 ? r->spec->save_seconds : 30;
+    return moray_clock() - r->saved > fmax(least, 50 * r->saving) ? save(r, false) : moray_ok();
+}
+
+static void tell(const run *r)
+{
+    const double seconds = moray_clock() - r->begun, rate = (double)r->fresh / seconds;
+    const long left = r->plan.expected - r->plan.answered;
+    if (r->fresh > 0)
+        moray_ticker_show(&r->ticker, "sweep: %ld of %ld, %ld failed, %.3g a second, %.0f s left", r->plan.answered,
+                          r->plan.expected, r->result->failed, rate, (double)left / rate);
+}
+
+// A key that the program has not is no matter of a point.
+enum { enough_refused = 4 };
+
+static moray_status take(run *r, const struct record *record)
+{
+    bool better;
+    const signed char before = r->store.state[record->task.point];
+    MORAY_TRY(moray_plan_answer(&r->plan, record, &better));
+    const signed char now = r->store.state[record->task.point];
+    r->result->failed += (now == POINT_FAILED) - (before == POINT_FAILED);
+    r->result->solved += (now == POINT_SOLVED) - (before == POINT_SOLVED);
+    r->refused += record->code == MORAY_INPUT;
+    return r->refused == r->plan.answered && (r->refused == enough_refused || r->refused == r->grid.points)
+               ? moray_error(MORAY_INPUT, "every point so far is refused: %.250s", record->reason)
+               : moray_ok();
+}
+
+static moray_status wait_for_one(run *r)
+{
+    struct record record = {0};
+    bool found;
+    MORAY_TRY(moray_crew_wait(&r->crew, 0.5, &record, &found));
+    if (found) {
+        const double begun = moray_clock();
+        moray_status status = moray_journal_add(&r->journal, &record);
+        r->result->saving += moray_clock() - begun;
+        r->result->busy += record.seconds;
+        r->fresh++;
+        if (!moray_failed(status))
+            status = take(r, &record);
+        moray_record_free(&record);
+        MORAY_TRY(status);
+    }
+    tell(r);
+    return save_at_times(r);
+}
+
+static moray_status begin_or_recall(run *r, const struct task *task)
+{
+    const struct record *old = moray_journal_find(&r->journal, task);
+    if (!old)
+        return moray_crew_begin(&r->crew, task);
+    r->result->before++;
+    return take(r, old);
+}
+
+static moray_status solve_all(run *r)
+{
+    struct task task;
+    for (;;) {
+        while (moray_crew_idle(&r->crew) && moray_plan_next(&r->plan, &task))
+            MORAY_TRY(begin_or_recall(r, &task));
+        if (r->plan.pending == 0)
+            return moray_ok();
+        if (r->spec->stop && r->spec->stop())
+            return moray_error(MORAY_INTERRUPTED, "interrupted with %ld of %ld attempts made; the same command goes on",
+                               r->plan.answered, r->plan.expected);
+        MORAY_TRY(wait_for_one(r));
+    }
+}
+
+// Of a sweep whose every point was refused nothing is worth going on with.
+static void remove_all(const moray_sweep_spec *spec)
+{
+    char path[4200];
+    path_of(spec, "journal", path);
+    unlink(path);
+    unlink(spec->file);
+    remove_folder(spec);
+}
+
+static moray_status finish(run *r, moray_status status)
+{
+    if (status.code == MORAY_INPUT) {
+        remove_all(r->spec);
+        return status;
+    }
+    const bool finished = !moray_failed(status);
+    const moray_status saved = save(r, finished);
+    if (finished)
+        status = saved;
+    if (!moray_failed(status) && !r->journal.finished)
+        status = moray_journal_add(&r->journal, NULL);
+    if (!moray_failed(status))
+        remove_folder(r->spec);
+    return status;
+}
+
+static moray_status lead(run *r)
+{
+    char path[4200], *identity = identity_of(&r->grid);
+    path_of(r->spec, "journal", path);
+    moray_status status = identity ? moray_journal_open(&r->journal, path, identity)
+                                   : moray_error(MORAY_MEMORY, "no memory for a journal");
+    free(identity);
+    MORAY_TRY(status);
+    status = make_folder(r->spec);
+    if (!moray_failed(status))
+        status = save(r, false); // before hours of work: whether it can be written at all
+    if (!moray_failed(status))
+        status = finish(r, solve_all(r));
+    r->result->warm = r->plan.warm;
+    r->result->held = r->plan.held;
+    r->result->improved = r->plan.improved;
+    moray_journal_close(&r->journal);
+    return status;
+}
+
+static moray_status work(run *r)
+{
+    r->result->points = r->grid.points;
+    r->result->ranks = r->crew.ranks;
+    r->result->jobs = r->crew.n_workers;
+    if (r->crew.rank > 0)
+        return moray_crew_serve(&r->crew);
+    MORAY_TRY(moray_store_new(&r->store, &r->grid));
+    moray_status status = moray_plan_new(&r->plan, &r->grid, &r->store);
+    if (!moray_failed(status)) {
+        r->ticker = moray_ticker_start(stderr, r->spec->quiet);
+        status = lead(r);
+        moray_ticker_end(&r->ticker);
+    }
+    moray_plan_free(&r->plan);
+    moray_store_free(&r->store);
+    return status;
+}
+
+moray_status moray_sweep(const moray_sweep_spec *spec, moray_sweep_result *result)
+{
+    *result = (moray_sweep_result){0};
+    run r = {.spec = spec, .result = result, .begun = moray_clock(), .journal = {.fd = -1}};
+    if (!spec->file || !*spec->file || strlen(spec->file) > 4000)
+        return moray_error(MORAY_INPUT, "file of a sweep: must be a path of at most 4000 characters");
+    MORAY_TRY(moray_grid_new(spec, &r.grid));
+    MORAY_TRY(moray_crew_new(&r.crew, &r.grid));
+    const moray_status status = work(&r);
+    moray_crew_free(&r.crew);
+    result->seconds = moray_clock() - r.begun;
+    return status;
+}

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+//
+// Pieces of a sweep: the grid of points, what a point left (record), all that is known (store), its journal on disk and
+// its NetCDF file, the plan of what is solved next from what, and the crew that solves it.
+#ifndef SRC_SWEEP_SWEEP_H
+#define SRC_SWEEP_SWEEP_H
+
+#include <poll.h>
+#include <stddef.h>
+#include <sys/types.h>
+
+#include "moray/app/sweep.h"
+
+// ---- Grid ----------------------------------------------------------------------------------------------------------
+
+// Axes of the points, the slowest first; with draws, theirs is axis 0 and the spec's follow.
+enum { GRID_AXES = MORAY_SWEEP_AXES + 1 };
+struct grid {
+    const moray_sweep_spec *spec;
+    int axes, first; // first: of the spec's axes, 1 with draws
+    long shape[GRID_AXES], points;
+};
+
+moray_status moray_grid_new(const moray_sweep_spec *spec, struct grid *grid); // Error: MORAY_INPUT
+void moray_grid_place(const struct grid *grid, long point, long at[GRID_AXES]);
+bool moray_grid_numeric(const struct grid *grid, int axis); // its values are numbers, so that its neighbours are near
+
+// Where a point begins unless it is the first of its kind: a point nearer to the middle of the numeric axes, or an
+// earlier draw near it. -1: nowhere.
+long moray_grid_parent(const struct grid *grid, long point);
+
+// The point `steps` further along an axis, or -1.
+long moray_grid_step(const struct grid *grid, long point, int axis, long steps);
+
+// Value of range r in a draw: of (seed, draw, r) alone.
+double moray_grid_draw(const moray_sweep_spec *spec, long draw, int r);
+
+// Settings of a point: texts into text[32 n]; n = axes + ranges of the spec.
+void moray_grid_settings(const struct grid *grid, long point, moray_key_value *setting, double *value, char (*text)[32]);
+
+// ---- Records -------------------------------------------------------------------------------------------------------
+
+// One attempt at a point.
+struct task {
+    long point, start; // start: the point whose solution it begins with, -1: the default
+    int round;         // 0: from its parent; 1...: from neighbours whose branch is better
+    int start_round;   // in which the solution at `start` was found
+};
+
+struct record {
+    struct task task;
+    moray_code code;
+    double seconds;
+    char *reason, *found; // owned; found: a JSON object on one line, or NULL
+};
+
+void moray_record_free(struct record *record);
+char *moray_record_line(const struct record *record);                 // to be freed; NULL: no memory
+moray_status moray_record_read(const char *line, struct record *record); // Error: MORAY_INPUT, MORAY_MEMORY
+// The object that a text holds, on one line, to be freed; NULL where it holds none. Error: MORAY_MEMORY.
+moray_status moray_json_on_one_line(const char *text, char **line);
+
+// ---- Store ---------------------------------------------------------------------------------------------------------
+
+enum { POINT_UNTRIED, POINT_SOLVED, POINT_FAILED };
+struct store {
+    const struct grid *grid;
+    int n, room; // columns
+    char **name;
+    double **value; // [n][points], NaN where there is none
+    signed char *state, *code, *round; // [points]; round: in which what it has was found
+    long *start;
+    double *seconds, *objective, *other; // other: the objective of a branch that was given up, NaN: none
+    char **reason;
+};
+
+moray_status moray_store_new(struct store *store, const struct grid *grid); // Error: MORAY_MEMORY
+void moray_store_free(struct store *store);
+
+// Takes an attempt in: the point keeps the better of two solutions, and any solution before a failure. *better tells
+// whether the attempt is now what the point has. Error: MORAY_MEMORY.
+moray_status moray_store_add(struct store *store, const struct record *record, bool *better);
+
+// ---- Journal -------------------------------------------------------------------------------------------------------
+
+// Lines of records behind a first line that says of which sweep they are; every line with its checksum. A line that is
+// torn ends it.
+struct journal {
+    int fd;
+    FILE *file; // of fd, to read it; closing it would end the lock
+    double synced; // clock of the last one
+    struct record *old;   // what was there when it was opened, by (point, round, start)
+    long n_old;
+    bool finished; // when it was opened
+};
+
+// Opens or makes it, locks it, reads what is there. Error: MORAY_INPUT (another sweep's; another process has it),
+// MORAY_IO, MORAY_MEMORY.
+moray_status moray_journal_open(struct journal *journal, const char *path, const char *identity);
+void moray_journal_close(struct journal *journal);
+const struct record *moray_journal_find(const struct journal *journal, const struct task *task); // of the old ones; or NULL
+moray_status moray_journal_add(struct journal *journal, const struct record *record);     // Error: MORAY_IO, MORAY_MEMORY
+
+// ---- NetCDF --------------------------------------------------------------------------------------------------------
+
+// Writes all that is known to spec->file, at once. Error: MORAY_IO.
+moray_status moray_store_write(const struct store *store, bool finished);
+
+// ---- Plan ----------------------------------------------------------------------------------------------------------
+
+// What is to be done next, from what is known. The same answers give the same plan, in whatever order they come.
+struct plan {
+    const struct grid *grid;
+    struct store *store;
+    struct task *ready; // a ring of `room`
+    long room, head, n;
+    long *child, *sibling; // trees of parents, -1: none
+    long pending;          // handed out, not answered
+    int round;
+    long answered, expected; // attempts, of those known so far
+    long warm, held, improved;
+};
+
+moray_status moray_plan_new(struct plan *plan, const struct grid *grid, struct store *store); // Error: MORAY_MEMORY
+void moray_plan_free(struct plan *plan);
+bool moray_plan_next(struct plan *plan, struct task *next); // false: none now (all done where nothing is pending)
+moray_status moray_plan_answer(struct plan *plan, const struct record *record, bool *better);
+
+// ---- Processes -----------------------------------------------------------------------------------------------------
+
+double moray_clock(void); // seconds
+
+// A point being solved in a process of its own.
+struct worker {
+    pid_t pid; // 0: idle
+    struct task task;
+    int pipe[2]; // to read from: the summary; what it says besides
+    char *text[2];
+    size_t length[2];
+    double begun, deadline;
+    bool late;
+    int wait_status;
+};
+
+moray_status moray_worker_begin(struct worker *worker, const struct grid *grid, const struct task *task);      // Error: MORAY_IO
+moray_status moray_worker_read(struct worker *worker, bool *ended);                              // Error: MORAY_MEMORY
+moray_status moray_worker_record(struct worker *worker, const struct grid *grid, struct record *record);       // once ended; then idle
+void moray_worker_kill(struct worker *worker);
+
+// Where a point leaves its solution, into path[size].
+void moray_solution_path(const moray_sweep_spec *spec, long point, int round, char *path, size_t size);
+
+// Everybody who solves points: processes of this machine or ranks.
+struct crew {
+    const struct grid *grid;
+    int n_workers;
+    struct worker *worker;
+    struct pollfd *poll; // [2 n_workers]
+    int ranks, rank;
+    bool *busy; // [ranks]: a rank other than this one
+};
+
+moray_status moray_crew_new(struct crew *crew, const struct grid *grid);
+void moray_crew_free(struct crew *crew); // kills what runs, sends the ranks home
+bool moray_crew_idle(const struct crew *crew); // somebody waits for a task
+moray_status moray_crew_begin(struct crew *crew, const struct task *task);
+// Waits at most `seconds` for a record. Error: MORAY_MEMORY, MORAY_IO.
+moray_status moray_crew_wait(struct crew *crew, double seconds, struct record *record, bool *found);
+moray_status moray_crew_serve(struct crew *crew); // on other ranks: works until it is sent home
+
+// MPI, whatever its library: sizes and messages of one text.
+struct ranks {
+    int size, rank;
+};
+struct ranks moray_ranks_begin(void); // {1, 0} where nobody started several; ends with the process
+void moray_ranks_send(int to, const char *text);
+char *moray_ranks_receive(int *from); // a text that has come, to be freed, or NULL
+
+#endif

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE // pipe2
+#include "sweep/sweep.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+// Between what a point said along the way and the text of its status.
+static const char mark = '\036';
+
+double moray_clock(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void moray_solution_path(const moray_sweep_spec *spec, long point, int round, char *path, size_t size)
+{
+    snprintf(path, size, "%s.solutions/%ld.%d", spec->file, point, round);
+}
+
+static void limit_memory(double megabytes)
+{
+    if (megabytes <= 0)
+        return;
+    const struct rlimit limit = {(rlim_t)(megabytes * 1048576), (rlim_t)(megabytes * 1048576)};
+    setrlimit(RLIMIT_AS, &limit); // where the system refuses it, the point runs without
+}
+
+// In the child: solves the point and ends.
+static _Noreturn void solve(const struct grid *grid, const struct task *task, int summary_fd)
+{
+    enum { most = MORAY_SWEEP_AXES + MORAY_SWEEP_RANGES };
+    const moray_sweep_spec *spec = grid->spec;
+    moray_key_value setting[most];
+    double value[most];
+    char text[most][32], guess[4200], solution[4200];
+    moray_grid_settings(grid, task->point, setting, value, text);
+    moray_solution_path(spec, task->point, task->round, solution, sizeof solution);
+    if (task->start >= 0)
+        moray_solution_path(spec, task->start, task->start_round, guess, sizeof guess);
+    const moray_sweep_point point = {.index = task->point,
+                                     .n = spec->axes + spec->ranges,
+                                     .setting = setting,
+                                     .value = value,
+                                     .guess = task->start >= 0 ? guess : NULL,
+                                     .solution = solution};
+    limit_memory(spec->point_megabytes);
+    FILE *summary = fdopen(summary_fd, "w");
+    moray_status status =
+        summary ? spec->solve(&point, summary, spec->self) : moray_error(MORAY_MEMORY, "no memory for a point");
+    if (summary)
+        fclose(summary);
+    fflush(NULL);
+    if (moray_failed(status) && status.text[0]) // else what it said last is the reason
+        dprintf(STDERR_FILENO, "%c%s", mark, status.text);
+    _exit((int)status.code);
+}
+
+// A process group of its own, so that a point can be ended with all that it started; and it ends with its parent.
+static _Noreturn void become_worker(const struct grid *grid, const struct task *task, const int summary[2], const int errors[2],
+                                    pid_t parent)
+{
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent)
+        _exit(MORAY_INTERRUPTED);
+    signal(SIGINT, SIG_IGN); // of a terminal, for the parent to answer
+    const int null = open("/dev/null", O_RDWR);
+    dup2(null, STDIN_FILENO);
+    dup2(null, STDOUT_FILENO);
+    dup2(errors[1], STDERR_FILENO);
+    const int out = fcntl(summary[1], F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    solve(grid, task, out);
+}
+
+static void close_pair(const int pair[2])
+{
+    close(pair[0]);
+    close(pair[1]);
+}
+
+moray_status moray_worker_begin(struct worker *worker, const struct grid *grid, const struct task *task)
+{
+    int summary[2], errors[2];
+    if (pipe2(summary, O_CLOEXEC) != 0)
+        return moray_error(MORAY_IO, "no pipe for a point: %s", strerror(errno));
+    if (pipe2(errors, O_CLOEXEC) != 0) {
+        close_pair(summary);
+        return moray_error(MORAY_IO, "no pipe for a point: %s", strerror(errno));
+    }
+    fflush(NULL);
+    const pid_t parent = getpid(), pid = fork();
+    if (pid == 0)
+        become_worker(grid, task, summary, errors, parent);
+    close(summary[1]);
+    close(errors[1]);
+    if (pid < 0) {
+        close(summary[0]);
+        close(errors[0]);
+        return moray_error(MORAY_IO, "no process for a point: %s", strerror(errno));
+    }
+    setpgid(pid, pid); // whoever is first
+    const double now = moray_clock(), limit = grid->spec->point_seconds;
+    *worker = (struct worker){.pid = pid,
+                              .task = *task,
+                              .pipe = {summary[0], errors[0]},
+                              .begun = now,
+                              .deadline = limit > 0 ? now + limit : INFINITY};
+    for (int k = 0; k < 2; k++)
+        fcntl(worker->pipe[k], F_SETFL, O_NONBLOCK);
+    return moray_ok();
+}
+
+// Keeps the first megabyte of the summary and the last kilobytes of the rest.
+static moray_status drain(struct worker *worker, int which, bool *at_end)
+{
+    enum { most_summary = 1 << 24, most_errors = 1 << 12 };
+    char piece[1 << 14];
+    ssize_t n;
+    while ((n = read(worker->pipe[which], piece, sizeof piece)) > 0 || (n < 0 && errno == EINTR)) {
+        if (n < 0)
+            continue;
+        size_t kept = worker->length[which];
+        if (which == 0 && kept + (size_t)n > most_summary)
+            continue;
+        char *text = realloc(worker->text[which], kept + (size_t)n + 1);
+        if (!text)
+            return moray_error(MORAY_MEMORY, "no memory for what a point says");
+        worker->text[which] = text;
+        memcpy(text + kept, piece, (size_t)n);
+        kept += (size_t)n;
+        if (which == 1 && kept > most_errors) {
+            memmove(text, text + kept - most_errors, most_errors);
+            kept = most_errors;
+        }
+        text[kept] = 0;
+        worker->length[which] = kept;
+    }
+    *at_end = n == 0;
+    return moray_ok();
+}
+
+moray_status moray_worker_read(struct worker *worker, bool *ended)
+{
+    bool at_end[2];
+    for (int k = 0; k < 2; k++)
+        MORAY_TRY(drain(worker, k, &at_end[k]));
+    if (moray_clock() > worker->deadline) {
+        worker->late = true;
+        kill(-worker->pid, SIGKILL);
+    }
+    int wait_status;
+    const pid_t pid = waitpid(worker->pid, &wait_status, at_end[0] || worker->late ? 0 : WNOHANG);
+    *ended = pid == worker->pid;
+    if (!*ended)
+        return moray_ok();
+    worker->wait_status = wait_status;
+    kill(-worker->pid, SIGKILL); // what it started and left
+    for (int k = 0; k < 2; k++)
+        MORAY_TRY(drain(worker, k, &at_end[k]));
+    return moray_ok();
+}
+
+// The text of the status, else the last line that is not empty.
+static const char *said(char *text, size_t length)
+{
+    char *at = text ? memchr(text, mark, length) : NULL;
+    if (at)
+        return at + 1;
+    while (length > 0 && (unsigned char)text[length - 1] <= ' ')
+        text[--length] = 0;
+    const char *line = text ? strrchr(text, '\n') : NULL;
+    return line ? line + 1 : text ? text : "";
+}
+
+static void judge(struct worker *worker, const struct grid *grid, struct record *record, char *reason, size_t size)
+{
+    const int wait_status = worker->wait_status;
+    const char *text = said(worker->text[1], worker->length[1]);
+    record->code = MORAY_NOT_SOLVED;
+    if (worker->late)
+        snprintf(reason, size, "took longer than %g s", grid->spec->point_seconds);
+    else if (WIFSIGNALED(wait_status))
+        snprintf(reason, size, "its process was ended by signal %d (%s)%s%.200s", WTERMSIG(wait_status),
+                 strsignal(WTERMSIG(wait_status)), *text ? ": " : "", text);
+    else if (WEXITSTATUS(wait_status) <= MORAY_INTERRUPTED)
+        record->code = (moray_code)WEXITSTATUS(wait_status);
+    if (!*reason && record->code != MORAY_OK)
+        snprintf(reason, size, "%s", *text ? text : moray_code_text(record->code));
+}
+
+moray_status moray_worker_record(struct worker *worker, const struct grid *grid, struct record *record)
+{
+    char reason[400] = "";
+    *record = (struct record){.task = worker->task, .seconds = moray_clock() - worker->begun};
+    judge(worker, grid, record, reason, sizeof reason);
+    record->reason = strdup(reason);
+    moray_status status = record->reason ? moray_json_on_one_line(worker->text[0], &record->found)
+                                         : moray_error(MORAY_MEMORY, "no memory for a record");
+    if (!moray_failed(status) && !record->found && record->code == MORAY_OK) {
+        record->code = MORAY_NOT_SOLVED;
+        free(record->reason);
+        record->reason = strdup("it left no summary");
+    }
+    for (int k = 0; k < 2; k++) {
+        close(worker->pipe[k]);
+        free(worker->text[k]);
+    }
+    *worker = (struct worker){0};
+    return status;
+}
+
+void moray_worker_kill(struct worker *worker)
+{
+    if (worker->pid == 0)
+        return;
+    kill(-worker->pid, SIGKILL);
+    waitpid(worker->pid, NULL, 0);
+    for (int k = 0; k < 2; k++) {
+        close(worker->pipe[k]);
+        free(worker->text[k]);
+    }
+    *worker = (struct worker){0};
+}
