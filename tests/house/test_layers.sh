@@ -15,6 +15,8 @@ allowed() {
         echo "$room $room"
         tr '\n' ' ' <"$build" | grep -o 'link_with: \[[^]]*\]' | grep -o '[a-z_]*_lib' |
             sed "s|_lib$||; s|^snake_|snake/|; s|^|$room |"
+        # A library of its own, on the whole of the other.
+        ! grep -q 'link_with: libmoray,' "$build" || printf '%s\n' "$room base" "$room options" "$room results"
     done
 }
 
@@ -31,6 +33,7 @@ public_headers() {
         moray/control/*) room=control ;;
         moray/app/options.h) room=options ;;
         moray/app/results.h) room=results ;;
+        moray/app/sweep.h) room=sweep ;;
         moray/app/*) room=run ;;
         moray/snake/model.h) room=snake/model ;;
         moray/snake/plant.h) room=snake/plant ;;

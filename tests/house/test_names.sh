@@ -25,11 +25,20 @@ nm -D --defined-only "$library" | awk '{ print $3 }' | sort -u >exported
 grep -v '^moray_' exported >foreign
 check "every symbol of the shared library is named moray_...: $(wc -l <foreign) foreign" none foreign
 tell foreign
-find "$source/include" -name '*.h' ! -name export.h -exec cat {} + | sed 's|//.*||' | tr '\n' ' ' | tr ';' '\n' |
+find "$source/include" -name '*.h' ! -name export.h ! -name sweep.h -exec cat {} + | sed 's|//.*||' | tr '\n' ' ' | tr ';' '\n' |
     sed -n 's/.*MORAY_API \(extern [^(]*\)$/\1/p; s/.*MORAY_API \([^(]*\)(.*/\1/p' | sed 's/.*[ *]//' | sort >declared
 check "$(wc -l <declared) functions are declared with MORAY_API, each once" eval '[ -s declared ] && [ -z "$(uniq -d declared)" ]'
 comm -3 declared exported >differ
 check "they are what the library exports: $(wc -l <differ) differ" none differ
+tell differ
+
+# ---- The library of sweeps, which is one of its own
+nm -D --defined-only "$build/src/sweep/libmoray-sweep.so" | awk '{ print $3 }' | sort -u >exported_sweep
+sed 's|//.*||' "$source/include/moray/app/sweep.h" | tr '\n' ' ' | tr ';' '\n' | sed -n 's/.*MORAY_API \([^(]*\)(.*/\1/p' |
+    sed 's/.*[ *]//' | sort >declared_sweep
+comm -3 declared_sweep exported_sweep >differ
+check "moray/app/sweep.h declares what it exports: $(wc -l <differ) of $(wc -l <declared_sweep) differ" eval \
+    '[ -s declared_sweep ] && [ ! -s differ ]'
 tell differ
 
 # ---- Static archives of the rooms, and what they hold beside the exported

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+# The program sweep as a user meets it. Arguments: the program, the source directory.
+. "$2/tests/program.sh"
+
+# values NAME FILE: the numbers of a variable, one a line, by a tool that is not ours.
+values() {
+    ncdump -v "$1" "$2" | awk -v name="$1" '$0 ~ "^ " name " =" { inside = 1; sub(/.*=/, "") } inside { print } inside && /;/ { exit }' |
+        tr -d ' ;"' | tr ',' '\n' | sed '/^$/d'
+}
+
+run simulate --grid links=4,6 --grid current_x=-0.1:0.1:3 --file a.nc --json --jobs 2
+check "two grids: $(cat err)" [ $code -eq 0 ]
+check "of six points: $(number solved)" [ "$(number solved)" = 6 ]
+check "ncdump reads the file" eval 'ncdump -h a.nc >header && grep -q "double robot_links(links, current_x)" header'
+check "which has conventions, command and version" eval \
+    'grep -q "Conventions = \"CF-1.8\"" header && grep -q ":command = \"sweep" header && grep -q ":version = " header'
+check "every point swam with its links: $(values robot_links a.nc | tr '\n' ' ')" [ \
+    "$(values robot_links a.nc | tr '\n' ' ')" = "4 4 4 6 6 6 " ]
+"${program%/*}/simulate" --links 6 --current=0.1,0 --json --quiet >alone
+check "and found what the program alone finds" near "$(values simulated_v_x_m_s a.nc | tail -n 1)" \
+    "$(sed -n 's/.*"v_x_m_s":[[:space:]]*\([^,]*\).*/\1/p' alone | head -n 1)" 0
+
+run simulate --grid links=4,6 --grid current_x=-0.1:0.1:3 --file a.nc --json
+check "once more: nothing is left to do" eval '[ $code -eq 0 ] && [ "$(number made_before)" = 6 ] && [ "$(number busy_s)" = 0 ]'
+run simulate --grid links=4,7 --file a.nc
+check "another sweep may not have the file: $(cat err)" eval '[ $code -eq 2 ] && grep -q "another sweep" err'
+
+run simulate --grid links=4,6 --grid current_x=-0.1:0.1:3 --file cold.nc --quiet --out drawn --show robot.links
+check "a figure of a number: $(cat err)" eval '[ $code -eq 0 ] && [ -s drawn/robot_links.svg ] && [ -s drawn/report.html ]'
+run simulate --list "$2/problems/robots/*.ini" --file robots.nc --json
+check "a list of robots: $(number points)" eval '[ $code -eq 0 ] && [ "$(number points)" -ge 1 ] && [ "$(number failed)" = 0 ]'
+run simulate --random 3 --range links=4:4 --range omega_deg_s=60:120 --seed 3 --file draws.nc --json
+check "random draws: $(number solved) $(cat err)" eval '[ $code -eq 0 ] && [ "$(number solved)" = 3 ]'
+check "within their range: $(values omega_deg_s draws.nc | tr '\n' ' ')" awk 'BEGIN { ok = 1 } { ok = ok && $1 >= 60 && $1 <= 120; n++ } END { exit !(ok && n == 3) }' <<END
+$(values omega_deg_s draws.nc)
+END
+
+run simulate --grid links=1,4,5 --file some.nc --json
+check "a point that is refused costs itself: $(number failed)" eval '[ $code -eq 0 ] && [ "$(number failed)" = 1 ]'
+check "and is listed with its reason" eval 'ncdump -v sweep_reason some.nc | grep -q "links = 1"'
+
+if command -v mpirun >/dev/null; then
+    root=
+    [ "$(id -u)" -ne 0 ] || root=--allow-run-as-root
+    # shellcheck disable=SC2086
+    mpirun $root --oversubscribe -n 2 "$program" simulate --grid links=4,6 --grid current_x=-0.1:0.1:3 --file mpi.nc \
+        --json --quiet >out 2>err
+    check "two ranks: $(number ranks) $(cat err)" eval '[ "$(number ranks)" = 2 ] && [ "$(number solved)" = 6 ]'
+    for file in a mpi; do
+        ncdump "$file.nc" | sed '/:command/d; /^netcdf/d; /sweep_time_s =/,/;/d' >$file.txt
+    done
+    check "find the same" cmp a.txt mpi.txt
+else
+    echo "ok $((tap_run += 1)) - two ranks # SKIP mpirun is not installed"
+fi
+
+refuse 'no program nothing' nothing --grid links=4,5
+refuse 'which program' --grid links=4,5
+refuse 'nothing is varied' simulate
+refuse 'must be LOW:HIGH:COUNT' simulate --grid links=4:6
+refuse 'varied twice' simulate --grid links=4,5 --grid links=6,7
+refuse 'unknown key link' simulate --grid link=4,5 --file wrong.nc
+check "of which no file is left" [ ! -e wrong.nc ]
+refuse 'either needs the other' simulate --random 5 --grid links=4,5
+refuse 'must be a whole number' simulate --jobs 1.5 --grid links=4,5
+tap_done
