@@ -3,10 +3,11 @@
 // The one file that calls NetCDF. One dimension a key, results over all of them; conventions of CF 1.8.
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <netcdf.h>
+#include <netcdf_mem.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "moray/app/options.h"
@@ -214,23 +215,49 @@ static void write_all(writer *w, bool finished)
         put_doubles(w, store->name[k], store->name[k], store->value[k]);
 }
 
+// The file as it stands in memory, to the disk.
+static int write_image(const NC_memio *image, const char *path)
+{
+    const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (fd < 0)
+        return errno;
+    size_t done = 0;
+    int error = 0;
+    while (done < image->size && !error) {
+        const ssize_t n = write(fd, (const char *)image->memory + done, image->size - done);
+        if (n >= 0)
+            done += (size_t)n;
+        else if (errno != EINTR)
+            error = errno;
+    }
+    if (!error && fsync(fd) != 0 && errno != EINVAL)
+        error = errno;
+    if (close(fd) != 0 && !error)
+        error = errno;
+    return error;
+}
+
+// HDF5 does not survive a disk that is full, so the file is made in memory and written by us.
 moray_status moray_store_write(const struct store *store, bool finished)
 {
     const char *name = store->grid->spec->file;
     char temporary[4200];
     snprintf(temporary, sizeof temporary, "%s.new", name);
     writer w = {.store = store};
-    call(&w, nc_create(temporary, NC_NETCDF4 | NC_CLOBBER, &w.file));
+    NC_memio image = {0};
+    call(&w, nc_create_mem(temporary, NC_NETCDF4, 1 << 16, &w.file));
     if (w.error == NC_NOERR) {
         write_all(&w, finished);
-        const int closed = nc_close(w.file);
+        const int closed = nc_close_memio(w.file, &image);
         call(&w, closed);
     }
-    if (w.error == NC_NOERR && rename(temporary, name) == 0)
+    const int error = w.error == NC_NOERR ? write_image(&image, temporary) : 0;
+    free(image.memory);
+    if (w.error == NC_NOERR && !error && rename(temporary, name) == 0)
         return moray_ok();
-    const char *why = w.error == NC_NOERR ? strerror(errno) : nc_strerror(w.error);
+    const char *why = w.error != NC_NOERR ? nc_strerror(w.error) : strerror(error ? error : errno);
     unlink(temporary);
-    return moray_error(MORAY_IO, "%.200s cannot be written: %s", name, why);
+    return moray_error(w.error == NC_ENOMEM ? MORAY_MEMORY : MORAY_IO, "%.200s cannot be written: %s", name, why);
 }
 
 static int read_numbers(int file, const char *name, double **value, size_t *n)

@@ -197,8 +197,8 @@ static moray_status misbehave(const moray_sweep_point *point, FILE *summary, voi
     if (x == 1)
         nap(60);
     if (x == 2)
-        for (volatile char *p; (p = malloc(1 << 20));)
-            p[0] = 1;
+        while (malloc(1 << 20))
+            continue;
     if (x == 3)
         return moray_error(MORAY_NOT_SOLVED, "out of luck");
     if (x == 4)
