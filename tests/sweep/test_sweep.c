@@ -213,7 +213,7 @@ static void test_misbehaviour(void)
     spec.solve = misbehave;
     spec.axes = 1;
     spec.warm = false;
-    spec.point_seconds = 0.5;
+    spec.point_seconds = 2;
     spec.point_megabytes = tap_thorough() ? 500 : 0;
     if (!tap_thorough()) // sanitizers need all of the address space
         spec.axis = &(const moray_sweep_axis){.key = "x", .value = (const double[]){-2, -1, 0, 1, -3, 3, 4}, .n = 7};
