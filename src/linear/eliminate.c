@@ -11,7 +11,7 @@
 static const double good = 0.1;      // of a pivot: growth is no worry, none better is looked for
 static const double nothing = 2e-14; // of an equilibrated matrix, what rounding may leave of a column: 90 of its units
 static const double distinct = 1e-2; // of a 2x2 determinant, relative to its products: no cancellation
-enum { block = 16 };
+enum { block = 8 };
 
 struct panel {
     double *P, *W, *D; // columns; those of pivots before division; inverse pivots
@@ -163,7 +163,7 @@ static void take_empty(struct panel *p)
 static void take_1x1(struct panel *p)
 {
     const int k = p->done;
-    double *column = p->P + (size_t)k * (size_t)p->height, *kept = p->W + (size_t)k * (size_t)p->height;
+    double *restrict column = p->P + (size_t)k * (size_t)p->height, *restrict kept = p->W + (size_t)k * (size_t)p->height;
     const double inverse = 1 / column[k];
     for (int i = k + 1; i < p->height; i++) {
         kept[i] = column[i];
@@ -190,14 +190,16 @@ static void take_2x2(struct panel *p)
 {
     const int k = p->done;
     const size_t h = (size_t)p->height;
-    double *one = p->P + (size_t)k * h, *other = one + h, *V = p->W + (size_t)k * h, *W = V + h;
+    double *restrict one = p->P + (size_t)k * h, *restrict other = one + h;
+    double *restrict V = p->W + (size_t)k * h, *restrict W = V + h;
     const double d = one[k], c = one[k + 1], e = other[k + 1], determinant = d * e - c * c;
     const double D = e / determinant, C = -c / determinant, E = d / determinant;
     for (int i = k + 2; i < p->height; i++) {
-        V[i] = one[i];
-        W[i] = other[i];
-        one[i] = V[i] * D + W[i] * C;
-        other[i] = V[i] * C + W[i] * E;
+        const double v = one[i], w = other[i];
+        V[i] = v;
+        W[i] = w;
+        one[i] = v * D + w * C;
+        other[i] = v * C + w * E;
     }
     one[k + 1] = 0;
     p->D[2 * k] = D;

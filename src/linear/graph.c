@@ -103,7 +103,8 @@ static double largest_of(const struct graph *graph, int i)
     const double here = graph->scale[i];
     double largest = graph->diagonal[i] * here;
     for (int k = graph->start[i]; k < graph->start[i + 1]; k++)
-        largest = fmax(largest, graph->size[k] * graph->scale[graph->near[k]]);
+        if (graph->size[k] * graph->scale[graph->near[k]] > largest)
+            largest = graph->size[k] * graph->scale[graph->near[k]];
     return largest * here;
 }
 

@@ -115,41 +115,52 @@ static void update_plain(int rows, int columns, int depth, struct view L, struct
     update(2, rows, columns, depth, L, W, C, step);
 }
 
+// Four columns of L at a time: first the triangle that they make with each other, then all rows below.
 FOR_EACH_PROCESSOR
-static void subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)
+static void forward(int height, int pivots, const double *L, int ldl, double *restrict x)
 {
     const size_t step = (size_t)ldl;
     int k = 0;
-    for (; k + 4 <= columns; k += 4, L += 4 * step)
-        for (int i = 0; i < rows; i++)
-            y[i] -= L[i] * x[k] + L[i + step] * x[k + 1] + L[i + 2 * step] * x[k + 2] + L[i + 3 * step] * x[k + 3];
-    for (; k < columns; k++, L += step)
-        for (int i = 0; i < rows; i++)
-            y[i] -= L[i] * x[k];
+    for (; k + 4 <= pivots; k += 4, L += 4 * step + 4) {
+        const double *M = L + step, *N = M + step, *O = N + step;
+        double *y = x + k;
+        const double a = y[0], b = y[1] -= L[1] * a, c = y[2] -= L[2] * a + M[2] * b;
+        const double d = y[3] -= L[3] * a + M[3] * b + N[3] * c;
+        for (int i = 4; i < height - k; i++)
+            y[i] -= L[i] * a + M[i] * b + N[i] * c + O[i] * d;
+    }
+    for (; k < pivots; k++, L += step + 1)
+        for (int i = 1; i < height - k; i++)
+            x[k + i] -= L[i] * x[k];
 }
 
 FOR_EACH_PROCESSOR
-static void subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x)
+static void backward(int height, int pivots, const double *L, int ldl, double *restrict x)
 {
     const size_t step = (size_t)ldl;
-    int k = 0;
-    for (; k + 4 <= columns; k += 4, L += 4 * step) {
-        double a = 0, b = 0, c = 0, d = 0;
-#pragma omp simd reduction(+ : a, b, c, d)
-        for (int i = 0; i < rows; i++) {
-            a += L[i] * y[i];
-            b += L[i + step] * y[i];
-            c += L[i + 2 * step] * y[i];
-            d += L[i + 3 * step] * y[i];
-        }
-        x[k] -= a, x[k + 1] -= b, x[k + 2] -= c, x[k + 3] -= d;
-    }
-    for (; k < columns; k++, L += step) {
+    int k = pivots;
+    for (; k % 4 > 0; k--) {
+        const double *column = L + (size_t)(k - 1) * (step + 1), *y = x + k - 1;
         double sum = 0;
 #pragma omp simd reduction(+ : sum)
-        for (int i = 0; i < rows; i++)
-            sum += L[i] * y[i];
-        x[k] -= sum;
+        for (int i = 1; i <= height - k; i++)
+            sum += column[i] * y[i];
+        x[k - 1] -= sum;
+    }
+    for (; k > 0; k -= 4) {
+        const double *A = L + (size_t)(k - 4) * (step + 1), *B = A + step, *C = B + step, *D = C + step;
+        double *y = x + k - 4, a = 0, b = 0, c = 0, d = 0;
+#pragma omp simd reduction(+ : a, b, c, d)
+        for (int i = 4; i < height - k + 4; i++) {
+            a += A[i] * y[i];
+            b += B[i] * y[i];
+            c += C[i] * y[i];
+            d += D[i] * y[i];
+        }
+        y[3] -= d;
+        y[2] -= c + C[3] * y[3];
+        y[1] -= b + B[3] * y[3] + B[2] * y[2];
+        y[0] -= a + A[3] * y[3] + A[2] * y[2] + A[1] * y[1];
     }
 }
 
@@ -188,14 +199,14 @@ void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, 
     update_plain(rows, columns, depth, left, kept, C, (size_t)ldc);
 }
 
-void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y)
+void moray_ldl_kernel_forward(int height, int pivots, const double *L, int ldl, double *x)
 {
-    subtract(rows, columns, L, ldl, x, y);
+    forward(height, pivots, L, ldl, x);
 }
 
-void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x)
+void moray_ldl_kernel_backward(int height, int pivots, const double *L, int ldl, double *x)
 {
-    subtract_transposed(rows, columns, L, ldl, y, x);
+    backward(height, pivots, L, ldl, x);
 }
 
 double moray_ldl_kernel_largest(int n, const double *x)

@@ -26,7 +26,7 @@ static double least_strong(const struct search *search, int i)
     const struct graph *graph = search->graph;
     double largest = 0;
     for (int k = graph->start[i]; k < graph->start[i + 1]; k++)
-        largest = fmax(largest, graph->size[k]);
+        largest = graph->size[k] > largest ? graph->size[k] : largest;
     return search->strong * largest;
 }
 

@@ -115,10 +115,10 @@ void moray_ldl_front_eliminate(moray_ldl *ldl, int node);
 // C[i + j ldc] -= sum over k < depth of L[i + k ldl] W[j + k ldw], for j < columns and j <= i < rows.
 void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw,
                              double *C, int ldc);
-// y[i] -= sum over k < columns of L[i + k ldl] x[k], i < rows
-void moray_ldl_kernel_subtract(int rows, int columns, const double *L, int ldl, const double *x, double *y);
-// x[k] -= sum over i < rows of L[i + k ldl] y[i], k < columns
-void moray_ldl_kernel_subtract_transposed(int rows, int columns, const double *L, int ldl, const double *y, double *x);
+// x <- L^-1 x, and x[pivots] <- L^-T x with what stands below: unit lower triangle of the first `pivots` columns, height
+// rows.
+void moray_ldl_kernel_forward(int height, int pivots, const double *L, int ldl, double *x);
+void moray_ldl_kernel_backward(int height, int pivots, const double *L, int ldl, double *x);
 
 // The largest |x[i]|, i < n.
 double moray_ldl_kernel_largest(int n, const double *x);

@@ -39,13 +39,8 @@ static struct part gather(moray_ldl *ldl, int s)
 static void forward(moray_ldl *ldl, int s)
 {
     const struct part p = gather(ldl, s);
-    for (int k = 0; k + 1 < p.pivots; k++)
-        moray_ldl_kernel_subtract(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height, p.x + k,
-                                  p.x + k + 1);
-    moray_ldl_kernel_subtract(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x, p.x + p.pivots);
-    for (int k = 0; k < p.pivots; k++)
-        ldl->permuted[p.index[k]] = p.x[k];
-    for (int k = p.pivots; k < p.width; k++)
+    moray_ldl_kernel_forward(p.height, p.pivots, p.P, p.height, p.x);
+    for (int k = 0; k < p.width; k++)
         ldl->permuted[p.index[k]] = p.x[k];
     for (int k = p.width; k < p.height; k++)
         ldl->permuted[p.rows[k - p.width]] = p.x[k];
@@ -68,10 +63,7 @@ static void backward(moray_ldl *ldl, int s)
 {
     const struct part p = gather(ldl, s);
     divide(&p);
-    moray_ldl_kernel_subtract_transposed(p.height - p.pivots, p.pivots, p.P + p.pivots, p.height, p.x + p.pivots, p.x);
-    for (int k = p.pivots - 2; k >= 0; k--)
-        moray_ldl_kernel_subtract_transposed(p.pivots - k - 1, 1, p.P + (size_t)k * (size_t)p.height + k + 1, p.height,
-                                             p.x + k + 1, p.x + k);
+    moray_ldl_kernel_backward(p.height, p.pivots, p.P, p.height, p.x);
     for (int k = 0; k < p.pivots; k++)
         ldl->permuted[p.index[k]] = p.x[k];
 }
