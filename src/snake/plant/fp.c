@@ -39,17 +39,32 @@ typedef struct fp_plant {
     fp_gait_d real;
     fp_gait_z stepped;
     double *rows, *weight; // of the Jacobian, n_out x n_in; n_out
-    moray_map by_step;     // patterns
+    int n_in, n_out;
+    moray_pattern jac, hess; // the latter by columns
 } fp_plant;
 
 static void value(void *self, const double *in, double *out)
 {
-    evaluate_d(&((fp_plant *)self)->real, in, out);
-}
-
-static void evaluate(void *self, const double complex *in, double complex *out)
-{
-    evaluate_z(&((fp_plant *)self)->stepped, in, out);
+    fp_plant *plant = self;
+    fp_gait_d *at = &plant->real;
+    const moray_plant_spec *spec = &plant->of.spec;
+    const int N = spec->robot.links;
+    double mean = 0;
+    move_d(at, in);
+    for (int i = 0; i < N; i++)
+        mean += at->ddtheta[i] / N;
+    memcpy(out, in + MORAY_STATE_V_THETA, 3 * sizeof *out);
+    out[MORAY_STATE_V_THETA] = mean;
+    out[MORAY_STATE_V_1] = at->ddp[0];
+    out[MORAY_STATE_V_2] = at->ddp[1];
+    if (spec->joints == MORAY_JOINTS_STEERED)
+        memcpy(out + body, in + body + 1, 2 * sizeof *out);
+    out += plant->of.size.nx;
+    for (int i = 0; i < N - 1 && spec->path_forces; i++)
+        *out++ = at->u[i];
+    for (int i = 0; i < N && spec->path_angles; i++)
+        *out++ = at->theta[i] - in[MORAY_STATE_THETA];
+    *out = at->power;
 }
 
 // Row i of the angles, less the heading: not to be asked for the derivative by it.
@@ -80,7 +95,7 @@ static void jacobian_row(fp_plant *plant, const double *in, int output, double *
     const int angles = plant->of.size.nx + (spec->path_forces ? spec->robot.links - 1 : 0);
     if (input >= 0) {
         row[input] = 1;
-    } else if (output >= angles && output < plant->by_step.n_out - 1) {
+    } else if (output >= angles && output < plant->n_out - 1) {
         angle_row(plant, in, output - angles, row);
     } else {
         plant->weight[output] = 1;
@@ -89,37 +104,121 @@ static void jacobian_row(fp_plant *plant, const double *in, int output, double *
     }
 }
 
+static void find_rows(fp_plant *plant, const double *in)
+{
+    move_d(&plant->real, in);
+    for (int output = 0; output < plant->n_out; output++)
+        jacobian_row(plant, in, output, plant->rows + output * plant->n_in);
+}
+
 static void jacobian(void *self, const double *in, double *values)
 {
     fp_plant *plant = self;
-    const int n_in = plant->by_step.n_in, n_out = plant->by_step.n_out;
-    const moray_pattern *pattern = &plant->by_step.jac;
-    move_d(&plant->real, in);
-    for (int output = 0; output < n_out; output++)
-        jacobian_row(plant, in, output, plant->rows + output * n_in);
+    const int n_in = plant->n_in;
+    const moray_pattern *pattern = &plant->jac;
+    find_rows(plant, in);
     for (int k = 0; k < pattern->nnz; k++)
         values[k] = plant->rows[pattern->row[k] * n_in + pattern->col[k]];
+}
+
+// Column of the Hessian of weight . out, times the step.
+static const double step = 1e-50;
+static void find_column(fp_plant *plant, const double *in, const double *weight, int col, double complex *gradient)
+{
+    double complex z[most_inputs];
+    for (int i = 0; i < plant->n_in; i++)
+        z[i] = in[i];
+    z[col] += step * I;
+    move_z(&plant->stepped, z);
+    weighted_gradient_z(&plant->stepped, z, weight, gradient);
 }
 
 static void hessian(void *self, const double *in, const double *weight, double *values)
 {
     fp_plant *plant = self;
-    const moray_pattern *pattern = &plant->by_step.hess;
-    const double step = 1e-50;
-    double complex z[most_inputs], gradient[most_inputs];
-    int before = -1;
-    for (int k = 0; k < pattern->nnz; k++) {
-        const int col = pattern->col[k];
-        if (col != before) { // the pattern stands by columns
-            for (int i = 0; i < plant->by_step.n_in; i++)
-                z[i] = in[i];
-            z[col] += step * I;
-            move_z(&plant->stepped, z);
-            weighted_gradient_z(&plant->stepped, z, weight, gradient);
-            before = col;
-        }
+    const moray_pattern *pattern = &plant->hess;
+    double complex gradient[most_inputs];
+    for (int k = 0, before = -1; k < pattern->nnz; k++) {
+        if (pattern->col[k] != before)
+            find_column(plant, in, weight, before = pattern->col[k], gradient);
         values[k] = cimag(gradient[pattern->row[k]]) / step;
     }
+}
+
+// ---- Patterns ------------------------------------------------------------------------------------------------------
+
+// A swimming robot in the middle of a stroke, and others, quasi-random, up to half of 1 + |it| away.
+static void probe(const moray_plant_spec *spec, int n_in, int k, double *in)
+{
+    const double speed = spec->robot.l, state[body] = {0.1, 0, 0, 0.2, speed, 0.3 * speed};
+    const double on_gait[] = {0.2, 2, 0.7, 0.01, 0.1, 0.4}, steered[] = {0.01, 0.003, 0.002, 0.2, 2, 0.7, 0.4};
+    memcpy(in, state, sizeof state);
+    if (spec->joints == MORAY_JOINTS_STEERED)
+        memcpy(in + body, steered, sizeof steered);
+    else
+        memcpy(in + body, on_gait, sizeof on_gait);
+    for (int j = 0; j < n_in && k > 0; j++)
+        in[j] += 0.5 * (2 * fmod(0.618033988749895 * (j + 1) * k, 1) - 1) * (1 + fabs(in[j]));
+}
+
+static void mark(fp_plant *plant, const double *in, const double *weight, bool *slopes, bool *bends)
+{
+    const int n_in = plant->n_in;
+    const int angles = plant->n_out - 1 - (plant->of.spec.path_angles ? plant->of.spec.robot.links : 0);
+    double complex gradient[most_inputs];
+    find_rows(plant, in);
+    for (int e = 0; e < plant->n_out * n_in; e++) {
+        const int row = e / n_in;
+        const bool no_heading = row >= angles && row < plant->n_out - 1 && e % n_in == MORAY_STATE_THETA;
+        slopes[e] = slopes[e] || (plant->rows[e] != 0 && !no_heading);
+    }
+    for (int col = 0; col < n_in; col++) {
+        find_column(plant, in, weight, col, gradient);
+        for (int row = col; row < n_in; row++)
+            bends[col * n_in + row] = bends[col * n_in + row] || cimag(gradient[row]) != 0;
+    }
+}
+
+// Entries of marks[outer][inner]; `outer` are the columns or the rows.
+static moray_status list(const bool *marks, int outer, int inner, bool columns, moray_pattern *pattern)
+{
+    int n = 0;
+    for (int e = 0; e < outer * inner; e++)
+        n += marks[e];
+    MORAY_TRY(moray_pattern_new(pattern, n));
+    for (int e = 0, k = 0; e < outer * inner; e++) {
+        if (!marks[e])
+            continue;
+        pattern->row[k] = columns ? e % inner : e / inner;
+        pattern->col[k++] = columns ? e / inner : e % inner;
+    }
+    return moray_ok();
+}
+
+// What is not zero at any of the points; what the structure makes zero is so to the last bit.
+static moray_status find_patterns(fp_plant *plant)
+{
+    enum { points = 9 };
+    const int n_in = plant->n_in, n_out = plant->n_out;
+    bool *slopes = calloc((size_t)((n_in + n_out) * n_in), sizeof *slopes),
+         *bends = slopes ? slopes + n_out * n_in : NULL;
+    double in[most_inputs], *weight = calloc((size_t)n_out, sizeof *weight);
+    moray_status status = moray_ok();
+    if (!slopes || !weight)
+        status = moray_error(MORAY_MEMORY, "no memory for the patterns of %d outputs", n_out);
+    for (int k = 0; k < points && !moray_failed(status); k++) {
+        probe(&plant->of.spec, n_in, k, in);
+        for (int i = 0; i < n_out; i++)
+            weight[i] = 0.5 + fmod(0.618033988749895 * (i + 1) * (k + 1), 1);
+        mark(plant, in, weight, slopes, bends);
+    }
+    if (!moray_failed(status))
+        status = list(slopes, n_out, n_in, false, &plant->jac);
+    if (!moray_failed(status))
+        status = list(bends, n_in, n_in, true, &plant->hess);
+    free(slopes);
+    free(weight);
+    return status;
 }
 
 // ---- Construction
@@ -128,7 +227,8 @@ static void plant_free(fp_plant *plant)
 {
     if (!plant)
         return;
-    moray_map_release(&plant->by_step);
+    moray_pattern_free(&plant->jac);
+    moray_pattern_free(&plant->hess);
     gait_free_d(&plant->real);
     gait_free_z(&plant->stepped);
     free(plant->rows);
@@ -147,7 +247,10 @@ static moray_status plant_new(fp_plant **result, const moray_plant_spec *spec)
     if (made) {
         plant->of = (fp_setting){*spec, moray_fp_robot_of(&spec->robot), moray_plant_sizes(spec)};
         made = gait_new_d(&plant->real, &plant->of) && gait_new_z(&plant->stepped, &plant->of);
-        const size_t n_out = (size_t)(plant->of.size.nx + plant->of.size.nc + 1);
+        const moray_plant_size *size = &plant->of.size;
+        plant->n_in = size->nx + size->nu + size->ns + 1;
+        plant->n_out = size->nx + size->nc + 1;
+        const size_t n_out = (size_t)plant->n_out;
         plant->rows = calloc(n_out * (most_inputs + 1), sizeof *plant->rows);
         plant->weight = plant->rows ? plant->rows + n_out * most_inputs : NULL;
     }
@@ -159,22 +262,9 @@ static moray_status plant_new(fp_plant **result, const moray_plant_spec *spec)
     return moray_ok();
 }
 
-// Where patterns are looked for: a swimming robot in the middle of a stroke.
-static void probe(const moray_plant_spec *spec, double *in)
-{
-    const double speed = spec->robot.l, state[body] = {0.1, 0, 0, 0.2, speed, 0.3 * speed};
-    const double on_gait[] = {0.2, 2, 0.7, 0.01, 0.1, 0.4}, steered[] = {0.01, 0.003, 0.002, 0.2, 2, 0.7, 0.4};
-    memcpy(in, state, sizeof state);
-    if (spec->joints == MORAY_JOINTS_STEERED)
-        memcpy(in + body, steered, sizeof steered);
-    else
-        memcpy(in + body, on_gait, sizeof on_gait);
-}
-
 moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec)
 {
     fp_plant *plant = NULL;
-    double in[most_inputs];
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));
     if (spec->joints == MORAY_JOINTS_SERIES)
@@ -184,19 +274,19 @@ moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec)
     if (spec->joints == MORAY_JOINTS_CLOSED_LOOP)
         return moray_error(MORAY_INPUT, "joints: the first-principles plant has none in closed loop");
     MORAY_TRY(plant_new(&plant, spec));
-    probe(spec, in);
-    const moray_plant_size *size = &plant->of.size;
-    const moray_status status = moray_map_from_complex(&plant->by_step, size->nx + size->nu + size->ns + 1,
-                                                       size->nx + size->nc + 1, evaluate, plant, NULL, in);
+    const moray_status status = find_patterns(plant);
     if (moray_failed(status)) {
         plant_free(plant);
         return status;
     }
-    *map = plant->by_step;
-    map->self = plant;
-    map->value = value;
-    map->jacobian = jacobian;
-    map->hessian = hessian;
-    map->release = release;
-    return status;
+    *map = (moray_map){.n_in = plant->n_in,
+                       .n_out = plant->n_out,
+                       .jac = plant->jac,
+                       .hess = plant->hess,
+                       .self = plant,
+                       .value = value,
+                       .jacobian = jacobian,
+                       .hessian = hessian,
+                       .release = release};
+    return moray_ok();
 }
