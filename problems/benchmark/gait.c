@@ -38,7 +38,7 @@ static moray_gait_problem_spec spec_of(const gait_case *c)
                                      .joints = c->joints,
                                      .limits = {.theta_max = moray_between(1 * DEG, 20 * DEG),
                                                 .omega = moray_between(30 * DEG, 360 * DEG),
-                                                .delta = moray_between(15 * DEG, 90 * DEG),
+                                                .delta = moray_gait_usual_delta(&c->robot),
                                                 .offset = moray_between(-offset, offset),
                                                 .power = fastest ? c->power : MORAY_INFINITY,
                                                 .joint_rate = MORAY_INFINITY,

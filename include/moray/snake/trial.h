@@ -5,6 +5,7 @@
 #define MORAY_SNAKE_TRIAL_H
 
 #include "moray/export.h"
+#include "moray/ocp.h"
 #include "moray/snake/model.h"
 #include "moray/app/results.h"
 #include "moray/snake/swim.h"
@@ -51,6 +52,10 @@ MORAY_API moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const 
 // The paper's gait for N links, theta_max 20 deg, omega 120 deg/s, delta = 2 pi/(N-1), 40 deg for its 10 (Assumption 2,
 // Sec. V), as a gait of the control-oriented model.
 MORAY_API moray_gait moray_gait_paper(const moray_robot *robot);
+
+// Limits of delta that follow the robot, by the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and
+// longer robots, and not near 180 deg, where (33) has no amplitude.
+MORAY_API moray_bounds moray_gait_usual_delta(const moray_robot *robot);
 
 // First-principles model: by how much the trial's gait beats the baseline's at the baseline's power (omega rescaled),
 // and how much less power it needs at the baseline's speed. NaN where no omega does it, with the reason.

@@ -141,15 +141,11 @@ static moray_status optimise_and_prove(gait_job *job, moray_model model, const g
     return gait_job_prove(job, &at, 1);
 }
 
-// By delta = 2 pi/(N-1) of the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and longer robots, and
-// not near 180 deg, where (33) has no amplitude.
-static void delta_range(double delta[2], double paper)
+static void delta_range(double delta[2], const moray_robot *robot)
 {
-    const double least = 0.375, most = 2.25; // of it
-    if (isnan(delta[0]))
-        delta[0] = fmin(15 * DEG, least * paper);
-    if (isnan(delta[1]))
-        delta[1] = fmin(fmax(90 * DEG, most * paper), 150 * DEG);
+    const moray_bounds usual = moray_gait_usual_delta(robot);
+    delta[0] = isnan(delta[0]) ? usual.lower : delta[0];
+    delta[1] = isnan(delta[1]) ? usual.upper : delta[1];
 }
 
 // Why the paper's gait is no baseline on a model, where it is not.
@@ -167,7 +163,7 @@ moray_status gait_job_prepare(gait_job *job)
     int stages;
     if (isfinite(job->joint_effort) && job->common.intervals == usual_intervals)
         job->common.intervals = effort_intervals;
-    delta_range(job->delta, paper.delta);
+    delta_range(job->delta, &job->snake.robot);
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     MORAY_TRY(moray_test_rig_new(&job->rig, &job->snake.robot, job->snake.current, job->snake.course));
     moray_ticker_show(&job->ticker, "%s: the paper's gait on both models", job->name);

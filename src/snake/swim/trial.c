@@ -47,6 +47,13 @@ moray_gait moray_gait_paper(const moray_robot *robot)
                         .delta = delta};
 }
 
+moray_bounds moray_gait_usual_delta(const moray_robot *robot)
+{
+    const double paper = moray_gait_paper(robot).delta, least = 0.375, most = 2.25; // of it
+    return moray_between(fmin(15 * MORAY_DEGREE, least * paper),
+                         fmin(fmax(90 * MORAY_DEGREE, most * paper), 150 * MORAY_DEGREE));
+}
+
 moray_status moray_gait_trial_swim(const moray_test_rig *rig, moray_model model, moray_gait_trial *trial)
 {
     const moray_swim_setup setup = moray_test_rig_setup(rig, model);
