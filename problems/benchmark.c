@@ -4,8 +4,8 @@
 // to a floor of arithmetic, memory and calls. Times are the processor's, medians of several measurements in this run.
 #include "benchmark/benchmark.h"
 
-static const char *const parts[] = {"all",   "s1",      "problems",   "classics", "intervals",
-                                    "links", "horizon", "simulation", NULL};
+static const char *const parts[] = {"all",       "s1",    "problems", "classics",   "states",
+                                    "intervals", "links", "horizon",  "simulation", NULL};
 static const char *const unused[] = {"scheme", "intervals", "tol", NULL};
 
 static const moray_option options[] = {
@@ -13,14 +13,16 @@ static const moray_option options[] = {
         CHOICE, benchmark, part, "benchmark", "part", .flag = "part", .argument = "NAME", .choices = parts,
         .help =
             "what to measure: a programme that other tools can be given, optimal gaits, textbook problems, growth over "
-            "intervals, over links and over the horizon of heading tracking, simulation"),
+            "states, over intervals, over links and over the horizon of heading tracking, simulation"),
     MORAY_ROW(INT, benchmark, repeats, "benchmark", "repeats", .min = 1, .max = 1000,
               .help = "measurements of each, of which the median counts"),
-    MORAY_ROW(INT, benchmark, most_intervals, "benchmark", "most_intervals", .min = 10, .max = 2000,
+    MORAY_ROW(INT, benchmark, most_states, "benchmark", "most_states", .min = 10, .max = 500,
+              .help = "where growth over states ends"),
+    MORAY_ROW(INT, benchmark, most_intervals, "benchmark", "most_intervals", .min = 10, .max = 5000,
               .help = "where growth over intervals ends; textbook problems that begin with more are left out"),
-    MORAY_ROW(INT, benchmark, most_links, "benchmark", "most_links", .min = 5, .max = 100,
+    MORAY_ROW(INT, benchmark, most_links, "benchmark", "most_links", .min = 5, .max = 200,
               .help = "where growth over links ends"),
-    MORAY_ROW(INT, benchmark, most_seconds, "benchmark", "most_seconds", .min = 60, .max = 800,
+    MORAY_ROW(INT, benchmark, most_seconds, "benchmark", "most_seconds", .min = 60, .max = 3600,
               .help = "where growth over the horizon ends"),
 };
 
@@ -119,14 +121,25 @@ static moray_status measure_growth(benchmark *run, const gait_case *of, const ch
     return moray_ok();
 }
 
-static const int interval_sizes[] = {10, 20, 50, 100, 200, 500, 1000, 0};
-static const int link_sizes[] = {5, 10, 20, 50, 100, 0};
+static const int interval_sizes[] = {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 0};
+static const int link_sizes[] = {5, 10, 20, 50, 100, 200, 0};
 // In closed loop, 2N+4 states of which every one is coupled to all others.
 static const int most_links_in_loop = 20, most_intervals_in_loop = 200;
 
 static int at_most(int value, int most)
 {
     return value < most ? value : most;
+}
+
+static moray_status measure_states(benchmark *run)
+{
+    static const int sizes[] = {10, 20, 50, 100, 200, 500, 0};
+    growth *g = add_growth(run, "chain of masses", "states");
+    for (const int *states = sizes; *states && *states <= run->most_states; states++) {
+        chain_case one = {.states = *states};
+        MORAY_TRY(add_point(run, g, *states, chain_subject(&one)));
+    }
+    return moray_ok();
 }
 
 static moray_status measure_intervals(benchmark *run)
@@ -154,7 +167,7 @@ static moray_status measure_links(benchmark *run)
 
 static moray_status measure_horizon_of(benchmark *run, const char *name, moray_model model)
 {
-    static const int horizons[] = {60, 120, 240, 600, 0};
+    static const int horizons[] = {60, 120, 240, 600, 1200, 3600, 0};
     growth *g = add_growth(run, name, "seconds");
     for (const int *seconds = horizons; *seconds && *seconds <= run->most_seconds; seconds++) {
         horizon_case one = {.model = model, .seconds = *seconds};
@@ -186,13 +199,9 @@ static moray_status work(benchmark *run)
     static const struct {
         enum part part;
         moray_status (*measure)(benchmark *);
-    } all[] = {{S1, measure_s1},
-               {PROBLEMS, measure_problems},
-               {CLASSICS, measure_classics},
-               {INTERVALS, measure_intervals},
-               {LINKS, measure_links},
-               {HORIZON, measure_horizon},
-               {SIMULATION, measure_simulation}};
+    } all[] = {{S1, measure_s1},           {PROBLEMS, measure_problems},    {CLASSICS, measure_classics},
+               {STATES, measure_states},   {INTERVALS, measure_intervals},  {LINKS, measure_links},
+               {HORIZON, measure_horizon}, {SIMULATION, measure_simulation}};
     moray_status status = machine_measure(&run->machine);
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
     for (unsigned k = 0; k < sizeof all / sizeof *all && !moray_failed(status); k++)
@@ -206,8 +215,12 @@ int main(int argc, char **argv)
 {
     static benchmark run;
     int exit_code;
-    run = (benchmark){
-        .common = moray_common_default(), .repeats = 5, .most_intervals = 1000, .most_links = 100, .most_seconds = 600};
+    run = (benchmark){.common = moray_common_default(),
+                      .repeats = 5,
+                      .most_states = 500,
+                      .most_intervals = 1000,
+                      .most_links = 100,
+                      .most_seconds = 600};
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;
     return moray_app_end(&program, &run, work(&run));

@@ -24,11 +24,16 @@ typedef struct cost {
     moray_nlp_size size;
     int nodes, sweeps; // nodes of all phases; evaluations of constraints, Jacobian and Hessian, each over all nodes
     double sweep;      // of the constraints' functions once at every node
+    double memory;     // peak while solving, beyond what the process held [bytes]; NaN where the system does not say
 } cost;
 
 double cost_evaluation(const cost *c);
 
 double processor_seconds(void);
+
+// Bytes that the process holds, from where the peak counts anew; the peak since then beyond that. NaN: not told.
+double memory_begin(void);
+double memory_peak(double before);
 
 // What this machine does in a second of the processor.
 typedef struct machine {
@@ -100,7 +105,7 @@ subject s1_subject(s1_case *c);
 moray_status s1_write_start(moray_output *output);
 
 // Heading tracking with the paper's gait: 30 deg there and back every 40 s, in the current (0.1, 0.1) m/s.
-enum { HORIZON_POINTS = 40 };
+enum { HORIZON_POINTS = 200 };
 typedef struct horizon_case {
     moray_model model;
     double seconds;
@@ -112,6 +117,13 @@ typedef struct horizon_case {
     moray_steering_plan plan;
 } horizon_case;
 subject horizon_subject(horizon_case *c); // the case must stay where it is. Error: MORAY_INPUT when it is too long
+
+// A chain of masses of any even number of states (chain.c states it).
+typedef struct chain_case {
+    int states;
+    moray_ocp *ocp; // owned
+} chain_case;
+subject chain_subject(chain_case *c);
 
 // A textbook problem on the mesh it begins with.
 typedef struct classic_case {
@@ -126,7 +138,7 @@ moray_status simulation_rate(moray_model model, int links, int repeats, double *
 
 // ---- Results -------------------------------------------------------------------------------------------------------
 
-enum { MOST_CASES = 72, MOST_GROWTHS = 6, MOST_POINTS = 8 };
+enum { MOST_CASES = 72, MOST_GROWTHS = 8, MOST_POINTS = 10 };
 
 typedef struct named_cost {
     const char *name;
@@ -138,13 +150,13 @@ double total_over_ours(const named_cost *c);
 double linear_over_ours(const named_cost *c);
 
 typedef struct growth {
-    const char *name, *over; // over: "intervals", "links" or "seconds"
+    const char *name, *over; // over: "states", "intervals", "links" or "seconds"
     int n, size[MOST_POINTS];
     cost cost[MOST_POINTS];
 } growth;
 
-// Exponents of a growth: set-up and, for one iteration, evaluation, Ipopt with its linear solver, and both.
-enum { EXPONENTS = 4 };
+// Exponents of a growth: set-up; for one iteration evaluation, Ipopt with its linear solver, and both; peak memory.
+enum { EXPONENTS = 5 };
 extern const char *const exponent_names[EXPONENTS];
 void growth_exponents(const growth *g, double exponent[EXPONENTS]);
 
@@ -153,11 +165,11 @@ typedef struct simulated {
     double rate[2][MOST_POINTS]; // by model
 } simulated;
 
-enum part { ALL, S1, PROBLEMS, CLASSICS, INTERVALS, LINKS, HORIZON, SIMULATION };
+enum part { ALL, S1, PROBLEMS, CLASSICS, STATES, INTERVALS, LINKS, HORIZON, SIMULATION };
 
 typedef struct benchmark {
     moray_common common;
-    int part, repeats, most_intervals, most_links, most_seconds;
+    int part, repeats, most_states, most_intervals, most_links, most_seconds;
     machine machine;
     int n_cases, n_growths;
     named_cost cases[MOST_CASES]; // S1 first, where it is among them

@@ -26,8 +26,8 @@ static void json_cost(moray_json *json, const machine *rates, const cost *c)
                                            {"nnz_jac", c->size.nnz_jac}, {"nnz_hess", c->size.nnz_hess}));
     for (int k = 0; k < PIECES; k++)
         moray_json_number(json, piece_keys[k], c->piece[k]);
-    moray_json_members(json,
-                       MORAY_MEMBERS({"evaluation_s", cost_evaluation(c)}, {"total_s", c->total}, {"wall_s", c->wall}));
+    moray_json_members(json, MORAY_MEMBERS({"evaluation_s", cost_evaluation(c)}, {"total_s", c->total},
+                                           {"wall_s", c->wall}, {"peak_memory_bytes", c->memory}));
     json_floor(json, rates, c);
 }
 
@@ -136,6 +136,7 @@ moray_status benchmark_draw(const void *found, moray_output *output)
     const benchmark *run = found;
     if (run->part == S1)
         MORAY_TRY(s1_write_start(output));
+    MORAY_TRY(draw_growth(run, "states", "growth_states", "One iteration, over states"));
     MORAY_TRY(draw_growth(run, "intervals", "growth_intervals", "One iteration, over intervals"));
     return draw_growth(run, "links", "growth_links", "One iteration, over links");
 }

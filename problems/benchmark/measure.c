@@ -70,11 +70,13 @@ static cost read_account(const moray_solution *solution, double total, double wa
 static moray_status measure_once(const subject *of, moray_linear_solver linear, cost *found)
 {
     moray_solution *solution = NULL;
-    const double start = processor_seconds(), wall = clock_seconds(CLOCK_MONOTONIC);
+    const double before = memory_begin(), start = processor_seconds(), wall = clock_seconds(CLOCK_MONOTONIC);
     moray_status status = of->solve(of->self, linear, &solution);
     const double total = processor_seconds() - start;
-    if (!moray_failed(status))
+    if (!moray_failed(status)) {
         *found = read_account(solution, total, clock_seconds(CLOCK_MONOTONIC) - wall);
+        found->memory = memory_peak(before);
+    }
     moray_solution_free(solution);
     of->forget(of->self);
     return status;
@@ -110,6 +112,7 @@ static moray_status measure_all(const subject *of, moray_linear_solver linear, i
         found->piece[k] = median_cost(costs, offsetof(cost, piece) + k * sizeof(double), repeats, work);
     found->total = median_cost(costs, offsetof(cost, total), repeats, work);
     found->sweep = median_cost(costs, offsetof(cost, sweep), repeats, work);
+    found->memory = costs[0].memory; // later ones reuse what the first left behind
     found->wall = median_cost(costs, offsetof(cost, wall), repeats, work);
     return moray_ok();
 }
@@ -146,7 +149,7 @@ double fitted_exponent(const double *x, const double *y, int n)
     return count < 2 ? NAN : (count * sxy - sx * sy) / (count * sxx - sx * sx);
 }
 
-const char *const exponent_names[EXPONENTS] = {"setup", "evaluation", "solver", "iteration"};
+const char *const exponent_names[EXPONENTS] = {"setup", "evaluation", "solver", "iteration", "memory"};
 
 void growth_exponents(const growth *g, double exponent[EXPONENTS])
 {
@@ -159,6 +162,7 @@ void growth_exponents(const growth *g, double exponent[EXPONENTS])
         value[1][k] = cost_evaluation(c) / iterations;
         value[2][k] = (c->piece[IPOPT] + c->piece[LINEAR]) / iterations;
         value[3][k] = value[1][k] + value[2][k];
+        value[4][k] = c->memory;
     }
     for (int i = 0; i < EXPONENTS; i++)
         exponent[i] = fitted_exponent(size, value[i], g->n);

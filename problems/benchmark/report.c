@@ -32,12 +32,19 @@ static void print_sheet(const struct sheet *sheet, const char *title, const char
 
 static void times_row(struct sheet *sheet, const char *label, const cost *c)
 {
-    double ms[MORAY_TABLE_COLUMNS];
+    double ms[MORAY_TABLE_COLUMNS] = {0};
     for (int k = 0; k < PIECES; k++)
         ms[k] = 1000 * c->piece[k];
-    ms[PIECES] = c->iterations;
-    ms[PIECES + 1] = 1000 * (cost_evaluation(c) + c->piece[IPOPT] + c->piece[LINEAR]) / c->iterations;
     add(sheet, label, ms);
+}
+
+static void growth_row(struct sheet *sheet, const char *label, const cost *c)
+{
+    const double solving = cost_evaluation(c) + c->piece[IPOPT] + c->piece[LINEAR];
+    add(sheet, label,
+        (double[MORAY_TABLE_COLUMNS]){1000 * c->piece[SETUP], 1000 * cost_evaluation(c), 1000 * c->piece[IPOPT],
+                                      1000 * c->piece[LINEAR], c->iterations, 1000 * solving / c->iterations,
+                                      c->memory / (1 << 20)});
 }
 
 static void sizes_row(struct sheet *sheet, const char *label, const cost *c)
@@ -70,7 +77,9 @@ static const char *const solver_columns[MORAY_TABLE_COLUMNS] = {
 static const char *const time_columns[MORAY_TABLE_COLUMNS] = {"set-up",  "function", "Jacobian",
                                                               "Hessian", "Ipopt",    "linear solver"};
 static const char *const growth_columns[MORAY_TABLE_COLUMNS] = {
-    "set-up", "function", "Jacobian", "Hessian", "Ipopt", "linear solver", "iterations", "an iteration"};
+    "set-up", "evaluation", "Ipopt", "linear solver", "iterations", "an iteration", "memory [MiB]"};
+static const char *const exponent_columns[MORAY_TABLE_COLUMNS] = {"set-up", "evaluation", "Ipopt, linear solver",
+                                                                  "iteration", "memory"};
 static const char *const size_columns[MORAY_TABLE_COLUMNS] = {"iterations", "variables",    "constraints",
                                                               "nnz(J)",     "nnz(Hessian)", "objective"};
 static const char *const total_columns[MORAY_TABLE_COLUMNS] = {
@@ -99,19 +108,28 @@ static void print_cases(const benchmark *run)
 static void print_growth(const growth *g)
 {
     struct sheet times = {0};
-    double exponent[EXPONENTS];
     char title[120], label[40];
     for (int k = 0; k < g->n; k++) {
         snprintf(label, sizeof label, "%d %s%s", g->size[k], g->over, g->cost[k].solved ? "" : " (NOT SOLVED)");
-        times_row(&times, label, &g->cost[k]);
+        growth_row(&times, label, &g->cost[k]);
     }
     snprintf(title, sizeof title, "%s over %s: processor time [ms]", g->name, g->over);
     print_sheet(&times, title, growth_columns);
-    growth_exponents(g, exponent);
-    printf("grows with the power");
-    for (int i = 0; i < EXPONENTS; i++)
-        printf("%s %.2f (%s)", i ? "," : "", exponent[i], exponent_names[i]);
-    printf(" of the %s; all but the set-up for one iteration\n\n", g->over);
+}
+
+static void print_exponents(const benchmark *run)
+{
+    struct sheet powers = {0};
+    for (int k = 0; k < run->n_growths; k++) {
+        double exponent[MORAY_TABLE_COLUMNS];
+        char label[80];
+        growth_exponents(&run->growths[k], exponent);
+        snprintf(label, sizeof label, "%.60s, %s", run->growths[k].name, run->growths[k].over);
+        add(&powers, label, exponent);
+    }
+    if (powers.n > 0)
+        print_sheet(&powers, "Powers with which set-up, one iteration and its parts, and peak memory grow",
+                    exponent_columns);
 }
 
 static void print_simulation(const simulated *s)
@@ -134,6 +152,7 @@ static void print(const void *found, const moray_report *report)
     print_cases(run);
     for (int k = 0; k < run->n_growths; k++)
         print_growth(&run->growths[k]);
+    print_exponents(run);
     print_simulation(&run->simulation);
 }
 

@@ -21,9 +21,13 @@ static double finite_size(double bound)
     return fabs(bound) < MORAY_INFINITY ? fabs(bound) : 0;
 }
 
+static const double negligible = 1e-8; // a value that is fixed there is 0 and rounding
+
 static double size_of(moray_bounds bounds)
 {
     const double size = fmax(finite_size(bounds.lower), finite_size(bounds.upper));
+    if (bounds.lower == bounds.upper && size < negligible)
+        return 1;
     return size > 0 ? fmin(size, 1) : 1;
 }
 

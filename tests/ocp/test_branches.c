@@ -9,6 +9,7 @@
 #include "moray/num.h"
 #include "moray/ocp.h"
 #include "moray/sim.h"
+#include "ocp/problem.h"
 
 enum { by_time, by_state, by_control, by_parameter, by_time_curved, by_place, by_place_curved, kinds };
 static const char *const kind_names[kinds] = {"time",
@@ -126,8 +127,55 @@ static void check_kind(int kind)
     moray_ocp_free(other);
 }
 
+// ---- A start that is rounding ----
+
+static void cubic(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num stretch = at->x[1] - at->x[0];
+    out->f[0] = at->u[0];
+    out->f[1] = stretch * stretch * stretch;
+    out->g[0] = at->u[0] * at->u[0];
+}
+
+static moray_ocp *starting_at(double second)
+{
+    moray_ocp *ocp = NULL;
+    const moray_phase_spec phase = {.name = "spring",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = cubic,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0.5), moray_fixed(second))};
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "spring", .phases = 1, .phase = &phase, .endpoint = effort}),
+             "a spring");
+    return ocp;
+}
+
+static void test_tiny_start(void)
+{
+    moray_ocp *zero = starting_at(0), *rounding = starting_at(0.5 * sin(M_PI));
+    const moray_map *map = rounding->phase[0].map;
+    const int entries = zero->phase[0].map->hess.nnz;
+    const double in[] = {0.5, 0.1, 0, 0}, weight[] = {0, 1, 0}, bend = 6 * (in[1] - in[0]);
+    double values[16] = {0};
+    CHECK(map->hess.nnz == entries && entries == 4, "sin pi for 0 hides no dependence: %d entries, %d", map->hess.nnz,
+          entries);
+    map->hessian(map->self, in, weight, values);
+    for (int k = 0; k < map->hess.nnz && k < 16; k++) {
+        const int r = map->hess.row[k], c = map->hess.col[k];
+        const double expected = r > 1 ? 0 : r == c ? bend : -bend;
+        CHECK(fabs(values[k] - expected) < 1e-8, "entry %d, %d: %.9g, expected %.9g", r, c, values[k], expected);
+    }
+    moray_ocp_free(zero);
+    moray_ocp_free(rounding);
+}
+
 int main(void)
 {
+    test_tiny_start();
     for (int kind = 0; kind < kinds; kind++)
         check_kind(kind);
     return tap_done();

@@ -34,6 +34,11 @@ check "textbook problems as a table: $(cat err)" [ $code -eq 0 ]
 check "those of 20 intervals" eval 'grep -q "^brachistochrone " out && ! grep -q "^bryson-denham " out'
 check "all of them solved" eval '! grep -q "NOT SOLVED" out'
 
+run --part states --json --set repeats=1 --set most_states=20
+check "growth over states: $(cat err)" [ $code -eq 0 ]
+check "at two numbers of them, both solved" [ "$(grep -c '"solved":[[:space:]]*true' out)" -eq 2 ]
+check "twice the states, twice the memory at most and some" awk -v e="$(number exponents memory)" 'BEGIN { exit !(e < 2) }'
+
 run --part simulation --json --set repeats=1 --set most_links=5
 check "with simulated seconds a second" awk -v r="$(number simulated_s_per_s)" 'BEGIN { exit !(r > 0) }'
 
