@@ -13,6 +13,7 @@ enum { name_size = 120 };
 struct worst {
     double error, given, found;
     int p, node, row, col;
+    bool missing; // from the pattern in use
 };
 
 // From the slope on the nearer side.
@@ -36,7 +37,7 @@ static void compare(const struct witness *w, int p, int n, const double *in_use,
         const double far = (distance(in_use[k], jac[k], kink[k]) - certain * doubt[k]) * size[col];
         const double error = isfinite(doubt[k]) && out_size[row] > 0 ? far / out_size[row] : 0;
         if (error > worst->error)
-            *worst = (struct worst){error, in_use[k], jac[k], p, n, row, col};
+            *worst = (struct worst){error, in_use[k], jac[k], p, n, row, col, !found->expected[k]};
     }
 }
 
@@ -54,8 +55,8 @@ static void say_where(const struct witness *w, const struct worst *worst, char *
                  moray_layout_time(&t->layout, t->ocp, w->solution->iterate.x, worst->p,
                                    t->layout.phase[worst->p].node[worst->node].tau));
     }
-    snprintf(where, (size_t)size, "d (%s) / d (%s) is %.6g, by differences %.6g%s", out, in, worst->given, worst->found,
-             place);
+    snprintf(where, (size_t)size, "d (%s) / d (%s) is %.6g, by differences %.6g%s%s", out, in, worst->given,
+             worst->found, place, worst->missing ? ": its pattern lacks it" : "");
 }
 
 moray_status moray_compare_columns(const struct witness *w, double *worst, char *where, int size)

@@ -136,11 +136,13 @@ static void test_wrong_derivatives(void)
     moray_certificate c = certificate_of(cart);
     CHECK(!c.pass && c.derivatives > MORAY_LIMIT_DERIVATIVES && strstr(c.why, "d (dynamics of state x[1])"),
           "Jacobian: %s", c.why);
+    CHECK(!strstr(c.why, "lacks"), "which is there, but wrong: %s", c.why);
     CHECK(c.kkt > MORAY_LIMIT_KKT, "and the optimum that it led to is none: %.1e", c.kkt);
     cart.fault = missing_entry;
     c = certificate_of(cart);
     CHECK(!c.pass && c.derivatives > MORAY_LIMIT_DERIVATIVES && strstr(c.why, "d (integrand g[0]) / d (state x[1])"),
           "pattern: %s", c.why);
+    CHECK(strstr(c.why, "its pattern lacks it"), "which says so: %s", c.why);
     cart.fault = wrong_hessian;
     c = certificate_of(cart);
     CHECK(!c.pass && c.derivatives <= MORAY_LIMIT_DERIVATIVES && c.directions > MORAY_LIMIT_DIRECTIONS, "Hessian: %s",
