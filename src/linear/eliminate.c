@@ -63,22 +63,32 @@ static void swap(struct panel *p, int a, int b)
 
 struct peak {
     double inside, outside; // largest entry in the block's rows, in others
+    double second;          // largest of the block's but for that one
     int at;                 // row of the first, -1: none
 };
+
+static void meet(struct peak *peak, double size, int row)
+{
+    if (size > peak->inside) {
+        peak->second = peak->inside;
+        peak->inside = size;
+        peak->at = row;
+    } else if (size > peak->second)
+        peak->second = size;
+}
 
 // Of a column without its diagonal and without row skip, in the block.
 static struct peak scan_block(const struct panel *p, int t, int skip)
 {
     const size_t h = (size_t)p->height;
     const double *column = p->P + (size_t)t * h;
-    struct peak peak = {0, 0, -1};
-    for (int j = p->done; j < p->end; j++) {
-        const double size = fabs(j < t ? p->P[(size_t)j * h + t] : column[j]);
-        if (j != t && j != skip && size > peak.inside) {
-            peak.inside = size;
-            peak.at = j;
-        }
-    }
+    struct peak peak = {.at = -1};
+    for (int j = p->done; j < t; j++)
+        if (j != skip)
+            meet(&peak, fabs(p->P[(size_t)j * h + t]), j);
+    for (int j = t + 1; j < p->end; j++)
+        if (j != skip)
+            meet(&peak, fabs(column[j]), j);
     return peak;
 }
 
@@ -100,8 +110,8 @@ static double quality_1x1(double d, struct peak peak)
     return most > 0 ? fabs(d) / most : INFINITY;
 }
 
-// Duff and Reid: the inverse of the pivot times the largest entries beside it; outside: of column t.
-static double quality_2x2(const struct panel *p, int t, int r, double outside)
+// Duff and Reid: the inverse of the pivot times the largest entries beside it; beside: of column t, but for row r.
+static double quality_2x2(const struct panel *p, int t, int r, double beside)
 {
     const size_t h = (size_t)p->height;
     const double d = p->P[(size_t)t * h + t], e = p->P[(size_t)r * h + r];
@@ -110,8 +120,8 @@ static double quality_2x2(const struct panel *p, int t, int r, double outside)
     if (!(determinant > distinct * larger(fabs(d * e), c * c)))
         return 0;
     const struct peak other = scan(p, r, t);
-    const double most = larger(scan_block(p, t, r).inside, outside), more = larger(other.inside, other.outside);
-    const double growth = larger(fabs(e) * most + fabs(c) * more, fabs(c) * most + fabs(d) * more);
+    const double more = larger(other.inside, other.outside);
+    const double growth = larger(fabs(e) * beside + fabs(c) * more, fabs(c) * beside + fabs(d) * more);
     return growth > 0 ? determinant / growth : INFINITY;
 }
 
@@ -124,7 +134,7 @@ static struct choice judge(const struct panel *p, int t)
         return (struct choice){t, -1, INFINITY, true};
     if (choice.quality >= good || peak.at < 0)
         return choice;
-    const double quality = quality_2x2(p, t, peak.at, peak.outside);
+    const double quality = quality_2x2(p, t, peak.at, larger(peak.second, peak.outside));
     return quality > choice.quality ? (struct choice){t, peak.at, quality, false} : choice;
 }
 

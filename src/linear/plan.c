@@ -4,7 +4,7 @@
 
 #include "linear/parts.h"
 
-enum { work_size = 10 };
+enum { work_size = 13 };
 
 // Multiplications and additions, before fronts are merged.
 static double cost(const struct plan *plan)
@@ -17,7 +17,7 @@ static double cost(const struct plan *plan)
 
 // How strong a partner must be decides which of several stable ones is taken, and that decides the fill, which cannot
 // be told beforehand: both are tried.
-// other[2 n]: partners and order of the first.
+// other[5 n]: partners and tree of the first.
 static moray_status choose_order(struct plan *plan, const struct graph *graph, int *mate, int *other, int *work)
 {
     static const double strong = 0.1, stronger = 0.5;
@@ -30,21 +30,20 @@ static moray_status choose_order(struct plan *plan, const struct graph *graph, i
     plan->pairs = moray_ldl_graph_pair(graph, stronger, mate, work);
     if (memcmp(other, mate, size) == 0)
         return moray_ok();
-    memcpy(other + graph->n, plan->order, size);
+    memcpy(other + graph->n, plan->block, 4 * size);
     MORAY_TRY(moray_ldl_graph_order(graph, mate, plan->order));
     moray_ldl_plan_tree(plan, graph, work);
     if (cost(plan) < before)
         return moray_ok();
     plan->pairs = pairs;
     memcpy(mate, other, size);
-    memcpy(plan->order, other + graph->n, size);
-    moray_ldl_plan_tree(plan, graph, work);
+    memcpy(plan->block, other + graph->n, 4 * size);
     return moray_ok();
 }
 
 static moray_status make(struct plan *plan, const struct graph *graph, const moray_pattern *pattern, int *mate)
 {
-    int *other = mate + graph->n, *work = other + 2 * graph->n;
+    int *other = mate + graph->n, *work = other + 5 * (size_t)graph->n;
     MORAY_TRY(choose_order(plan, graph, mate, other, work));
     MORAY_TRY(moray_ldl_plan_fronts(plan, mate, work));
     MORAY_TRY(moray_ldl_plan_structure(plan, graph, work));

@@ -84,12 +84,15 @@ static double find_residual(moray_ldl *ldl)
     const double *x = ldl->solution;
     memcpy(r, ldl->rhs, (size_t)plan->n * sizeof *r);
     for (int c = 0; c < plan->n; c++) {
-        double sum = 0;
-        for (int k = plan->start[c]; k < plan->start[c + 1]; k++) {
+        int k = plan->start[c];
+        const int end = plan->start[c + 1];
+        const double here = x[c];
+        double sum = k < end && plan->row[k] == c ? ldl->scaled[k++] * here : 0; // the diagonal comes first
+        for (; k < end; k++) {
             const int row = plan->row[k];
             const double value = ldl->scaled[k];
             sum += value * x[row];
-            r[row] -= row == c ? 0 : value * x[c];
+            r[row] -= value * here;
         }
         r[c] -= sum;
     }
