@@ -54,7 +54,7 @@ MORAY_API moray_status moray_gait_trial_speeds(const moray_test_rig *rig, const 
 MORAY_API moray_gait moray_gait_paper(const moray_robot *robot);
 
 // Limits of delta that follow the robot, by the paper's gait: 15 to 90 deg for its 10 links, wider for shorter and
-// longer robots, and not near 180 deg, where (33) has no amplitude.
+// longer robots, not below 1 deg and not near 180 deg, where (33) has no amplitude.
 MORAY_API moray_bounds moray_gait_usual_delta(const moray_robot *robot);
 
 // First-principles model: by how much the trial's gait beats the baseline's at the baseline's power (omega rescaled),

@@ -50,7 +50,7 @@ moray_gait moray_gait_paper(const moray_robot *robot)
 moray_bounds moray_gait_usual_delta(const moray_robot *robot)
 {
     const double paper = moray_gait_paper(robot).delta, least = 0.375, most = 2.25; // of it
-    return moray_between(fmin(15 * MORAY_DEGREE, least * paper),
+    return moray_between(fmax(fmin(15 * MORAY_DEGREE, least * paper), 1 * MORAY_DEGREE),
                          fmin(fmax(90 * MORAY_DEGREE, most * paper), 150 * MORAY_DEGREE));
 }
 
