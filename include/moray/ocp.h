@@ -201,8 +201,9 @@ MORAY_API moray_guess moray_guess_from_solution(const moray_solution *solution);
 // Reads comma-separated values as in a trajectory.csv: first a line of names, "t" and those of the states and controls
 // ("x[0]", "u[0]" where the problem has none), units in brackets after a name and other columns ignored; with several
 // phases a column "phase", counted from 1. Times ascend; numbers are finite, with a decimal point in any locale. The
-// parameters are guessed from their bounds: set guess->s for others. Error: MORAY_IO; MORAY_INPUT naming the line, or
-// the column that is missing; MORAY_MEMORY.
+// parameters are guessed from their bounds: set guess->s for others. Or reads a solution file, see moray_solution_load:
+// then all comes from it, multipliers too, on whatever mesh is asked for. Error: MORAY_IO; MORAY_INPUT naming the line,
+// or the column that is missing; MORAY_MEMORY; MORAY_NUMERIC.
 MORAY_API moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const char *path);
 
 // u[nu] of phase p at time t and state x[nx].

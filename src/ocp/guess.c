@@ -112,13 +112,18 @@ static moray_status check_sizes(const moray_ocp *ocp, const moray_ocp *other)
 
 static void guess_from_solution(const struct transcription *t, int p, const moray_solution *from, double *x)
 {
-    const struct phase_layout *layout = &t->layout.phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p], *old = &from->transcription->layout.phase[p];
     double t0, tf;
     moray_solution_times(from, p, &t0, &tf);
     if (layout->t0 >= 0)
         x[layout->t0] = t0;
     if (layout->tf >= 0)
         x[layout->tf] = tf;
+    if (from->transcription->layout.family == t->layout.family && moray_mesh_equal(&old->mesh, &layout->mesh)) {
+        memcpy(x + layout->node[0].x, from->iterate.x + old->node[0].x,
+               (size_t)(layout->q - layout->node[0].x) * sizeof *x);
+        return;
+    }
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
         moray_solution_at_tau(from, p, NULL, node->tau, x + node->x,

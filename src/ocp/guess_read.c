@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Guesses from comma-separated values with a line of names.
+// Guesses from comma-separated values with a line of names, or from solution files.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/csv.h"
 #include "ocp/samples.h"
+#include "ocp/solution.h"
 
 // "v [m/s]" is v; but "x[2]" is itself.
 static void cut_unit(char *name)
@@ -121,10 +122,28 @@ static moray_status fill_guess_from(const moray_csv *t, const moray_ocp *ocp, mo
     return status;
 }
 
-moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const char *path)
+static bool is_solution(const char *path)
+{
+    char start[32] = "";
+    FILE *file = fopen(path, "r");
+    const bool read = file && fgets(start, sizeof start, file);
+    if (file)
+        fclose(file);
+    return read && strstr(start, MORAY_SOLUTION_MARK);
+}
+
+static moray_status read_solution(moray_guess *guess, const moray_ocp *ocp, const char *path)
+{
+    moray_solution *solution;
+    MORAY_TRY(moray_solution_load(&solution, ocp, NULL, path));
+    *guess = moray_guess_from_solution(solution);
+    guess->owned = solution;
+    return moray_ok();
+}
+
+static moray_status read_samples(moray_guess *guess, const moray_ocp *ocp, const char *path)
 {
     moray_csv t;
-    *guess = (moray_guess){0};
     moray_status status = moray_csv_read(&t, path, "guess");
     for (int j = 0; j < t.columns; j++)
         cut_unit(t.name[j]);
@@ -136,4 +155,10 @@ moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const ch
         moray_guess_free(guess);
     moray_csv_free(&t);
     return status;
+}
+
+moray_status moray_guess_read(moray_guess *guess, const moray_ocp *ocp, const char *path)
+{
+    *guess = (moray_guess){0};
+    return is_solution(path) ? read_solution(guess, ocp, path) : read_samples(guess, ocp, path);
 }

@@ -39,7 +39,7 @@ void moray_solution_write(const moray_solution *solution, FILE *file)
     const struct transcription *t = solution->transcription;
     const moray_iterate *it = &solution->iterate;
     const locale_t before = moray_c_locale_begin();
-    fprintf(file, "moray-solution 1 %.*s\nscheme %s phases %d parameters %d events %d\n", name_length(t->ocp),
+    fprintf(file, MORAY_SOLUTION_MARK " 1 %.*s\nscheme %s phases %d parameters %d events %d\n", name_length(t->ocp),
             t->ocp->name, families[t->layout.family], t->ocp->phases, t->ocp->ns, t->ocp->ne);
     write_meshes(file, &t->layout, t->ocp);
     fprintf(file, "outcome %d iterations %d seconds %.17g\n", solution->info.outcome, solution->info.iterations,
@@ -116,8 +116,8 @@ static moray_status read_name(struct reader *r, const moray_ocp *ocp)
 {
     int version, used = 0;
     MORAY_TRY(next_line(r));
-    if (sscanf(r->line, "moray-solution %d %n", &version, &used) != 1 || version != 1)
-        return damaged(r, "moray-solution 1");
+    if (sscanf(r->line, MORAY_SOLUTION_MARK " %d %n", &version, &used) != 1 || version != 1)
+        return damaged(r, MORAY_SOLUTION_MARK " 1");
     const char *name = r->line + used;
     if ((int)strlen(name) != name_length(ocp) || strncmp(name, ocp->name, strlen(name)) != 0)
         return moray_error(MORAY_INPUT, "%s: is of problem %.80s, not of %.80s", moray_path_tail(r->text.path), name,

@@ -5,7 +5,10 @@
 
 void moray_guess_free(moray_guess *guess)
 {
-    free(guess->owned);
+    if (guess->owned && guess->owned == guess->from)
+        moray_solution_free(guess->owned);
+    else
+        free(guess->owned);
     *guess = (moray_guess){0};
 }
 

@@ -4,6 +4,8 @@
 
 #include "ocp/transcription.h"
 
+#define MORAY_SOLUTION_MARK "moray-solution" // what files of solutions begin with
+
 enum { diagnosis_size = 4000 };
 
 struct moray_solution {

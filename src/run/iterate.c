@@ -34,3 +34,18 @@ moray_status moray_interruption(const moray_solution *solution, const char *path
     return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations; to go on: --continue %.220s",
                        moray_solution_info(solution)->iterations, path);
 }
+
+moray_status moray_check_starts(const char *from_file, const char *guess_file)
+{
+    if (from_file[0] && guess_file[0])
+        return moray_error(MORAY_INPUT, "--continue and --guess: must be one of them");
+    return moray_ok();
+}
+
+moray_status moray_solution_leave(const moray_solution *solution, moray_output *output)
+{
+    FILE *file;
+    MORAY_TRY(moray_output_file(output, "solution.moray", &file));
+    moray_solution_write(solution, file);
+    return moray_ok();
+}

@@ -25,6 +25,7 @@ static const moray_option own_rows[] = {
     MORAY_ROW(REAL, app_run, barrier, "solver", "barrier", .max = INFINITY, .open = true,
               .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"),
     MORAY_CONTINUE(app_run, from_file),
+    MORAY_GUESS(app_run, guess_file),
     {.flag = "check",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(app_run, check),
@@ -110,10 +111,13 @@ static moray_status certify(app_run *run)
     return status;
 }
 
-// Goes on from --continue, on the mesh of the file unless the options name another than by default.
+// Reads what --guess names, or goes on from --continue, on the mesh of the file unless the options name another than by default.
 static moray_status load(app_run *run, moray_settings *settings)
 {
     app_run usual = {.app = run->app};
+    MORAY_TRY(moray_check_starts(run->from_file, run->guess_file));
+    if (run->guess_file[0])
+        return moray_guess_read(&run->read, run->ocp, run->guess_file);
     if (!run->from_file[0])
         return moray_ok();
     start_from_defaults(&usual);
@@ -126,7 +130,9 @@ static moray_status solve(app_run *run)
 {
     moray_settings settings = settings_of(run);
     MORAY_TRY(load(run, &settings));
-    const moray_guess from = moray_guess_from_solution(run->from), *guess = run->from ? &from : run->app->guess;
+    const moray_guess from = moray_guess_from_solution(run->from), *guess = run->from            ? &from
+                                                                                : run->guess_file[0] ? &run->read
+                                                                                                     : run->app->guess;
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
     moray_interrupt_begin();
     moray_status status = moray_solve(run->ocp, &settings, guess, &run->solution);
@@ -221,6 +227,7 @@ int moray_app_run(const moray_app *app, int argc, char **argv)
     }
     moray_solution_free(run.solution);
     moray_solution_free(run.from);
+    moray_guess_free(&run.read);
     moray_ocp_free(run.ocp);
     return exit_code;
 }

@@ -12,13 +12,14 @@ typedef struct app_run {
     int refinements, max_iterations, max_variables;
     double max_cpu_seconds;
     bool check;
-    char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
+    char from_file[MORAY_PATH_SIZE], guess_file[MORAY_PATH_SIZE]; // of --continue, --guess; empty: none
     double constant[MORAY_APP_CONSTANTS];
     const moray_app *app;
     const char *name;
     // found along the way
     moray_ocp *ocp;
     moray_solution *solution, *from;
+    moray_guess read; // of --guess
     char kept[MORAY_PATH_SIZE]; // where the best iterate is after an interruption
     bool certified;             // whether there is a certificate at all
     moray_certificate certificate;

@@ -232,9 +232,11 @@ static void summarise(const void *found, moray_json *json)
 
 static moray_status write(const void *found, moray_output *output)
 {
-    (void)output;
-    MORAY_TRY(moray_run_write_trajectory(found));
-    return moray_run_write_costates(found);
+    const app_run *run = found;
+    MORAY_TRY(moray_run_write_trajectory(run));
+    if (moray_solution_info(run->solution)->outcome != MORAY_NLP_INTERRUPTED) // else it is in the file of the iterate
+        MORAY_TRY(moray_solution_leave(run->solution, output));
+    return moray_run_write_costates(run);
 }
 
 static void print(const void *found, const moray_report *report)

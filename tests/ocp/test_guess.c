@@ -289,6 +289,32 @@ static void damage(int number, const char *line)
     fclose(to);
 }
 
+// A solution file as a guess for another mesh and scheme: warm, with its multipliers.
+static void test_read_solution(void)
+{
+    moray_ocp *ocp = legs();
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution = solve(ocp, &settings, NULL);
+    CHECK_OK(moray_solution_save(solution, kept), "saved");
+    moray_guess guess;
+    CHECK_OK(moray_guess_read(&guess, ocp, kept), "read as a guess");
+    settings.scheme = "radau4";
+    settings.intervals = 9;
+    moray_solution *warm = solve(ocp, &settings, &guess), *cold = solve(ocp, &settings, NULL);
+    CHECK(moray_solution_info(warm)->iterations < moray_solution_info(cold)->iterations, "%d iterations in place of %d",
+          moray_solution_info(warm)->iterations, moray_solution_info(cold)->iterations);
+    CHECK_RELATIVE(moray_solution_objective(warm), moray_solution_objective(cold), 1e-7, "to the same optimum");
+    moray_guess_free(&guess);
+    CHECK(!guess.from && !guess.owned, "freed");
+    damage(12, "1 x 2\n");
+    moray_status status = moray_guess_read(&guess, ocp, path);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "line 12: a finite number"), "%s", status.text);
+    moray_solution_free(warm);
+    moray_solution_free(cold);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 static void check_damaged(const moray_ocp *ocp, int number, const char *line, const char *expected)
 {
     moray_solution *solution;
@@ -337,6 +363,7 @@ int main(void)
     test_simulated();
     test_kept();
     test_continued();
+    test_read_solution();
     test_damaged();
     remove(path);
     remove(kept);

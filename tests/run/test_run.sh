@@ -29,7 +29,7 @@ done
 check "certificate passes" grep -q '"pass":.true' out
 check "summary.json is what --json prints" cmp out results/summary.json
 check "every figure by phase and unit, and nothing else" [ "$(ls -A results | tr '\n' ' ')" = \
-    "controls_1_to-the-gate.svg controls_2_beyond.svg costates.csv report.html states_1_to-the-gate.svg \
+    "controls_1_to-the-gate.svg controls_2_beyond.svg costates.csv report.html solution.moray states_1_to-the-gate.svg \
 states_1_to-the-gate_2.svg states_2_beyond.svg states_2_beyond_2.svg summary.json trajectory.csv " ]
 check "columns with names and units, phases of the same names share them" \
     [ "$(head -n 1 results/trajectory.csv)" = 'phase,t [s],x [m],v [m/s],u [N]' ]
@@ -43,6 +43,25 @@ check "costates have names, units, a row for each node" eval '
 # u = x'' = 3 - 3 t, H = u^2/2 + lambda_x v + lambda_v u: lambda_v = -u, lambda_x = -lambda_v' = -3
 check "and are those of the cubic" awk -F, 'NR > 1 { e = $3 + 3; d = $4 + 3 - 3 * $2; n[$1]++
     if (e * e > 1e-10 || d * d > 1e-10) bad = 1 } END { exit bad || n[1] != 41 || n[2] != 41 }' results/costates.csv
+iterations() { number iterations; }
+run --json --continue results/solution.moray
+check "--continue from the solution that --out leaves: $(iterations) iterations" eval '[ $code -eq 0 ] && has objective 3 1e-6 &&
+    [ "$(iterations)" -le 3 ] && grep -q "\"scheme\":.\"continued\"" out'
+run --json
+cold=$(iterations)
+run --json --guess results/solution.moray --scheme radau4 --intervals 9
+check "--guess, multipliers included, on another mesh: $(iterations) iterations of $cold" \
+    eval '[ $code -eq 0 ] && has objective 3 1e-6 && has intervals 9 0 && [ "$(iterations)" -lt "$cold" ] && grep -q radau4 out'
+run --json --guess results/trajectory.csv
+check "--guess, from a trajectory" eval '[ $code -eq 0 ] && has objective 3 1e-6'
+run --guess results/solution.moray --continue results/solution.moray
+check "not both: $(cat err)" eval '[ $code -eq 2 ] && says "must be one of them"'
+sed '20s|.*|x 2|' results/solution.moray >mangled
+run --guess mangled
+check "a mangled file is refused with its line: $(cat err)" eval '[ $code -eq 2 ] && says "mangled, line 20: a finite number expected"'
+sed '1s/ 1 / 2 /' results/solution.moray >newer
+run --guess newer
+check "so is another version of it: $(cat err)" eval '[ $code -eq 2 ] && says "line 1: moray-solution 1 expected"'
 check "the report has the table, the figures, the command line" eval '
     grep -q "Certificate: pass" results/report.html && grep -q "<svg" results/report.html &&
     grep -q -- "--json --out results" results/report.html'
@@ -56,7 +75,6 @@ check "--set reaches the functions, other options the solver" \
     eval '[ $code -eq 0 ] && has gate 1.2 0 && has intervals 7 0 && grep -q radau4 out && has tf 1.1341378 1e-6'
 
 # ---- Options of Ipopt by their names, and no option file
-iterations() { number iterations; }
 printf 'max_iter 3\ntol 1e-2\nprint_level 5\n' >ipopt.opt
 run --json
 check "ipopt.opt in the working directory decides nothing" \

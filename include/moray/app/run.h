@@ -38,7 +38,9 @@ typedef struct moray_app {
 enum { MORAY_APP_CONSTANTS = 32 };
 
 // Reads the options, solves, certifies by re-simulation, prints a table or (--json) one JSON object on standard output,
-// and leaves with --out summary.json, trajectory.csv, figures of states and controls over time, and report.html.
+// and leaves with --out summary.json, trajectory.csv, figures of states and controls over time, report.html, and
+// solution.moray, from which --continue FILE goes on, and from which --guess FILE starts on the mesh of the options (as
+// from a trajectory.csv, which has no multipliers).
 // Ctrl-C ends the solve at the next iteration and leaves the best iterate in a file, from which --continue FILE starts,
 // on the mesh it has unless --scheme or --intervals name another; a second Ctrl-C ends at once. What the solver left is
 // shown and written in any case: solved (exit code 0, or 3 where the certificate failed), not solved (1) or interrupted
@@ -70,8 +72,21 @@ MORAY_API bool moray_interrupted(void);
 #define MORAY_CONTINUE(settings, field)                                                                                \
     {                                                                                                                  \
         .flag = "continue", .argument = "FILE", .type = MORAY_OPTION_TEXT, MORAY_AT(settings, field),                  \
-        .help = "start from what Ctrl-C left in this file"                                                             \
+        .help = "go on from the solution in this file (solution.moray of --out, or what Ctrl-C left)"                   \
     }
+
+// The row of --guess FILE, likewise.
+#define MORAY_GUESS(settings, field)                                                                                   \
+    {                                                                                                                  \
+        .flag = "guess", .argument = "FILE", .type = MORAY_OPTION_TEXT, MORAY_AT(settings, field),                     \
+        .help = "start from the solution in this file (solution.moray of --out, or a trajectory.csv) on a new mesh"    \
+    }
+
+// Of --continue and --guess, at most one. Error: MORAY_INPUT.
+MORAY_API moray_status moray_check_starts(const char *from_file, const char *guess_file);
+
+// Leaves a solution in the file solution.moray of --out. Error: MORAY_IO.
+MORAY_API moray_status moray_solution_leave(const moray_solution *solution, moray_output *output);
 
 // Writes what an interrupted solver left to NAME.iterate, beside the other files of --out (which the caller commits) or
 // else in the working directory, and its path to path. Error: MORAY_IO, MORAY_INPUT (path too long).

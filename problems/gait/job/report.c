@@ -331,6 +331,7 @@ static moray_status draw_start(const void *found, moray_output *output)
 static moray_status write(const void *found, moray_output *output)
 {
     const gait_job *job = found;
+    MORAY_TRY(moray_solution_leave(last_stage(job)->solution, output));
     return gait_job_trajectory(job, recommended(job), output);
 }
 
