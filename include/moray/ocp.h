@@ -130,6 +130,9 @@ typedef struct moray_phase_spec {
     moray_continuous_fn *continuous;      // complex step
     const moray_map *map;                 // analytic: in = [x, u, s, t], out = [f, c, g]; must outlive the problem
     moray_bounds t0, tf;                  // t0 <= tf holds whatever they say
+    moray_bounds duration;                // of tf - t0; left out (0, 0): any, 0 or more
+    const double *mesh;                   // [intervals + 1] ascending from 0 to 1, in parts of the phase; NULL: equal
+    int intervals;                        // of the first mesh of this phase; 0: those of the settings
     moray_bounds_list x, x0, xf, u, c, q; // x0 and xf narrow x at the ends
     const char *const *x_names, *const *u_names, *const *c_names; // NULL: x[0], ...
     moray_continuous_real_fn *continuous_real;                    // differences
@@ -169,6 +172,10 @@ typedef struct moray_ocp_derivative_report {
 // Error: MORAY_MEMORY; MORAY_NUMERIC when a function is not finite at any of the points.
 MORAY_API moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report);
 
+// The same problem from another start, for re-solving it as time goes on: its one phase begins at t in state x[nx], and
+// where `length` is not 0, ends at t + length. Solutions from before keep their own start and ends. Error: MORAY_INPUT.
+MORAY_API moray_status moray_ocp_restart(moray_ocp *ocp, double t, double length, const double *x);
+
 // Number of phases; states and controls of one of them.
 MORAY_API int moray_ocp_phases(const moray_ocp *ocp);
 MORAY_API void moray_ocp_widths(const moray_ocp *ocp, int phase, int *nx, int *nu);
@@ -192,6 +199,7 @@ typedef struct moray_guess {
     const double *s;
     const moray_solution *from; // NULL; a solution of a problem of the same sizes on any mesh and scheme: all from it
     void *owned;                // what moray_guess_free frees
+    bool along_time; // of `from` what it has at the same times, its end held beyond, not at equal parts of the phases
 } moray_guess;
 
 MORAY_API void moray_guess_free(moray_guess *guess); // of read and simulated guesses; harmless to others
@@ -294,6 +302,19 @@ MORAY_API int moray_solution_hamiltonian(const moray_solution *solution, int pha
 
 // Multipliers [ne] of the events: minus dJ / d(bound) of those at a bound, positive at the upper, else 0.
 MORAY_API const double *moray_solution_event_multipliers(const moray_solution *solution);
+
+// Multipliers of path constraints c[count][nc], and of the bounds on states x[count][nx] and controls u[count][nu], at
+// the nodes, as densities in time: mu(t) dt is minus dJ of moving the active bound up for dt, so that it is positive at
+// an upper bound, negative at a lower one, 0 between, and the Hamiltonian g + lambda f + mu c is stationary in u. NaN
+// where c and u are not collocated, and for states at both ends of the phase, whose bounds are of x0 and xf: see
+// moray_solution_end_multipliers. Where a state stays on a bound of its own, the density may hold single nodes with
+// what jumps the costate: its integral by the quadrature of the mesh converges, its values there grow. Any array may be
+// NULL. Returns the count, as moray_solution_nodes, whose times these are.
+MORAY_API int moray_solution_multipliers(const moray_solution *solution, int phase, double *c, double *x, double *u);
+
+// The same of the bounds on x0[nx] and xf[nx], which are no densities: minus dJ / d(bound). NaN where the state is fixed
+// there: its costate tells. Either may be NULL.
+MORAY_API void moray_solution_end_multipliers(const moray_solution *solution, int phase, double *x0, double *xf);
 
 // Sizes of the programme that was solved.
 typedef struct moray_nlp_size {

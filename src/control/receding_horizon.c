@@ -21,6 +21,7 @@ struct moray_receding_horizon {
     moray_receding_horizon_record record;
     moray_replan *replan; // [room]
     int room;
+    int nx, nu, ns; // of the plans
     int n;          // samples of a guess
     double guess[]; // times, states, controls
 };
@@ -35,16 +36,16 @@ static double processor(void)
 
 // ---- Plans ---------------------------------------------------------------------------------------------------------
 
-static moray_status check_sizes(const moray_replanner *replanner, const moray_ocp *ocp, const char *what)
+static moray_status check_sizes(const moray_receding_horizon *r, const moray_ocp *ocp, const char *what)
 {
     int nx, nu;
     if (ocp->phases != 1)
         return moray_error(MORAY_INPUT, "%s has %d phases: must be 1", what, ocp->phases);
     moray_ocp_widths(ocp, 0, &nx, &nu);
-    if (nx != replanner->nx || nu != replanner->nu || ocp->ns != replanner->ns)
+    if (nx != r->nx || nu != r->nu || ocp->ns != r->ns)
         return moray_error(MORAY_INPUT,
                            "%s has %d states, %d controls, %d parameters: the receding horizon has %d, %d, %d", what,
-                           nx, nu, ocp->ns, replanner->nx, replanner->nu, replanner->ns);
+                           nx, nu, ocp->ns, r->nx, r->nu, r->ns);
     return moray_ok();
 }
 
@@ -52,7 +53,7 @@ static moray_status check_sizes(const moray_replanner *replanner, const moray_oc
 static moray_guess guess_from(moray_receding_horizon *r, double t, const double *state, moray_samples *samples)
 {
     const moray_solution *from = r->solution ? r->solution : r->spec.first;
-    const size_t nx = (size_t)r->spec.replanner.nx, nu = (size_t)r->spec.replanner.nu;
+    const size_t nx = (size_t)r->nx, nu = (size_t)r->nu;
     double *time = r->guess, *x = time + r->n, *u = x + nx * (size_t)r->n;
     for (int k = 0; k < r->n; k++) {
         time[k] = t + r->spec.horizon * k / (r->n - 1);
@@ -70,7 +71,9 @@ static moray_status solve(moray_receding_horizon *r, double t, const double *sta
                           moray_solution **solution, int *iterations)
 {
     moray_samples samples;
-    const moray_guess guess = guess_from(r, t, state, &samples);
+    moray_guess guess = {.from = r->solution, .along_time = true};
+    if (!r->spec.ocp || !r->solution)
+        guess = guess_from(r, t, state, &samples);
     moray_settings settings = r->spec.settings;
     if (r->solution)
         settings.barrier = WARM;
@@ -85,22 +88,31 @@ static moray_status solve(moray_receding_horizon *r, double t, const double *sta
 static void drop(const moray_receding_horizon *r, void *problem, moray_solution *solution)
 {
     moray_solution_free(solution);
-    if (problem)
+    if (problem && !r->spec.ocp)
         r->spec.replanner.free(problem);
+}
+
+// The problem from here on.
+static moray_status pose(moray_receding_horizon *r, double t, const double *state, void **problem,
+                         const moray_ocp **ocp)
+{
+    const moray_replanner *replanner = &r->spec.replanner;
+    *ocp = r->spec.ocp;
+    return r->spec.ocp ? moray_ocp_restart(r->spec.ocp, t, r->spec.horizon, state)
+                       : replanner->make(replanner->self, t, state, problem, ocp);
 }
 
 // Puts a new plan in force; `why` tells the failure when the old one stays. Error: problems of other sizes; no memory,
 // which is no failure of the plan.
 static moray_status plan(moray_receding_horizon *r, double t, const double *state, int *iterations, moray_status *why)
 {
-    const moray_replanner *replanner = &r->spec.replanner;
     void *problem = NULL;
     const moray_ocp *ocp;
     moray_solution *solution = NULL;
-    *why = replanner->make(replanner->self, t, state, &problem, &ocp);
+    *why = pose(r, t, state, &problem, &ocp);
     if (moray_failed(*why))
         return why->code == MORAY_MEMORY ? *why : moray_ok();
-    moray_status status = check_sizes(replanner, ocp, "the problem");
+    moray_status status = check_sizes(r, ocp, "the problem");
     if (!moray_failed(status))
         *why = solve(r, t, state, ocp, &solution, iterations);
     if (why->code == MORAY_MEMORY)
@@ -160,7 +172,7 @@ moray_status moray_receding_horizon_measure(moray_receding_horizon *r, double t,
 
 void moray_receding_horizon_control(const moray_receding_horizon *r, double t, double *u)
 {
-    memset(u, 0, (size_t)r->spec.replanner.nu * sizeof *u);
+    memset(u, 0, (size_t)r->nu * sizeof *u);
     if (r->solution)
         moray_solution_at(r->solution, 0, t, NULL, u);
 }
@@ -180,7 +192,7 @@ static moray_status measure(const moray_closed_loop_sample *sample, void *self)
 moray_controller moray_receding_horizon_controller(moray_receding_horizon *receding)
 {
     const moray_receding_horizon_spec *spec = &receding->spec;
-    return (moray_controller){.nu = spec->replanner.nu,
+    return (moray_controller){.nu = receding->nu,
                               .control = control,
                               .measure = measure,
                               .period = spec->watch > 0 ? spec->watch : spec->interval,
@@ -189,9 +201,9 @@ moray_controller moray_receding_horizon_controller(moray_receding_horizon *reced
 
 // ---- Handling ------------------------------------------------------------------------------------------------------
 
-static moray_status check(const moray_receding_horizon_spec *spec)
+static moray_status check(const moray_receding_horizon *r)
 {
-    const moray_replanner *replanner = &spec->replanner;
+    const moray_receding_horizon_spec *spec = &r->spec;
     if (!(spec->interval > 0 && spec->horizon >= spec->interval && isfinite(spec->horizon)))
         return moray_error(MORAY_INPUT, "horizon = %g, replanned every %g: the horizon must be the longer",
                            spec->horizon, spec->interval);
@@ -200,22 +212,34 @@ static moray_status check(const moray_receding_horizon_spec *spec)
                            spec->interval);
     if (spec->settings.intervals < 1)
         return moray_error(MORAY_INPUT, "intervals = %d: a plan has at least 1", spec->settings.intervals);
-    if (replanner->nx < 1 || replanner->nu < 0 || replanner->ns < 0)
+    if (!spec->ocp == !spec->replanner.make)
+        return moray_error(MORAY_INPUT, "a receding horizon needs a problem or a replanner, and only one");
+    if (r->nx < 1 || r->nu < 0 || r->ns < 0)
         return moray_error(MORAY_INPUT, "plans of %d states, %d controls, %d parameters: must be at least 1, 0 and 0",
-                           replanner->nx, replanner->nu, replanner->ns);
-    return spec->first ? check_sizes(replanner, spec->first->transcription->ocp, "the first plan") : moray_ok();
+                           r->nx, r->nu, r->ns);
+    if (spec->ocp)
+        MORAY_TRY(check_sizes(r, spec->ocp, "the problem"));
+    return spec->first ? check_sizes(r, spec->first->transcription->ocp, "the first plan") : moray_ok();
 }
 
 moray_status moray_receding_horizon_new(moray_receding_horizon **result, const moray_receding_horizon_spec *spec)
 {
     *result = NULL;
-    MORAY_TRY(check(spec));
+    moray_receding_horizon asked = {.spec = *spec,
+                                    .nx = spec->replanner.nx,
+                                    .nu = spec->replanner.nu,
+                                    .ns = spec->replanner.ns};
+    if (spec->ocp) {
+        moray_ocp_widths(spec->ocp, 0, &asked.nx, &asked.nu);
+        asked.ns = spec->ocp->ns;
+    }
+    MORAY_TRY(check(&asked));
     const size_t n = PER_INTERVAL * (size_t)spec->settings.intervals + 1;
-    const size_t width = 1 + (size_t)spec->replanner.nx + (size_t)spec->replanner.nu;
+    const size_t width = 1 + (size_t)asked.nx + (size_t)asked.nu;
     moray_receding_horizon *r = calloc(1, sizeof *r + n * width * sizeof *r->guess);
     if (!r)
         return moray_error(MORAY_MEMORY, "no memory for a receding horizon");
-    r->spec = *spec;
+    *r = asked;
     r->n = (int)n;
     r->due = -INFINITY;
     *result = r;

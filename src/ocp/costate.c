@@ -66,3 +66,45 @@ int moray_solution_hamiltonian(const moray_solution *solution, int p, double *ha
     }
     return layout->nodes;
 }
+
+// ---- Bounds and path constraints -----------------------------------------------------------------------------------
+
+static double bound_multiplier(const moray_solution *solution, int column)
+{
+    return solution->iterate.z_upper[column] - solution->iterate.z_lower[column];
+}
+
+int moray_solution_multipliers(const moray_solution *solution, int p, double *c, double *x, double *u)
+{
+    const struct transcription *t = solution->transcription;
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const double T = t->phase[p].tf - t->phase[p].t0;
+    for (int n = 0; n < layout->nodes; n++) {
+        const struct node *node = &layout->node[n];
+        const double share = node->collocated ? T * node->weight : NAN;
+        const bool inside = n > 0 && n < layout->nodes - 1;
+        for (int r = 0; c && r < phase->nc; r++)
+            c[n * phase->nc + r] = node->collocated ? solution->iterate.lambda[node->path + r] / share : NAN;
+        for (int r = 0; x && r < phase->nx; r++)
+            x[n * phase->nx + r] = inside ? bound_multiplier(solution, node->x + r) / share : NAN;
+        for (int r = 0; u && r < phase->nu; r++)
+            u[n * phase->nu + r] =
+                node->collocated ? bound_multiplier(solution, node->x + phase->nx + r) / share : NAN;
+    }
+    return layout->nodes;
+}
+
+void moray_solution_end_multipliers(const moray_solution *solution, int p, double *x0, double *xf)
+{
+    const struct transcription *t = solution->transcription;
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const int first = layout->node[0].x, last = layout->node[layout->nodes - 1].x;
+    for (int r = 0; r < phase->nx; r++) {
+        if (x0)
+            x0[r] = moray_bounds_are_fixed(phase->x0[r]) ? NAN : bound_multiplier(solution, first + r);
+        if (xf)
+            xf[r] = moray_bounds_are_fixed(phase->xf[r]) ? NAN : bound_multiplier(solution, last + r);
+    }
+}

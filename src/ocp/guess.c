@@ -62,18 +62,33 @@ static double end_value(moray_bounds end, moray_bounds other)
     return moray_bounds_middle(known ? end : other);
 }
 
-// Middles of the bounds; where those leave no length, the phases share what lies between in turn.
+static const double no_length = 1e-3; // of what the bounds leave: less is none
+
+static double within(double value, moray_bounds bounds)
+{
+    return fmin(fmax(value, bounds.lower), bounds.upper);
+}
+
+// Middles of the bounds; where those leave no length, the phases share what lies between in turn, or where that is
+// endless last 1. A duration that has bounds is kept.
 static void guess_times(const struct transcription *t, int p, double *x)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
+    const double start = phase->t0.lower, width = phase->tf.upper - start;
     double t0 = moray_bounds_middle(phase->t0), tf = moray_bounds_middle(phase->tf);
     if (phase->tf.upper >= MORAY_INFINITY)
         tf = fmax(phase->tf.lower, t0 + 1);
-    if (tf <= t0 && phase->t0.lower > -MORAY_INFINITY) {
-        const double start = phase->t0.lower, width = phase->tf.upper - start;
-        t0 = layout->t0 < 0 ? start : start + width * p / t->ocp->phases;
-        tf = layout->tf < 0 ? phase->tf.upper : start + width * (p + 1) / t->ocp->phases;
+    else if (tf <= t0 && start <= -MORAY_INFINITY)
+        t0 = within(tf - 1, phase->t0);
+    else if (tf - t0 <= no_length * width) {
+        t0 = layout->t0 < 0 ? start : within(start + width * p / t->ocp->phases, phase->t0);
+        tf = layout->tf < 0 ? phase->tf.upper : within(start + width * (p + 1) / t->ocp->phases, phase->tf);
+    }
+    if (phase->has_duration && (tf - t0 < phase->duration.lower || tf - t0 > phase->duration.upper)) {
+        const double length = within(moray_bounds_middle(phase->duration), moray_between(0, MORAY_INFINITY));
+        tf = within(t0 + length, phase->tf);
+        t0 = within(tf - length, phase->t0);
     }
     if (layout->t0 >= 0)
         x[layout->t0] = t0;
@@ -110,23 +125,36 @@ static moray_status check_sizes(const moray_ocp *ocp, const moray_ocp *other)
     return moray_ok();
 }
 
-static void guess_from_solution(const struct transcription *t, int p, const moray_solution *from, double *x)
+struct alignment moray_align(const moray_guess *guess, int p, double t0, double tf)
 {
+    double from, to;
+    moray_solution_times(guess->from, p, &from, &to);
+    if (!guess->along_time || !(to > from))
+        return (struct alignment){0, 1};
+    return (struct alignment){(t0 - from) / (to - from), (tf - t0) / (to - from)};
+}
+
+static void guess_from_solution(const struct transcription *t, int p, const moray_guess *guess, double *x)
+{
+    const moray_solution *from = guess->from;
     const struct phase_layout *layout = &t->layout.phase[p], *old = &from->transcription->layout.phase[p];
+    const size_t nodes = (size_t)(layout->q - layout->node[0].x);
     double t0, tf;
     moray_solution_times(from, p, &t0, &tf);
     if (layout->t0 >= 0)
         x[layout->t0] = t0;
     if (layout->tf >= 0)
         x[layout->tf] = tf;
-    if (from->transcription->layout.family == t->layout.family && moray_mesh_equal(&old->mesh, &layout->mesh)) {
-        memcpy(x + layout->node[0].x, from->iterate.x + old->node[0].x,
-               (size_t)(layout->q - layout->node[0].x) * sizeof *x);
+    if (!guess->along_time && from->transcription->layout.family == t->layout.family &&
+        moray_mesh_equal(&old->mesh, &layout->mesh)) {
+        memcpy(x + layout->node[0].x, from->iterate.x + old->node[0].x, nodes * sizeof *x);
         return;
     }
+    moray_layout_span(&t->layout, t->ocp, x, p, &t0, &tf);
+    const struct alignment a = moray_align(guess, p, t0, tf);
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
-        moray_solution_at_tau(from, p, NULL, node->tau, x + node->x,
+        moray_solution_at_tau(from, p, NULL, fmin(fmax(a.shift + a.stretch * node->tau, 0), 1), x + node->x,
                               node->collocated ? x + node->x + t->ocp->phase[p].nx : NULL);
     }
 }
@@ -155,7 +183,7 @@ static moray_status fill_phase(struct transcription *t, int p, const moray_guess
     const struct phase *phase = &t->ocp->phase[p];
     memset(x + t->layout.phase[p].q, 0, (size_t)phase->nq * sizeof *x);
     if (guess && guess->from) {
-        guess_from_solution(t, p, guess->from, x);
+        guess_from_solution(t, p, guess, x);
     } else if (guess && guess->phase && guess->phase[p].n != 0) {
         MORAY_TRY(check_samples(phase, &guess->phase[p]));
         guess_from_samples(t, p, &guess->phase[p], x);

@@ -62,7 +62,8 @@ static void number_phase(struct layout *layout, struct phase_layout *phase, cons
     phase->t0 = moray_bounds_are_fixed(p->t0) ? -1 : layout->columns++;
     phase->tf = moray_bounds_are_fixed(p->tf) ? -1 : layout->columns++;
     const bool may_turn = phase->t0 >= 0 && phase->tf >= 0 && p->t0.upper > p->tf.lower;
-    phase->length_row = may_turn ? layout->rows++ : -1;
+    const bool measured = phase->t0 >= 0 && phase->tf >= 0 && p->has_duration;
+    phase->length_row = may_turn || measured ? layout->rows++ : -1;
 }
 
 // Numbers columns and rows interval by interval along time, parameters and events last: the order in which bands are

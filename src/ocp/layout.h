@@ -31,7 +31,7 @@ struct phase_layout {
     int t0, tf;       // columns, -1 where fixed
     int q;            // first column of the integrals
     int integral_row; // first row of their definitions
-    int length_row;   // tf - t0 >= 0; -1 where the bounds of the times say so already
+    int length_row;   // tf - t0 >= 0, or within its bounds; -1 where the bounds of the times say so already
 };
 
 struct layout {

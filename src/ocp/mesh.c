@@ -36,6 +36,14 @@ moray_status moray_mesh_uniform(struct mesh *mesh, int intervals, int stages)
     return moray_ok();
 }
 
+moray_status moray_mesh_of(struct mesh *mesh, const double *edge, int intervals, int stages)
+{
+    MORAY_TRY(moray_mesh_uniform(mesh, intervals, stages));
+    if (edge)
+        memcpy(mesh->edge, edge, ((size_t)intervals + 1) * sizeof *mesh->edge);
+    return moray_ok();
+}
+
 moray_status moray_mesh_copy(struct mesh *copy, const struct mesh *mesh)
 {
     MORAY_TRY(moray_mesh_new(copy, mesh->intervals));

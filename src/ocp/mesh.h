@@ -23,6 +23,7 @@ struct mesh {
 // Error: MORAY_MEMORY. Free with moray_mesh_free, which is safe on a zeroed mesh.
 moray_status moray_mesh_new(struct mesh *mesh, int intervals);
 moray_status moray_mesh_uniform(struct mesh *mesh, int intervals, int stages);
+moray_status moray_mesh_of(struct mesh *mesh, const double *edge, int intervals, int stages); // edge NULL: uniform
 moray_status moray_mesh_copy(struct mesh *copy, const struct mesh *mesh);
 void moray_mesh_free(struct mesh *mesh);
 bool moray_mesh_equal(const struct mesh *one, const struct mesh *other); // in edges and stages

@@ -10,6 +10,7 @@
 
 // The old mesh of a phase and the new.
 struct transfer {
+    struct alignment at;
     const moray_solution *from;
     moray_solution *to;
     int p;
@@ -26,8 +27,9 @@ static int place(const struct transfer *t, const struct node *node, enum kind ki
     return kind == of_path ? node->path : kind == of_control ? node->x + nx : node->x;
 }
 
-static void interpolate(const struct transfer *t, double tau, int width)
+static void interpolate(const struct transfer *t, double tau_new, int width)
 {
+    const double tau = fmin(fmax(t->at.shift + t->at.stretch * tau_new, 0), 1);
     int k = 0;
     for (int step = t->old->nodes; step > 0; step /= 2) // the last node at or before tau
         while (k + step < t->old->nodes && t->old->node[k + step].tau <= tau)
@@ -58,7 +60,7 @@ static void carry(const struct transfer *t, const double *source, double *target
             continue;
         interpolate(t, node->tau, width);
         for (int i = 0; i < width; i++)
-            target[place(t, node, kind) + i] = node->weight * t->here[i];
+            target[place(t, node, kind) + i] = t->at.stretch * node->weight * t->here[i];
     }
 }
 
@@ -71,9 +73,9 @@ static void carry_bounds(const struct transfer *t, const double *source, double 
     memcpy(target + t->new->node[0].x, source + t->old->node[0].x, state);
     memcpy(target + t->new->node[t->new->nodes - 1].x, source + t->old->node[t->old->nodes - 1].x, state);
     memcpy(target + t->new->q, source + t->old->q, (size_t)phase->nq * sizeof *target);
-    if (t->new->t0 >= 0)
+    if (t->new->t0 >= 0 && t->old->t0 >= 0)
         target[t->new->t0] = source[t->old->t0];
-    if (t->new->tf >= 0)
+    if (t->new->tf >= 0 && t->old->tf >= 0)
         target[t->new->tf] = source[t->old->tf];
 }
 
@@ -97,10 +99,13 @@ static void carry_defects(const struct transfer *t)
     }
 }
 
-static moray_status carry_phase(const moray_solution *from, moray_solution *to, int p)
+static moray_status carry_phase(const moray_guess *guess, moray_solution *to, int p)
 {
+    const moray_solution *from = guess->from;
+    double t0, tf;
+    moray_layout_span(&to->transcription->layout, to->transcription->ocp, to->iterate.x, p, &t0, &tf);
     const struct phase *phase = &to->transcription->ocp->phase[p];
-    struct transfer t = {from, to,  p, &from->transcription->layout.phase[p], &to->transcription->layout.phase[p],
+    struct transfer t = {moray_align(guess, p, t0, tf), from, to, p, &from->transcription->layout.phase[p], &to->transcription->layout.phase[p],
                          NULL, NULL};
     const size_t width = (size_t)(phase->nx + phase->nu + phase->nc);
     t.density = calloc(((size_t)t.old->nodes + 1) * width, sizeof *t.density);
@@ -113,7 +118,7 @@ static moray_status carry_phase(const moray_solution *from, moray_solution *to, 
     carry(&t, from->iterate.lambda, to->iterate.lambda, of_path, phase->nc);
     memcpy(to->iterate.lambda + t.new->integral_row, from->iterate.lambda + t.old->integral_row,
            (size_t)phase->nq * sizeof *t.here);
-    if (t.new->length_row >= 0)
+    if (t.new->length_row >= 0 && t.old->length_row >= 0)
         to->iterate.lambda[t.new->length_row] = from->iterate.lambda[t.old->length_row];
     free(t.density);
     return moray_ok();
@@ -127,18 +132,19 @@ static bool same_meshes(const struct layout *one, const struct layout *other)
     return same;
 }
 
-moray_status moray_carry_multipliers(const moray_solution *from, moray_solution *to)
+moray_status moray_carry_multipliers(const moray_guess *guess, moray_solution *to)
 {
+    const moray_solution *from = guess->from;
     const struct layout *old = &from->transcription->layout, *new = &to->transcription->layout;
     const moray_ocp *ocp = to->transcription->ocp;
-    if (same_meshes(old, new)) {
+    if (!guess->along_time && same_meshes(old, new)) {
         memcpy(to->iterate.z_lower, from->iterate.z_lower, (size_t) new->columns * sizeof(double));
         memcpy(to->iterate.z_upper, from->iterate.z_upper, (size_t) new->columns * sizeof(double));
         memcpy(to->iterate.lambda, from->iterate.lambda, (size_t) new->rows * sizeof(double));
         return moray_ok();
     }
     for (int p = 0; p < ocp->phases; p++)
-        MORAY_TRY(carry_phase(from, to, p));
+        MORAY_TRY(carry_phase(guess, to, p));
     const size_t parameters = (size_t)ocp->ns * sizeof(double);
     memcpy(to->iterate.z_lower + new->s, from->iterate.z_lower + old->s, parameters);
     memcpy(to->iterate.z_upper + new->s, from->iterate.z_upper + old->s, parameters);

@@ -119,6 +119,51 @@ static moray_status check_phase(const struct phase *phase, const moray_phase_spe
     return moray_ok();
 }
 
+// A duration that is given narrows what one fixed time leaves of the other. Two free ones have a row for it.
+static moray_status take_duration(struct phase *phase, moray_bounds duration)
+{
+    phase->has_duration = duration.lower != 0 || duration.upper != 0;
+    phase->duration = phase->has_duration ? duration : moray_at_least(0);
+    if (!phase->has_duration)
+        return moray_ok();
+    MORAY_TRY(check_bounds((struct place){"duration", phase->name}, NULL, 0, duration));
+    phase->duration.lower = fmax(duration.lower, 0);
+    if (duration.upper < 0)
+        return moray_error(MORAY_INPUT, "phase %s: duration of at most %g: must not be negative", phase->name,
+                           duration.upper);
+    const moray_bounds t0 = phase->t0, tf = phase->tf, d = phase->duration;
+    if (tf.upper - t0.lower < d.lower || tf.lower - t0.upper > d.upper)
+        return moray_error(MORAY_INPUT, "phase %s: duration in [%g, %g] does not meet t0 in [%g, %g] and tf in [%g, %g]",
+                           phase->name, d.lower, d.upper, t0.lower, t0.upper, tf.lower, tf.upper);
+    if (moray_bounds_are_fixed(t0) && !moray_bounds_are_fixed(tf))
+        phase->tf = moray_between(fmax(tf.lower, t0.lower + d.lower), fmin(tf.upper, t0.lower + d.upper));
+    else if (moray_bounds_are_fixed(tf) && !moray_bounds_are_fixed(t0))
+        phase->t0 = moray_between(fmax(t0.lower, tf.lower - d.upper), fmin(t0.upper, tf.lower - d.lower));
+    return moray_ok();
+}
+
+static moray_status copy_mesh(moray_ocp *ocp, struct phase *phase, const moray_phase_spec *spec)
+{
+    const int n = spec->intervals;
+    if (n < 0 || (spec->mesh && n < 1))
+        return moray_error(MORAY_INPUT, "phase %s: a mesh of %d intervals", phase->name, n);
+    phase->intervals = n;
+    if (!spec->mesh)
+        return moray_ok();
+    for (int k = 0; k < n; k++)
+        if (!(spec->mesh[k + 1] > spec->mesh[k]))
+            return moray_error(MORAY_INPUT, "phase %s: mesh[%d] = %g after %g: must ascend", phase->name, k + 1,
+                               spec->mesh[k + 1], spec->mesh[k]);
+    if (spec->mesh[0] != 0 || spec->mesh[n] != 1)
+        return moray_error(MORAY_INPUT, "phase %s: the mesh goes from %g to %g: must be 0 to 1", phase->name,
+                           spec->mesh[0], spec->mesh[n]);
+    phase->mesh = own(ocp, ((size_t)n + 1) * sizeof *phase->mesh);
+    if (!phase->mesh)
+        return no_memory();
+    memcpy(phase->mesh, spec->mesh, ((size_t)n + 1) * sizeof *phase->mesh);
+    return moray_ok();
+}
+
 // Several without a name are told apart by their numbers.
 static const char *copy_phase_name(moray_ocp *ocp, const moray_phase_spec *spec, int p)
 {
@@ -139,6 +184,8 @@ static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, int
     MORAY_TRY(check_phase(phase, spec));
     MORAY_TRY(check_bounds((struct place){"t0", phase->name}, NULL, 0, spec->t0));
     MORAY_TRY(check_bounds((struct place){"tf", phase->name}, NULL, 0, spec->tf));
+    MORAY_TRY(take_duration(phase, spec->duration));
+    MORAY_TRY(copy_mesh(ocp, phase, spec));
     MORAY_TRY(copy_names(ocp, spec->x_names, spec->nx, &phase->x_names));
     MORAY_TRY(copy_names(ocp, spec->u_names, spec->nu, &phase->u_names));
     MORAY_TRY(copy_names(ocp, spec->c_names, spec->nc, &phase->c_names));
@@ -222,6 +269,28 @@ void moray_ocp_free(moray_ocp *ocp)
         free(ocp->owned[i]);
     free(ocp->owned);
     free(ocp);
+}
+
+moray_status moray_ocp_restart(moray_ocp *ocp, double t, double length, const double *x)
+{
+    struct phase *phase = &ocp->phase[0];
+    if (ocp->phases != 1)
+        return moray_error(MORAY_INPUT, "problem %s: has %d phases: must be 1", ocp->name, ocp->phases);
+    if (!isfinite(t) || !(length >= 0 && isfinite(length)))
+        return moray_error(MORAY_INPUT, "problem %s: start at %g, length %g: must be finite, the length not negative",
+                           ocp->name, t, length);
+    for (int i = 0; i < phase->nx; i++)
+        if (!isfinite(x[i]))
+            return moray_error(MORAY_INPUT, "problem %s: start of x[%d] is not finite", ocp->name, i);
+    if (length == 0 && phase->tf.upper < t)
+        return moray_error(MORAY_INPUT, "problem %s: ends by %g, before its start at %g", ocp->name, phase->tf.upper,
+                           t);
+    phase->t0 = moray_fixed(t);
+    if (length > 0)
+        phase->tf = moray_fixed(t + length);
+    for (int i = 0; i < phase->nx; i++)
+        phase->x0[i] = moray_fixed(x[i]);
+    return moray_ok();
 }
 
 int moray_ocp_phases(const moray_ocp *ocp)

@@ -20,7 +20,10 @@ struct phase {
     const moray_map *map; // in = [x, u, s, t], out = [f, c, g]
     struct own_map *own;  // where it comes from a user function; the widest first
     struct wrapped_phase *wrapped;
-    moray_bounds t0, tf;
+    moray_bounds t0, tf, duration;
+    bool has_duration;
+    int intervals; // of the first mesh; 0: those of the settings
+    double *mesh;  // [intervals + 1]; NULL: of equal length
     moray_bounds *x, *x0, *xf, *u, *c, *q;
     const char **x_names, **u_names, **c_names; // NULL where the user named nothing
 };

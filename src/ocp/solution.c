@@ -33,8 +33,8 @@ const double *moray_solution_integrals(const moray_solution *solution, int phase
 
 void moray_solution_times(const moray_solution *solution, int phase, double *t0, double *tf)
 {
-    const struct transcription *t = solution->transcription;
-    moray_layout_span(&t->layout, t->ocp, solution->iterate.x, phase, t0, tf);
+    *t0 = solution->transcription->phase[phase].t0; // a fixed one of the problem may have moved on since
+    *tf = solution->transcription->phase[phase].tf;
 }
 
 moray_nlp_size moray_solution_size(const moray_solution *solution)

@@ -31,8 +31,15 @@ moray_status moray_choose_scales(struct transcription *t, const double *x);
 void moray_solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau,
                            double *x, double *u);
 
-// Fills the multipliers of `to` with those of a solution of the same problem on any mesh. Error: MORAY_MEMORY.
-moray_status moray_carry_multipliers(const moray_solution *from, moray_solution *to);
+// Where the start of phase p, at t0 to tf, finds itself in a solution, at tau: shift + stretch tau there, clamped.
+struct alignment {
+    double shift, stretch;
+};
+struct alignment moray_align(const moray_guess *guess, int p, double t0, double tf);
+
+// Fills the multipliers of `to` with those of guess->from, a solution of the same problem on any mesh. Error:
+// MORAY_MEMORY.
+moray_status moray_carry_multipliers(const moray_guess *guess, moray_solution *to);
 
 // As moray_solution_at, from the polynomials of one interval, at its ends too, where the control may jump.
 void solution_on_interval(const moray_solution *solution, int p, const struct interval *interval, double time,

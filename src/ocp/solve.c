@@ -48,6 +48,13 @@ static void free_meshes(struct campaign *c)
         moray_mesh_free(&c->meshes[p]);
 }
 
+// The mesh that a phase asks for itself, or of equal intervals.
+static moray_status first_mesh(const struct campaign *c, int p, int intervals)
+{
+    const struct phase *phase = &c->ocp->phase[p];
+    return moray_mesh_of(&c->meshes[p], phase->mesh, phase->intervals > 0 ? phase->intervals : intervals, c->stages);
+}
+
 // Meshes of the settings, or those of the solution that the guess comes from.
 static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
 {
@@ -60,7 +67,7 @@ static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
         c->family = other->family;
     for (int p = 0; p < c->ocp->phases; p++)
         if (c->settings->intervals > 0)
-            MORAY_TRY(moray_mesh_uniform(&c->meshes[p], c->settings->intervals, c->stages));
+            MORAY_TRY(first_mesh(c, p, c->settings->intervals));
         else if (p < other->phases)
             MORAY_TRY(moray_mesh_copy(&c->meshes[p], &other->phase[p].mesh));
         else
@@ -102,7 +109,7 @@ static moray_status leave_ringing(struct campaign *c, const moray_solution *solu
     c->vain = 0;
     free_meshes(c);
     for (int p = 0; p < c->ocp->phases; p++)
-        MORAY_TRY(moray_mesh_uniform(&c->meshes[p], intervals_at_first(c), c->stages));
+        MORAY_TRY(first_mesh(c, p, intervals_at_first(c)));
     return moray_ok();
 }
 

@@ -58,13 +58,15 @@ static bool can_start_warm(const moray_solution *solution, const moray_guess *gu
 static moray_status run_solver(moray_solution *solution, const moray_guess *guess, bool warm)
 {
     struct transcription *t = solution->transcription;
-    const moray_nlp_settings settings = solver_settings(&solution->settings, warm);
+    moray_nlp_settings settings = solver_settings(&solution->settings, warm);
+    if (warm && guess->along_time) // the start has moved
+        settings.barrier = solution->settings.barrier;
     MORAY_TRY(moray_fill_guess(t, guess, solution->iterate.x));
     if (solution->settings.own_scaling)
         MORAY_TRY(moray_choose_scales(t, solution->iterate.x));
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (warm)
-        MORAY_TRY(moray_carry_multipliers(guess->from, solution));
+        MORAY_TRY(moray_carry_multipliers(guess, solution));
     return moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
 }
 

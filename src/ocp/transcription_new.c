@@ -31,7 +31,7 @@ static void set_times(struct transcription *t, const struct phase *phase, const 
     if (layout->tf >= 0)
         set_column(t, layout->tf, tf);
     if (layout->length_row >= 0)
-        set_row(t, layout->length_row, moray_at_least(0));
+        set_row(t, layout->length_row, phase->duration);
 }
 
 static void set_phase_bounds(struct transcription *t, int p)

@@ -54,10 +54,5 @@ static bool fill(struct track *t, int p)
 moray_status moray_run_write_costates(const app_run *run)
 {
     static const struct track_form form = {entries, describe, rows, fill};
-    struct track t;
-    moray_status status = moray_track_new(&t, run, &form);
-    if (!moray_failed(status))
-        status = moray_track_write(&t, "costates.csv");
-    moray_track_free(&t);
-    return status;
+    return moray_track_write_new(run, &form, "costates.csv");
 }

@@ -55,4 +55,7 @@ moray_status moray_run_write_trajectory(const app_run *run);
 // costates.csv. Error: MORAY_IO, MORAY_MEMORY.
 moray_status moray_run_write_costates(const app_run *run);
 
+// multipliers.csv. Error: MORAY_IO, MORAY_MEMORY.
+moray_status moray_run_write_multipliers(const app_run *run);
+
 #endif

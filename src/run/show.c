@@ -236,7 +236,8 @@ static moray_status write(const void *found, moray_output *output)
     MORAY_TRY(moray_run_write_trajectory(run));
     if (moray_solution_info(run->solution)->outcome != MORAY_NLP_INTERRUPTED) // else it is in the file of the iterate
         MORAY_TRY(moray_solution_leave(run->solution, output));
-    return moray_run_write_costates(run);
+    MORAY_TRY(moray_run_write_costates(run));
+    return moray_run_write_multipliers(run);
 }
 
 static void print(const void *found, const moray_report *report)

@@ -101,3 +101,13 @@ moray_status moray_track_write(const struct track *t, const char *name)
     free(columns);
     return status;
 }
+
+moray_status moray_track_write_new(const app_run *run, const struct track_form *form, const char *name)
+{
+    struct track t;
+    moray_status status = moray_track_new(&t, run, form);
+    if (!moray_failed(status))
+        status = moray_track_write(&t, name);
+    moray_track_free(&t);
+    return status;
+}

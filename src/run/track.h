@@ -41,4 +41,7 @@ void moray_track_free(struct track *t);
 // To a file of --out; without the phase's number where there is only one. Error: MORAY_IO, MORAY_MEMORY.
 moray_status moray_track_write(const struct track *t, const char *name);
 
+// All of it. Error: MORAY_IO, MORAY_MEMORY.
+moray_status moray_track_write_new(const app_run *run, const struct track_form *form, const char *name);
+
 #endif

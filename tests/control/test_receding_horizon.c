@@ -297,6 +297,67 @@ static void test_pendulum(void)
     CHECK(angle[0] < 0.06 && angle[1] > 0.5, "replanned %.3g rad, the plan alone %.3g rad", angle[0], angle[1]);
 }
 
+// The same from one problem that is stated once: shifted with its multipliers, in fewer iterations, to the same motion.
+static void test_one_problem(void)
+{
+    int iterations[2];
+    double end[2][2];
+    for (int once = 0; once < 2; once++) {
+        planner p = {.horizon = 4};
+        moray_receding_horizon_spec spec = spec_of(&p, 0.2);
+        moray_receding_horizon *receding;
+        double x[2] = {0.25, 0}, most = 0;
+        void *problem;
+        const moray_ocp *ocp;
+        CHECK_OK(make_pendulum(&p, 0, (double[]){0.1, 0.1}, &problem, &ocp), "one problem");
+        spec.settings.intervals = 16;
+        spec.settings.scheme = "radau3";
+        spec.replanner.make = make_pendulum;
+        if (once)
+            spec.replanner = (moray_replanner){0}, spec.ocp = problem;
+        CHECK_OK(moray_receding_horizon_new(&receding, &spec), "receding horizon");
+        const moray_controller controller = moray_receding_horizon_controller(receding);
+        const moray_closed_loop_spec loop = {.plant = {.nx = 2, .nu = 1, .rates = true_pendulum, .self = &most},
+                                             .controller = &controller,
+                                             .t1 = 2.9,
+                                             .settings = {.rtol = 1e-7, .atol = 1e-7, .max_steps = 100000}};
+        CHECK_OK(moray_closed_loop_run(&loop, x), "run");
+        const moray_receding_horizon_record *record = moray_receding_horizon_record_of(receding);
+        const moray_replan *replans = moray_receding_horizon_replans(receding);
+        double t0, tf;
+        moray_solution_times(moray_receding_horizon_plan(receding), 0, &t0, &tf);
+        CHECK(record->failures == 0 && record->plans == 15 && replans[14].seconds > 0, "%d plans, %d failures",
+              record->plans, record->failures);
+        CHECK(fabs(t0 - 2.8) < 1e-9 && fabs(tf - 6.8) < 1e-9, "the plan in force goes from %g to %g", t0, tf);
+        iterations[once] = record->iterations - replans[0].iterations;
+        memcpy(end[once], x, sizeof x);
+        moray_receding_horizon_free(receding);
+        moray_ocp_free(problem);
+    }
+    CHECK_NEAR(end[1][0], end[0][0], 1e-5, "angle as with problems made anew");
+    CHECK_NEAR(end[1][1], end[0][1], 1e-5, "rate");
+    CHECK(iterations[1] < iterations[0], "re-solved in %d iterations, made anew in %d", iterations[1], iterations[0]);
+}
+
+static void test_restart_refusals(void)
+{
+    planner p = {.horizon = 1, .fail_from = 1000};
+    moray_receding_horizon_spec spec = spec_of(&p, 0.5);
+    void *problem;
+    const moray_ocp *ocp;
+    const double x[2] = {1, 0}, odd[2] = {1, NAN};
+    CHECK_OK(make_mass(&p, 0, x, &problem, &ocp), "a problem");
+    spec.ocp = problem;
+    refuses(spec, "a problem or a replanner, and only one");
+    spec.ocp = NULL, spec.replanner.make = NULL;
+    refuses(spec, "a problem or a replanner, and only one");
+    CHECK(moray_ocp_restart(problem, 0, 1, odd).code == MORAY_INPUT, "a state that is not a number");
+    CHECK(moray_ocp_restart(problem, 0, -1, x).code == MORAY_INPUT, "a negative length");
+    CHECK(moray_ocp_restart(problem, 2, 0, x).code == MORAY_INPUT, "a start behind the end");
+    CHECK_OK(moray_ocp_restart(problem, 0.5, 0, x), "a start before it");
+    moray_ocp_free(problem);
+}
+
 int main(void)
 {
     test_regulator();
@@ -304,5 +365,7 @@ int main(void)
     test_change();
     test_refusals();
     test_pendulum();
+    test_one_problem();
+    test_restart_refusals();
     return tap_done();
 }

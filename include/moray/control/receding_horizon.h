@@ -22,8 +22,12 @@ typedef struct moray_replanner {
     void *self;
 } moray_replanner;
 
+// Either a replanner or `ocp`: any problem of one phase, stated once, whose start (moray_ocp_restart) is set anew for
+// every plan, which then starts from the last one moved on in time, multipliers included. It must outlive the receding
+// horizon, which changes it.
 typedef struct moray_receding_horizon_spec {
     moray_replanner replanner;
+    moray_ocp *ocp; // NULL: by the replanner
     moray_settings settings;     // of each solve; at least 1 interval
     double horizon, interval;    // length of a plan; between two plans
     double watch;                // between two looks for a change; 0: only when a plan is due
