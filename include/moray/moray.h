@@ -14,6 +14,7 @@
 #include "moray/control/periodic_orbit.h"
 #include "moray/control/receding_horizon.h"
 #include "moray/control/tuning.h"
+#include "moray/delay.h"
 #include "moray/dense.h"
 #include "moray/export.h"
 #include "moray/key_value.h"

@@ -28,7 +28,7 @@ public_headers() {
         moray/moray.h | moray/snake.h) continue ;;
         moray/export.h | moray/status.h | moray/key_value.h | moray/num.h | moray/angle.h | moray/map.h | moray/dense.h | moray/ode.h | moray/parallel.h) room=base ;;
         moray/nlp.h | moray/search.h) room=nlp ;;
-        moray/ocp.h | moray/scheme.h | moray/sensitivity.h) room=ocp ;;
+        moray/delay.h | moray/ocp.h | moray/scheme.h | moray/sensitivity.h) room=ocp ;;
         moray/sim.h) room=sim ;;
         moray/control/*) room=control ;;
         moray/app/options.h) room=options ;;
