@@ -18,7 +18,9 @@ library=$(dirname "$(find root -name libmoray.so)")
 export LD_LIBRARY_PATH="$work/$library${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 check "it knows nothing of the places where moray was built" eval '! grep -qF -e "$source" -e "$build" "$pc"'
 check "its version is the library's" [ "$(pkg-config --modversion moray)" = \
-    "$("$prefix/bin/max_speed" --version | sed 's/.* //')" ]
+    "$("$prefix/bin/moray" --version | sed 's/.* //')" ]
+check "one command among the system's, $(ls "$prefix/bin"), from where it finds the programs" eval \
+    '[ "$(ls "$prefix/bin")" = moray ] && "$prefix/bin/moray" simulate --duration 1 --json --quiet | grep -q v_x_m_s'
 
 # ---- Headers
 (cd "$prefix/include" && find . -type f | sort) >installed
