@@ -20,7 +20,7 @@ typedef struct listed {
 static const listed programs[] = {
     {"max_speed", "fastest gait along a course in a current", NULL},
     {"min_energy", "gait of least joint work per distance", NULL},
-    {"search_gait", "all optima within the limits, by multi-start and global search", NULL},
+    {"search_gait", "all optima within the limits, by many starts", NULL},
     {"pareto", "fronts of speed against power on both models", NULL},
     {"free_gait", "what the sinusoidal gait leaves on the table", NULL},
     {"sensitivity", "how the fastest gait moves with current, robot and limits", NULL},
@@ -29,9 +29,9 @@ static const listed programs[] = {
     {"min_time_turn", "fastest change of heading, or from pose to pose", NULL},
     {"ladder", "any gaits on the ladder of models", NULL},
     {"simulate", "any gait or schedule of gaits, on either model", NULL},
-    {"paper", "the paper's figures, properties and propositions as studies", NULL},
-    {"classics", "textbook optimal-control problems beside their published optima", NULL},
-    {"sweep", "any of these over grids, lists and random draws of settings", NULL},
+    {"paper", "the figures and propositions of the paper as studies", NULL},
+    {"classics", "textbook problems beside their published optima", NULL},
+    {"sweep", "any of these over grids, lists and draws of settings", NULL},
     {"benchmark", "where the time of a solve goes, and how it grows", "moray-benchmark"},
 };
 enum { N_PROGRAMS = sizeof programs / sizeof *programs };
