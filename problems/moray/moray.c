@@ -47,11 +47,11 @@ static int width(void)
 static void list(FILE *file)
 {
     fputs("Usage: moray PROGRAM [OPTION]...\n"
-          "Trajectory optimisation of swimming snake robots, and of any optimal-control problem.\n\nPROGRAM is one of:\n",
+          "Trajectory optimisation, of the gaits of swimming snake robots above all.\n\nPROGRAM is one of:\n",
           file);
     for (int k = 0; k < N_PROGRAMS; k++)
         fprintf(file, "  %-*s  %s\n", width(), programs[k].name, programs[k].does);
-    fputs("\nmoray PROGRAM --help tells the options of one; moray --version tells the version.\n", file);
+    fputs("\nmoray PROGRAM --help tells its options, moray --version the version.\n", file);
 }
 
 static const listed *find(const char *name)

@@ -15,7 +15,7 @@ for file in "$source"/problems/*.c; do
     [ "$name" = template.c ] || echo "${name%.c}"
 done | sort >there
 check "it lists every program of problems and no other: $(diff listed there | tr '\n' ' ')" cmp -s listed there
-check "a line of 80 columns at most for each" eval '! grep -q "^.\{81\}" out'
+check "no line of more than 80 columns" eval '! grep -q "^.\{81\}" out'
 run --version
 check "--version: $(cat out)" eval '[ $code -eq 0 ] && grep -q "^moray [0-9.]*$" out'
 version=$(sed 's/moray //' out)
