@@ -19,6 +19,7 @@
 #include "moray/snake/path.h"
 #include "moray/snake/plant.h"
 #include "moray/snake/receding_horizon.h"
+#include "moray/snake/scene.h"
 #include "moray/snake/steering.h"
 #include "moray/snake/swim.h"
 #include "moray/snake/trial.h"

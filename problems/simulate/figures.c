@@ -34,10 +34,13 @@ static moray_status draw_path(const simulate_results *results, moray_output *out
 static moray_status draw_over_time(moray_output *output, const char *name, const char *title, const char *y_label,
                                    const moray_curve *curves, int n)
 {
-    return moray_output_figure(
-        output,
-        &(moray_figure){
-            .name = name, .title = title, .x_label = "time [s]", .y_label = y_label, .curves = curves, .n_curves = n});
+    return moray_output_figure(output, &(moray_figure){.name = name,
+                                                       .title = title,
+                                                       .x_label = "time [s]",
+                                                       .y_label = y_label,
+                                                       .over_time = true,
+                                                       .curves = curves,
+                                                       .n_curves = n});
 }
 
 static moray_status draw_velocity(moray_output *output, const double *t, const double *v_x, const double *v_y, int n)

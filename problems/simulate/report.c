@@ -178,15 +178,24 @@ moray_status simulate_report(const simulate_results *results)
     const simulate *run = results->run;
     struct tables t;
     char text[500];
+    moray_swim_scene scene = {0};
     fill_means(run, results, &t);
     fill_run(run, results, &t);
     describe(run, results, text, sizeof text);
-    const moray_report report = {.title = "simulate", .text = text, .tables = t.table, .n_tables = 2};
-    return moray_app_show(&run->common, &(moray_results){.name = "simulate",
-                                                         .found = results,
-                                                         .summary = summarise,
-                                                         .print = print,
-                                                         .write = simulate_trajectory,
-                                                         .draw = simulate_figures,
-                                                         .report = &report});
+    if (run->common.output)
+        MORAY_TRY(moray_swim_scene_add(&scene, is_control(run) ? "control-oriented model" : "first-principles model",
+                                       &results->track, results->swimmer, 2 * run->snake.geometry.a_e,
+                                       (double[]){0, 0}));
+    scene.scene.title = "The robot swimming";
+    const moray_report report = {
+        .title = "simulate", .text = text, .scene = &scene.scene, .tables = t.table, .n_tables = 2};
+    const moray_status status = moray_app_show(&run->common, &(moray_results){.name = "simulate",
+                                                                              .found = results,
+                                                                              .summary = summarise,
+                                                                              .print = print,
+                                                                              .write = simulate_trajectory,
+                                                                              .draw = simulate_figures,
+                                                                              .report = &report});
+    moray_swim_scene_free(&scene);
+    return status;
 }

@@ -15,6 +15,7 @@ static moray_status draw_offsets(const steer_job *job, const moray_curve *curves
     return steer_draw_figure(job, &(moray_figure){.name = "offset",
                                                   .title = "Joint offset, first-principles model",
                                                   .x_label = "time [s]",
+                                                  .over_time = true,
                                                   .y_label = "phi_0 [deg]",
                                                   .curves = curves,
                                                   .n_curves = STEER_CURVES});
@@ -44,6 +45,7 @@ static moray_status draw_over_time(const steer_job *job, const steer_trial *cons
     const moray_swim_track *track = &closed_loops->track;
     values[STEER_CURVES] = (moray_curve){.label = "reference", .x = track->t, .y = reference, .n = track->n};
     figure.x_label = "time [s]";
+    figure.over_time = true;
     figure.curves = values;
     figure.n_curves = STEER_CURVES + job->program->values(job, NULL, track, reference);
     moray_status status = steer_draw_figure(job, &figure);
@@ -70,10 +72,51 @@ static moray_status draw_path(const steer_job *job, const steer_trial *const *tr
                                                             job->snake.current, job->program->path ? &path : NULL));
 }
 
+// All of them over ground, with what the last one does about it.
+static moray_status make_scene(const steer_job *job, const steer_trial *const *trials,
+                               const moray_swim_closed_loop *closed_loops)
+{
+    const double width = 2 * job->snake.geometry.a_e, here[2] = {0, 0};
+    double x[STEER_POINTS], y[STEER_POINTS];
+    moray_status status = moray_ok();
+    for (int k = STEER_CURVES - 1; k >= 0 && !moray_failed(status); k--)
+        status = moray_swim_scene_add(job->scene, trials[k]->name, &closed_loops[k].track, closed_loops[k].swimmer,
+                                      width, here);
+    if (!moray_failed(status) && job->program->path) {
+        job->program->path(job, x, y);
+        status = moray_swim_scene_ask(job->scene, x, y, STEER_POINTS);
+    }
+    return status;
+}
+
+// What the controller wants of the joints, beside what is measured and asked for.
+static moray_status tell_scene(const steer_job *job, const steer_trial *trial, const moray_swim_closed_loop *last)
+{
+    const moray_swim_track *track = &last->track;
+    double *values = malloc((size_t)track->n * sizeof *values);
+    if (!values)
+        return moray_error(MORAY_MEMORY, "no memory for the animation");
+    for (int k = 0; k < track->n; k++)
+        values[k] = last->offset[k] / (moray_swimmer_model(last->swimmer) == MORAY_CONTROL_ORIENTED ? 0.01 : DEG);
+    moray_status status = moray_swim_scene_tell(
+        job->scene, "joint offset wanted", moray_swimmer_model(last->swimmer) == MORAY_CONTROL_ORIENTED ? "cm" : "deg",
+        track, values);
+    for (int asked = 0; asked < 2 && !moray_failed(status); asked++)
+        if (job->program->values(job, asked ? NULL : trial, track, values))
+            status = moray_swim_scene_tell(job->scene, asked ? "reference" : job->program->over_time.y_label, "", track,
+                                           values);
+    free(values);
+    return status;
+}
+
 static moray_status draw_shown(const steer_job *job, const steer_trial *const *trials,
                                const moray_swim_closed_loop *closed_loops)
 {
     const moray_swim_closed_loop *last = &closed_loops[STEER_CURVES - 1];
+    if (job->scene) {
+        MORAY_TRY(make_scene(job, trials, closed_loops));
+        MORAY_TRY(tell_scene(job, trials[STEER_CURVES - 1], last));
+    }
     MORAY_TRY(draw_over_time(job, trials, closed_loops));
     MORAY_TRY(draw_path(job, trials, closed_loops));
     MORAY_TRY(moray_app_drawn(&job->common, job->name, moray_swim_closed_loop_draw_joints(job->common.output, last)));

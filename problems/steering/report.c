@@ -163,17 +163,54 @@ static void print(const void *found, const moray_report *report)
         print_solver(job, model);
 }
 
-moray_status steer_report(const steer_job *job)
+// The plans' certificates, one a line, and whether all pass.
+static bool certify(const steer_job *job, char *text, size_t size)
+{
+    char line[STEER_TEXT];
+    bool pass = true;
+    for (int model = 0; model <= (int)job->snake.model; model++) {
+        if (!job->plan[model].solution)
+            continue;
+        moray_certificate_line(&job->certificate[model], line, sizeof line);
+        moray_text_add(text, size, "Plan on the %s model. %s\n", moray_model_name((moray_model)model), line);
+        pass = pass && job->certificate[model].pass;
+    }
+    return pass;
+}
+
+moray_status steer_report(steer_job *job)
 {
     steer_tables tables = {0};
-    char text[STEER_TEXT];
+    char text[STEER_TEXT], why[STEER_TEXT], certificates[3 * STEER_TEXT] = "", asked[160];
+    moray_swim_scene scene = {0};
     job->program->tables(job, &tables);
     job->program->conclude(job, text, sizeof text);
-    const moray_report report = {.title = job->name, .text = text, .tables = tables.table, .n_tables = tables.n};
-    return moray_app_show(&job->common, &(moray_results){.name = job->name,
-                                                         .found = job,
-                                                         .summary = steer_summary,
-                                                         .print = print,
-                                                         .write = steer_write,
-                                                         .report = &report});
+    job->program->explain(job, why, sizeof why);
+    const bool pass = certify(job, certificates, sizeof certificates);
+    snprintf(asked, sizeof asked, "A robot of %d links in a current of (%g, %g) m/s.", job->snake.robot.links,
+             job->snake.current[0], job->snake.current[1]);
+    scene.scene.title = "The robot swimming";
+    scene.scene.text = "Simulated on the first-principles model, every way of steering on the same water.";
+    job->scene = &scene;
+    const moray_section sections[] = {{.title = "What keeps the robot from doing better", .text = why},
+                                      {.title = "Certificate", .text = certificates}};
+    const moray_report report = {.title = job->name,
+                                 .judged = pass ? "Plans solved and certified" : "A plan's certificate failed",
+                                 .judgement = pass ? MORAY_JUDGED_PASS : MORAY_JUDGED_FAIL,
+                                 .text = text,
+                                 .asked = asked,
+                                 .scene = &scene.scene,
+                                 .tables = tables.table,
+                                 .n_tables = tables.n,
+                                 .sections = sections,
+                                 .n_sections = 2};
+    const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                                              .found = job,
+                                                                              .summary = steer_summary,
+                                                                              .print = print,
+                                                                              .write = steer_write,
+                                                                              .report = &report});
+    moray_swim_scene_free(&scene);
+    job->scene = NULL;
+    return status;
 }

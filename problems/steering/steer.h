@@ -162,6 +162,7 @@ struct steer_job {
     double turn_rate[2]; // sustained at the limit of the offset [rad/s], with its sign
     steer_trial trial[STEER_TRIALS];
     int n_trials;
+    moray_swim_scene *scene; // of the report, while it is written
     moray_ticker ticker;
 };
 
@@ -279,7 +280,7 @@ void steer_say_limit(const steer_job *job, char *text, size_t size); // "With |p
 void steer_say_saturation(const steer_job *job, char *text, size_t size); // behind a "T" or "t"
 
 // Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
-moray_status steer_report(const steer_job *job);
+moray_status steer_report(steer_job *job);
 void steer_json_gait(const steer_job *job, moray_json *json, int gait);
 void steer_json_saturation(const steer_job *job, moray_json *json, moray_model model);
 

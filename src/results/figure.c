@@ -2,14 +2,9 @@
 #include "base/number.h"
 #include "results/results.h"
 
-#include <errno.h>
 #include <math.h>
-#include <spawn.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-extern char **environ;
 
 // Okabe and Ito's palette in order of contrast on white, without its yellow; dashes differ as well.
 static const struct {
@@ -136,11 +131,48 @@ static void write_log_axis(FILE *script, const moray_figure *figure, int axis)
     fputs(")\n", script);
 }
 
+enum { CANVAS = 720 }; // wide
+
+// Where the axes stand, as shares of the canvas, when time is one of them; the key is below.
+static const struct {
+    double left, right, top;
+} frame = {0.11, 0.97, 0.92};
+
+static int height_of(const moray_figure *figure)
+{
+    const int usual = 4; // curves in the key
+    return 440 + (figure->n_curves > usual ? 18 * (figure->n_curves - usual) : 0);
+}
+
+static double bottom_of(const moray_figure *figure)
+{
+    const double line = 18, axis = 70; // of the key; for the axis and its label
+    return (axis + line * figure->n_curves) / height_of(figure);
+}
+
+// Whether the figure has an axis of time that the cursor of a scene can follow, and its ends.
+static bool time_axis(const moray_figure *figure, double range[2])
+{
+    range_along(figure, 0, range);
+    return figure->over_time && !figure->log_x && range[1] > range[0] && isfinite(range[1] - range[0]);
+}
+
+static void write_time_axis(FILE *script, const moray_figure *figure)
+{
+    double range[2];
+    if (!time_axis(figure, range))
+        return;
+    fprintf(script, "set xrange [%.17g:%.17g]\n", range[0], range[1]);
+    fprintf(script,
+            "set lmargin at screen %g\nset rmargin at screen %g\nset bmargin at screen %g\nset tmargin at screen %g\n",
+            frame.left, frame.right, bottom_of(figure), frame.top);
+}
+
 static void write_script(FILE *script, const moray_figure *figure)
 {
-    const int usual = 4, extra = figure->n_curves > usual ? 18 * (figure->n_curves - usual) : 0; // room for the key
     const locale_t before = moray_c_locale_begin();
-    fprintf(script, "set terminal svg noenhanced size 720,%d font 'Helvetica,13' background '#ffffff'\n", 440 + extra);
+    fprintf(script, "set terminal svg noenhanced size %d,%d font 'Helvetica,13' background '#ffffff'\n", (int)CANVAS,
+            height_of(figure));
     fputs("set grid lc rgb '#d0d0d0' lt 1 lw 0.5\nset border 3\nset tics nomirror\nset key outside below height 1\n"
           "set offsets graph 0, graph 0, graph 0.03, graph 0.03\n",
           script);
@@ -150,6 +182,7 @@ static void write_script(FILE *script, const moray_figure *figure)
         write_log_axis(script, figure, 1);
     if (figure->equal_axes)
         write_equal_axes(script, figure);
+    write_time_axis(script, figure);
     set_text(script, "title", figure->title);
     set_text(script, "xlabel", figure->x_label);
     set_text(script, "ylabel", figure->y_label);
@@ -161,69 +194,78 @@ static void write_script(FILE *script, const moray_figure *figure)
     moray_c_locale_end(before);
 }
 
-// Runs gnuplot from script to picture, both as open files, so that no path passes through it. Returns 0 or errno, and
-// gnuplot's exit status.
-static int run_gnuplot(FILE *script, FILE *picture, FILE *complaints, int *exit_status)
+// An attribute's or an element's text.
+static void write_escaped(FILE *picture, const char *text)
 {
-    posix_spawn_file_actions_t files;
-    char *const arguments[] = {"gnuplot", "-d", "-", NULL};
-    pid_t process;
-    int failed = posix_spawn_file_actions_init(&files);
-    if (failed)
-        return failed;
-    posix_spawn_file_actions_adddup2(&files, fileno(script), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&files, fileno(picture), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&files, fileno(complaints), STDERR_FILENO);
-    failed = posix_spawnp(&process, "gnuplot", &files, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&files);
-    while (!failed && waitpid(process, exit_status, 0) < 0)
-        failed = errno == EINTR ? 0 : errno;
-    return failed;
+    for (; *text; text++)
+        if (*text == '&' || *text == '<' || *text == '"')
+            fprintf(picture, "&#%d;", *text);
+        else
+            fputc(*text, picture);
 }
 
-// The first line that is not blank.
-static void first_line(FILE *file, char *line, int size)
+// Behind "<svg ": what a reader of the screen is told, and where time runs along the axis.
+static void write_attributes(const moray_figure *figure, FILE *picture)
 {
-    rewind(file);
-    while (fgets(line, size, file)) {
-        line[strcspn(line, "\r\n")] = 0;
-        if (line[strspn(line, " \t^")])
-            return;
-    }
-    snprintf(line, (size_t)size, "no message");
+    double time[2];
+    fputs("role=\"img\" aria-label=\"", picture);
+    write_escaped(picture, figure->title ? figure->title : figure->name);
+    fputs("\" ", picture);
+    if (time_axis(figure, time))
+        fprintf(picture, "data-time=\"%.9g %.9g %g %g %g %g\" ", time[0], time[1], frame.left * CANVAS,
+                frame.right * CANVAS, (1 - frame.top) * height_of(figure), (1 - bottom_of(figure)) * height_of(figure));
 }
 
-static moray_status draw(const moray_figure *figure, FILE *script, FILE *picture, FILE *complaints)
+// Gnuplot's picture with a title of ours in place of its own. Error: MORAY_IO where it is not whole.
+static moray_status finish(const moray_figure *figure, FILE *raw, FILE *picture)
 {
-    char line[120];
-    int exit_status = 0;
-    write_script(script, figure);
-    rewind(script);
-    const int failed = run_gnuplot(script, picture, complaints, &exit_status);
-    if (failed)
-        return moray_error(MORAY_IO, "figure %s not drawn: gnuplot: %s", figure->name, strerror(failed));
-    if (exit_status != 0 || fseek(picture, 0, SEEK_END) || ftell(picture) == 0) {
-        first_line(complaints, line, sizeof line);
-        return moray_error(MORAY_IO, "figure %s not drawn: gnuplot: %s", figure->name, line);
+    char *line = NULL;
+    size_t room = 0;
+    bool begun = false, ended = false;
+    rewind(raw);
+    while (getline(&line, &room, raw) >= 0) {
+        char *own = strstr(line, "<title>Gnuplot</title>");
+        if (!begun && strncmp(line, "<svg ", 5) == 0) {
+            begun = true;
+            fputs("<svg ", picture);
+            write_attributes(figure, picture);
+            fputs(line + 5, picture);
+        } else if (own) {
+            fputs("<title>", picture);
+            write_escaped(picture, figure->title ? figure->title : figure->name);
+            fputs("</title>\n", picture);
+        } else if (strncmp(line, "<desc>", 6) != 0) {
+            fputs(line, picture);
+        }
+        ended = ended || strstr(line, "</svg>");
     }
-    return moray_ok();
+    free(line);
+    if (begun && ended)
+        return moray_ok();
+    return moray_error(MORAY_IO, "figure %s not drawn: gnuplot: the picture is not whole", figure->name);
 }
 
 moray_status moray_output_figure(moray_output *output, const moray_figure *figure)
 {
     char name[200];
-    FILE *picture, *script, *complaints;
+    FILE *picture, *script, *raw;
     snprintf(name, sizeof name, "%s.svg", figure->name);
     MORAY_TRY(moray_output_file(output, name, &picture));
     script = tmpfile();
-    complaints = tmpfile();
-    moray_status status = script && complaints
-                              ? draw(figure, script, picture, complaints)
-                              : moray_error(MORAY_IO, "figure %s not drawn: no temporary file", figure->name);
+    raw = tmpfile();
+    moray_status status = moray_ok();
+    if (script && raw) {
+        write_script(script, figure);
+        status = moray_gnuplot(figure->name, script, raw, moray_output_gnuplot_hangs(output));
+    } else {
+        status = moray_error(MORAY_IO, "figure %s not drawn: no temporary file", figure->name);
+    }
+    if (!moray_failed(status))
+        status = finish(figure, raw, picture);
     if (script)
         fclose(script);
-    if (complaints)
-        fclose(complaints);
+    if (raw)
+        fclose(raw);
     if (moray_failed(status))
         moray_output_drop(output);
     return status;

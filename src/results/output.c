@@ -24,6 +24,7 @@ struct moray_output {
     size_t made;                        // length of the topmost directory that we made, as a prefix of directory; or 0
     staged_file file[MOST_FILES];
     int n;
+    bool gnuplot_hangs;
 };
 
 // mkdir -p that remembers the first directory it had to make; returns 0 or errno.
@@ -139,6 +140,11 @@ moray_status moray_output_file(moray_output *output, const char *name, FILE **fi
 const char *moray_output_name(const moray_output *output, int i)
 {
     return i < output->n ? output->file[i].name : NULL;
+}
+
+bool *moray_output_gnuplot_hangs(moray_output *output)
+{
+    return &output->gnuplot_hangs;
 }
 
 FILE *moray_output_stream(const moray_output *output, int i)

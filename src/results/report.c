@@ -1,70 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "results/results.h"
+#include "results/page.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-static void escape(FILE *page, const char *text)
-{
-    for (const char *c = text ? text : ""; *c; c++)
-        switch (*c) {
-        case '&':
-            fputs("&amp;", page);
-            break;
-        case '<':
-            fputs("&lt;", page);
-            break;
-        case '>':
-            fputs("&gt;", page);
-            break;
-        default:
-            fputc(*c, page);
-        }
-}
-
-static void element(FILE *page, const char *name, const char *text)
-{
-    fprintf(page, "<%s>", name);
-    escape(page, text);
-    fprintf(page, "</%s>", name);
-}
-
-static void write_table(FILE *page, const moray_table *table)
-{
-    char text[32];
-    fputs("<table>\n", page);
-    if (table->title)
-        element(page, "caption", table->title);
-    fputs("<tr><th></th>", page);
-    for (int j = 0; j < table->n_columns; j++)
-        element(page, "th", table->columns[j]);
-    fputs("<th></th></tr>\n", page);
-    for (int i = 0; i < table->n_rows; i++) {
-        const moray_table_row *row = &table->rows[i];
-        fputs("<tr>", page);
-        element(page, "th", row->label);
-        for (int j = 0; j < table->n_columns; j++)
-            element(page, "td", moray_table_cell(row, j, text));
-        element(page, "th", row->unit);
-        fputs("</tr>\n", page);
-    }
-    fputs("</table>\n", page);
-}
-
-// The picture from "<svg" on: a page has no room for an XML declaration.
-static void embed(FILE *page, FILE *picture)
-{
-    char line[4096];
-    bool begun = false;
-    fputs("<figure>\n", page);
-    rewind(picture);
-    while (fgets(line, sizeof line, picture)) {
-        begun = begun || strncmp(line, "<svg", 4) == 0;
-        if (begun)
-            fputs(line, page);
-    }
-    fputs("</figure>\n", page);
-}
+// ---- What was asked ------------------------------------------------------------------------------------------------
 
 // An argument as a shell reads it.
 static void write_argument(FILE *page, const char *argument)
@@ -77,16 +18,90 @@ static void write_argument(FILE *page, const char *argument)
         if (*c == '\'')
             fputs("'\\''", page);
         else
-            escape(page, (char[]){*c, 0});
+            moray_html_text(page, (char[]){*c, 0});
     if (quoted)
         fputc('\'', page);
 }
 
+// How many arguments tell only where and how the results are shown: they change none.
+static int about_showing(const char *argument)
+{
+    if (strcmp(argument, "--out") == 0)
+        return 2;
+    return strcmp(argument, "--json") == 0 || strcmp(argument, "--quiet") == 0 || strncmp(argument, "--out=", 6) == 0;
+}
+
+// Without the places where the program and its results happen to be.
+static void write_command(FILE *page, const moray_report *report)
+{
+    fputs("<pre>", page);
+    for (int i = 0; i < report->argc;) {
+        const int skip = i > 0 ? about_showing(report->argv[i]) : 0;
+        const char *argument = report->argv[i], *slash = i == 0 ? strrchr(argument, '/') : NULL;
+        if (!skip) {
+            fputs(i ? " " : "", page);
+            write_argument(page, slash ? slash + 1 : argument);
+        }
+        i += skip ? skip : 1;
+    }
+    fputs("</pre>\n", page);
+}
+
+// SOURCE_DATE_EPOCH, where it is set, makes pages that do not differ from day to day.
+static void write_date(FILE *page)
+{
+    const char *given = getenv("SOURCE_DATE_EPOCH");
+    const time_t now = given ? (time_t)strtoll(given, NULL, 10) : time(NULL);
+    struct tm day;
+    char text[64] = "";
+    if (gmtime_r(&now, &day))
+        strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &day);
+    fprintf(page, "<dt>date</dt><dd>%s</dd>\n", text);
+}
+
+static void write_links(FILE *page, const moray_output *output)
+{
+    fputs("<dt>files</dt><dd>", page);
+    for (int i = 0, n = 0; moray_output_name(output, i); i++) {
+        const char *name = moray_output_name(output, i);
+        if (strstr(name, ".svg") || strcmp(name, "report.html") == 0)
+            continue;
+        fputs(n++ ? ", <a href=\"" : "<a href=\"", page);
+        moray_html_text(page, name);
+        fputs("\">", page);
+        moray_html_text(page, name);
+        fputs("</a>", page);
+    }
+    fputs("</dd>\n", page);
+}
+
+static void write_asked(FILE *page, const moray_output *output, const moray_report *report)
+{
+    fputs("<section aria-labelledby=\"asked\">\n<h2 id=\"asked\">What was asked</h2>\n", page);
+    moray_html_paragraphs(page, report->asked);
+    write_command(page, report);
+    fputs("<dl class=\"facts\">\n", page);
+    write_date(page);
+    fprintf(page, "<dt>version</dt><dd>moray %s</dd>\n", moray_version());
+    write_links(page, output);
+    fputs("</dl>\n", page);
+    if (report->configuration) {
+        fputs("<details><summary>Configuration, every key</summary>\n<pre>", page);
+        moray_html_text(page, report->configuration);
+        fputs("</pre></details>\n", page);
+    }
+    fputs("</section>\n", page);
+}
+
+// ---- What was found ------------------------------------------------------------------------------------------------
+
 static const moray_section *section_of(const moray_report *report, const char *file)
 {
-    for (int i = 0; i < report->n_sections; i++)
-        if (strncmp(file, report->sections[i].figures, strlen(report->sections[i].figures)) == 0)
+    for (int i = 0; i < report->n_sections; i++) {
+        const char *figures = report->sections[i].figures;
+        if (figures && strncmp(file, figures, strlen(figures)) == 0)
             return &report->sections[i];
+    }
     return NULL;
 }
 
@@ -97,60 +112,73 @@ static void write_figures(FILE *page, const moray_output *output, const moray_re
     for (int i = 0; moray_output_name(output, i); i++) {
         const char *name = moray_output_name(output, i);
         if (strstr(name, ".svg") && section_of(report, name) == section)
-            embed(page, moray_output_stream(output, i));
+            moray_html_figure(page, moray_output_stream(output, i), i);
     }
-}
-
-static void write_paragraphs(FILE *page, const char *text)
-{
-    fputs("<p>", page);
-    for (; *text; text++)
-        if (*text == '\n')
-            fputs("</p>\n<p>", page);
-        else
-            escape(page, (char[]){*text, 0});
-    fputs("</p>\n", page);
 }
 
 static void write_section(FILE *page, const moray_output *output, const moray_report *report,
                           const moray_section *section)
 {
-    element(page, "h2", section->title);
+    fputs("<section>\n", page);
+    moray_html_element(page, "h2", section->title);
     fputc('\n', page);
-    if (section->text)
-        write_paragraphs(page, section->text);
+    moray_html_paragraphs(page, section->text);
     for (int i = 0; i < section->n_tables; i++)
-        write_table(page, &section->tables[i]);
+        moray_html_table(page, &section->tables[i]);
     write_figures(page, output, report, section);
+    fputs("</section>\n", page);
+}
+
+static void write_judgement(FILE *page, const moray_report *report)
+{
+    static const char *const classes[] = {[MORAY_JUDGED_PASS] = " pass", [MORAY_JUDGED_FAIL] = " fail"};
+    if (!report->judged)
+        return;
+    fprintf(page, "<p class=\"judged%s\">", report->judgement ? classes[report->judgement] : "");
+    moray_html_text(page, report->judged);
+    fputs("</p>\n", page);
+}
+
+// ---- The page ------------------------------------------------------------------------------------------------------
+
+static void write_lines(FILE *page, const char *element, const char *const *lines)
+{
+    fprintf(page, "<%s>\n", element);
+    for (; *lines; lines++)
+        fputs(*lines, page);
+    fprintf(page, "</%s>\n", element);
 }
 
 static void write_page(FILE *page, const moray_output *output, const moray_report *report)
 {
-    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n", page);
-    element(page, "title", report->title);
-    fputs(
-        "\n<style>\nbody { font: 16px/1.5 sans-serif; max-width: 48em; margin: 2em auto; padding: 0 1em; color: #222; "
-        "background: #fff }\n"
-        "table { border-collapse: collapse; margin: 1.5em 0 } caption { text-align: left; font-weight: bold }\n"
-        "th { font-weight: normal; text-align: left } td { text-align: right; font-variant-numeric: tabular-nums }\n"
-        "th, td { padding: 0.2em 1em 0.2em 0; border-bottom: 1px solid #ddd }\n"
-        "figure { margin: 1.5em 0 } svg { max-width: 100%; height: auto }\n"
-        "pre { background: #f4f4f4; padding: 0.7em; white-space: pre-wrap }\n</style>\n</head>\n<body>\n",
-        page);
-    element(page, "h1", report->title);
-    if (report->text)
-        element(page, "p", report->text);
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" "
+          "href=\"data:,\">\n",
+          page);
+    moray_html_element(page, "title", report->title);
+    fputc('\n', page);
+    write_lines(page, "style", moray_page_css);
+    fputs("</head>\n<body>\n<a class=\"skip\" href=\"#found\">To the results</a>\n<main>\n", page);
+    moray_html_element(page, "h1", report->title);
+    fputc('\n', page);
+    write_judgement(page, report);
+    fputs("<div id=\"found\" class=\"verdict\">\n", page);
+    moray_html_paragraphs(page, report->text);
+    fputs("</div>\n", page);
+    if (report->scene && report->scene->frames > 1)
+        moray_html_scene(page, report->scene);
+    fputs("<section aria-label=\"Results\">\n", page);
     for (int i = 0; i < report->n_tables; i++)
-        write_table(page, &report->tables[i]);
+        moray_html_table(page, &report->tables[i]);
     write_figures(page, output, report, NULL);
+    fputs("</section>\n", page);
     for (int i = 0; i < report->n_sections; i++)
         write_section(page, output, report, &report->sections[i]);
-    fputs("<h2>Made by</h2>\n<pre>", page);
-    for (int i = 0; i < report->argc; i++) {
-        fputs(i ? " " : "", page);
-        write_argument(page, report->argv[i]);
-    }
-    fputs("</pre>\n</body>\n</html>\n", page);
+    write_asked(page, output, report);
+    fputs("</main>\n", page);
+    if (report->scene && report->scene->frames > 1)
+        write_lines(page, "script", moray_page_js);
+    fputs("</body>\n</html>\n", page);
 }
 
 moray_status moray_output_report(moray_output *output, const moray_report *report)

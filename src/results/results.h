@@ -4,6 +4,7 @@
 #ifndef SRC_RESULTS_RESULTS_H
 #define SRC_RESULTS_RESULTS_H
 
+#include "moray/app/options.h"
 #include "moray/app/results.h"
 
 // What stands in column j: the row's text in the first where there is one, else the number.
@@ -15,5 +16,12 @@ FILE *moray_output_stream(const moray_output *output, int i);
 
 // Takes back the file started last.
 void moray_output_drop(moray_output *output);
+
+// Whether gnuplot had to be stopped: the pictures that follow do without it.
+bool *moray_output_gnuplot_hangs(moray_output *output);
+
+// Runs gnuplot from a script to a picture, both as open files, so that no path passes through it. Error: MORAY_IO
+// naming the figure, with what gnuplot said, or that it did not end in time, which *hangs then tells.
+moray_status moray_gnuplot(const char *name, FILE *script, FILE *picture, bool *hangs);
 
 #endif

@@ -259,12 +259,36 @@ static void test_failed_figure(void)
     CHECK(holds("without/first", "1") && holds("without/last", "2") && entries("without") == 2, "and appears alone");
 }
 
+// A gnuplot that never ends, and one that writes half a picture: both are told, the first only once waited for.
+static void test_bad_gnuplot(void)
+{
+    moray_output *output = open_in("bad");
+    char *kept = strdup(getenv("PATH") ? getenv("PATH") : "");
+    CHECK(mkdir(in_root("bin"), 0777) == 0, "a place for programs");
+    put("bin/gnuplot", "#!/bin/sh\nprintf '<svg '\n");
+    chmod(in_root("bin/gnuplot"), 0755);
+    setenv("PATH", in_root("bin"), 1);
+    moray_status status = moray_output_figure(output, &figure);
+    CHECK(status.code == MORAY_IO && strstr(status.text, "not whole"), "half a picture: %s", status.text);
+    if (tap_thorough()) { // twenty seconds of waiting, in which nothing is computed
+        put("bin/gnuplot", "#!/bin/sh\nexec /bin/sleep 1000\n");
+        for (int i = 0; i < 2; i++) {
+            status = moray_output_figure(output, &figure);
+            CHECK(status.code == MORAY_IO && strstr(status.text, i ? "hung before" : "was stopped"), "%s", status.text);
+        }
+    }
+    setenv("PATH", kept, 1);
+    free(kept);
+    moray_output_free(output);
+    CHECK(entries("bad") == -1, "nothing is left of them");
+}
+
 static void test_report(void)
 {
     const moray_table_row rows[] = {{"speed <ground>", {0.2293}, "m/s", NULL}, {"scheme", {0}, NULL, "radau3"}};
     const moray_table table = {
         .title = "Gait & co", .columns = {"validated"}, .n_columns = 1, .rows = rows, .n_rows = 2};
-    char *argv[] = {"max_speed", "--out", "it's <here>", "--set", "c_n=9", ""};
+    char *argv[] = {"/tmp/x/max_speed", "--out", "/tmp/here", "--set", "c_n=it's <9>", ""};
     moray_output *output = open_in("report");
     CHECK_OK(moray_output_figure(output, &figure), "figure");
     CHECK_OK(moray_output_report(output, &(moray_report){.title = "Max <speed>",
@@ -280,14 +304,17 @@ static void test_report(void)
     CHECK(strncmp(page, "<!DOCTYPE html>", 15) == 0 && strstr(page, "</html>"), "a whole page");
     CHECK(strstr(page, "<h1>Max &lt;speed&gt;</h1>") && strstr(page, "<p>Text &amp; more.</p>"), "title and text");
     CHECK(strstr(page, "<caption>Gait &amp; co</caption>") &&
-              strstr(page, "<tr><th>speed &lt;ground&gt;</th><td>0.2293</td><th>m/s</th></tr>") &&
-              strstr(page, "<td>radau3</td>"),
+              strstr(page, "<tr><th scope=\"row\">speed &lt;ground&gt;</th><td><data "
+                           "value=\"0.2293\">0.2293</data></td><td class=\"unit\">m/s</td></tr>") &&
+              strstr(page, "<td class=\"words\">radau3</td>"),
           "the table");
-    CHECK(strstr(svg, "<svg") && strstr(page, strstr(svg, "<svg")) && !strstr(page, "<?xml"),
-          "the whole figure inline");
-    CHECK(!strstr(page, "src=") && !strstr(page, "<link") && !strstr(page, "@import"), "nothing from elsewhere");
-    CHECK(strstr(page, "<pre>max_speed --out 'it'\\''s &lt;here&gt;' --set c_n=9 ''</pre>"),
-          "the command line, as a shell reads it");
+    CHECK(strstr(page, "role=\"img\" aria-label=\"T'") && strstr(page, "</svg>") && !strstr(page, "<?xml") &&
+              !strstr(page, "Gnuplot"),
+          "the whole figure inline, with its own title");
+    CHECK(!strstr(page, " id=\"gp") && !strstr(page, " id='gp") && strstr(page, "f0-gp"), "and ids of its own");
+    CHECK(!strstr(page, "src=") && !strstr(page, "stylesheet") && !strstr(page, "@import"), "nothing from elsewhere");
+    CHECK(strstr(page, "<pre>max_speed --set 'c_n=it'\\''s &lt;9&gt;' ''</pre>"),
+          "the command line, as a shell reads it, without the places of the files");
     free(page);
     free(svg);
 }
@@ -321,7 +348,7 @@ static void test_report_sections(void)
                                         ">wind_speed<",
                                         "<h2>Waves</h2>",
                                         ">wave<",
-                                        "<h2>Made by</h2>"};
+                                        "What was asked</h2>"};
     for (unsigned i = 0; i < sizeof order / sizeof *order; i++) {
         char *found = at ? strstr(at, order[i]) : NULL;
         CHECK(found, "part %u of the page stands after the one before", i);
@@ -343,6 +370,7 @@ int main(void)
     test_figure();
     test_log_axes();
     test_failed_figure();
+    test_bad_gnuplot();
     test_report();
     test_report_sections();
     snprintf(remove, sizeof remove, "rm -r %s", root);

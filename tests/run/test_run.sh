@@ -64,7 +64,7 @@ run --guess newer
 check "so is another version of it: $(cat err)" eval '[ $code -eq 2 ] && says "line 1: moray-solution 1 expected"'
 check "the report has the table, the figures, the command line" eval '
     grep -q "Certificate: pass" results/report.html && grep -q "<svg" results/report.html &&
-    grep -q -- "--json --out results" results/report.html'
+    grep -q "<pre>run_demo" results/report.html'
 run
 check "the table: objective by its name" grep -q '^effort  *[0-9.]*  *N^2 s$' out
 check "the table: integral of each phase" grep -q '^integral q\[0\] of beyond  *1\.5[0-9]*  *N^2 s$' out

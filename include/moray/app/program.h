@@ -50,8 +50,8 @@ typedef struct moray_results {
 // MORAY_MEMORY, those of `write`, and what moray_app_drawn leaves of those of `draw`.
 MORAY_API moray_status moray_app_show(const moray_common *common, const moray_results *results);
 
-// What to make of the status of a figure: one that cannot be drawn is a line on standard error, unless --quiet, and no
-// error; only MORAY_MEMORY and MORAY_INTERRUPTED stay.
+// What to make of the status of a figure: one that cannot be drawn is a line on standard error and no error; only
+// MORAY_MEMORY and MORAY_INTERRUPTED stay.
 MORAY_API moray_status moray_app_drawn(const moray_common *common, const char *name, moray_status drawn);
 
 MORAY_END

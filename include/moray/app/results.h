@@ -125,6 +125,7 @@ typedef struct moray_figure {
     const char *title, *x_label, *y_label;
     bool equal_axes;   // same scale on both axes, for paths in the plane
     bool log_x, log_y; // logarithmic axes, for values above 0
+    bool over_time;    // x is time as the scene of the report has it: its cursor is shown
     const moray_curve *curves;
     int n_curves;
 } moray_figure;
@@ -133,25 +134,62 @@ typedef struct moray_figure {
 // Error: MORAY_IO saying what gnuplot said; MORAY_INPUT, MORAY_MEMORY as for moray_output_file.
 MORAY_API moray_status moray_output_figure(moray_output *output, const moray_figure *figure);
 
+// Bodies of rigid links moving in the plane, for the report to show: SI units, angles in rad. Everything is borrowed.
+typedef struct moray_scene_body {
+    const char *name;
+    int links;
+    double length, width; // of a link
+    const double *at;     // [frames][links][3]: centre x, y and angle
+    const double *effort; // [frames][links - 1], in the joints; NULL: none
+    const double *force;  // [frames][links][2], of the surroundings on the links; NULL: none
+} moray_scene_body;
+
+typedef struct moray_channel { // a number over time, told beside the picture
+    const char *name, *unit;
+    const double *values; // [frames]
+} moray_channel;
+
+typedef struct moray_scene {
+    const char *title, *text; // text: paragraphs, or NULL
+    int frames;
+    const double *t; // [frames], ascending
+    const moray_scene_body *bodies;
+    int n_bodies;       // at most 4
+    const char *effort; // what the efforts are, "Torque, at most 0.4 N m"
+    double current[2];
+    const double *asked_x, *asked_y; // [n_asked]: a path to be followed
+    int n_asked;
+    const moray_channel *channels;
+    int n_channels;
+} moray_scene;
+
 // A part of a report under its own heading: paragraphs (one a line) or NULL, tables, figures whose names begin with
-// `figures`.
+// `figures` (NULL: none).
 typedef struct moray_section {
     const char *title, *text, *figures;
     const moray_table *tables;
     int n_tables;
 } moray_section;
 
+typedef enum { MORAY_JUDGED_NOT, MORAY_JUDGED_PASS, MORAY_JUDGED_FAIL } moray_judgement;
+
 typedef struct moray_report {
-    const char *title, *text; // text: a paragraph, or NULL
+    const char *title, *text; // text: paragraphs (one a line), or NULL
+    const char *judged;       // one line above all, "Certificate: pass (...)", or NULL, with its
+    moray_judgement judgement;
+    const char *asked;        // paragraphs on what was asked, or NULL
+    const moray_scene *scene; // or NULL; not shown with fewer than two frames
     const moray_table *tables;
     int n_tables;
     const moray_section *sections;
     int n_sections;
     int argc; // the command line that made it
     char **argv;
+    const char *configuration; // run.ini, or NULL
 } moray_report;
 
-// report.html: one self-contained page with the tables and every figure drawn so far; those of no section come first.
+// report.html: one self-contained page with the scene, the tables and every figure drawn so far; those of no section
+// come first.
 // Error: as moray_output_file.
 MORAY_API moray_status moray_output_report(moray_output *output, const moray_report *report);
 

@@ -220,6 +220,23 @@ void gait_job_json_ladder(moray_json *json, const stage *at);
 // Adds to text[GAIT_TEXT] which gait is recommended, and what the ladder says of it.
 void gait_job_headline(const gait_job *job, char *text);
 
+// "first-principles optimum"; and what the ladder and the trial say of it, one paragraph, into text[GAIT_TEXT].
+const char *gait_job_kind(const gait_job *job, const stage *at);
+void gait_job_say_stage(const gait_job *job, const stage *at, char *text);
+
+// The words of report.html and its scene, the recommended gait beside the paper's; with --out alone. Error:
+// MORAY_MEMORY. Free the scene.
+typedef struct gait_job_page {
+    bool pass; // every certificate
+    char judged[200], asked[300], text[(GAIT_STAGES + 1) * GAIT_TEXT], certificates[GAIT_STAGES * GAIT_TEXT];
+    char names[GAIT_STAGES][60], limits[16];
+    moray_table_row rows[5];
+    moray_table table;
+    moray_section section[1];
+    moray_swim_scene scene;
+} gait_job_page;
+moray_status gait_job_page_new(gait_job *job, gait_job_page *page);
+
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);
 

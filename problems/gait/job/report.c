@@ -15,7 +15,7 @@ static double percent(double value, double reference)
     return fabs(change) < 0.005 ? 0 : change; // no -0.00
 }
 
-static const char *kind_of(const gait_job *job, const stage *at)
+const char *gait_job_kind(const gait_job *job, const stage *at)
 {
     if (at == &job->ladder)
         return "gait optimised for the ladder";
@@ -76,17 +76,18 @@ void gait_job_headline(const gait_job *job, char *text)
         text, text_size,
         "Recommended: the %s, theta_max %.4g deg, delta %.4g deg, omega %.4g deg/s. In speed at the power of "
         "%s it ",
-        kind_of(job, at), theta_max / DEG, gait->delta / DEG, gait->omega / DEG, gait_job_baseline(job, baseline));
+        gait_job_kind(job, at), theta_max / DEG, gait->delta / DEG, gait->omega / DEG,
+        gait_job_baseline(job, baseline));
     moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
     moray_text_add(text, text_size, ".");
     if (at == &job->ladder && moray_gait_over_gain(at->solution) < nothing)
         moray_text_add(text, text_size, " No gait was found that gains on all of %.100s.", job->over);
 }
 
-static void say_stage(const gait_job *job, const stage *at, char *text)
+void gait_job_say_stage(const gait_job *job, const stage *at, char *text)
 {
     text[0] = 0;
-    moray_text_add(text, text_size, "The %s ", kind_of(job, at));
+    moray_text_add(text, text_size, "The %s ", gait_job_kind(job, at));
     moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
     moray_text_add(text, text_size, "; ");
     judge(job, at, text);
@@ -192,7 +193,7 @@ static void print_left_out(const gait_job *job)
                    gait_job_baseline(job, baseline), job->no_paper[model].text);
     for (int k = 0; k < GAIT_STAGES; k++)
         if (all[k]->left_out)
-            printf("Left out: the %s: %s\n\n", kind_of(job, all[k]), all[k]->why.text);
+            printf("Left out: the %s: %s\n\n", gait_job_kind(job, all[k]), all[k]->why.text);
 }
 
 // What the gait for several gains on each, at the power of the baseline there.
@@ -227,7 +228,7 @@ static void print(const void *found, const moray_report *report)
     print_demands(job);
     moray_tables_print(report->tables, report->n_tables, stdout);
     for (int k = 0; k < n; k++) {
-        say_stage(job, at[k], text);
+        gait_job_say_stage(job, at[k], text);
         printf("%s\n\n", text);
     }
     print_left_out(job);
@@ -320,6 +321,7 @@ static moray_status draw_start(const void *found, moray_output *output)
                                  .title = "From rest: speed along the course, mean over the last period",
                                  .x_label = "time [s]",
                                  .y_label = "speed along the course [m/s]",
+                                 .over_time = true,
                                  .curves = curves,
                                  .n_curves = n};
     if (!moray_failed(status))
@@ -338,15 +340,29 @@ static moray_status write(const void *found, moray_output *output)
 moray_status gait_job_report(gait_job *job)
 {
     struct tables t;
-    char text[text_size] = "";
+    gait_job_page page;
+    char title[100];
     make_tables(job, &t);
-    gait_job_headline(job, text);
-    const moray_report report = {.title = job->name, .text = text, .tables = t.table, .n_tables = tables};
-    return moray_app_show(&job->common, &(moray_results){.name = job->name,
-                                                         .found = job,
-                                                         .summary = gait_job_summary,
-                                                         .print = print,
-                                                         .write = write,
-                                                         .draw = draw_start,
-                                                         .report = &report});
+    MORAY_TRY(gait_job_page_new(job, &page));
+    snprintf(title, sizeof title, "%s: %s", job->name,
+             job->goal == MORAY_GAIT_FASTEST ? "the fastest gait" : "the gait of least work");
+    const moray_report report = {.title = title,
+                                 .judged = page.judged,
+                                 .judgement = page.pass ? MORAY_JUDGED_PASS : MORAY_JUDGED_FAIL,
+                                 .text = page.text,
+                                 .asked = page.asked,
+                                 .scene = &page.scene.scene,
+                                 .sections = page.section,
+                                 .n_sections = 1,
+                                 .tables = t.table,
+                                 .n_tables = tables};
+    const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                                              .found = job,
+                                                                              .summary = gait_job_summary,
+                                                                              .print = print,
+                                                                              .write = write,
+                                                                              .draw = draw_start,
+                                                                              .report = &report});
+    moray_swim_scene_free(&page.scene);
+    return status;
 }

@@ -1,0 +1,249 @@
+// The scene of a report: bodies of links in the plane over time, drawn to scale; and the time cursors of the figures.
+"use strict";
+(function () {
+  const source = document.getElementById("scene-data");
+  if (!source) return;
+  const scene = JSON.parse(source.textContent), stage = document.getElementById("stage");
+  const at = id => document.getElementById("scene-" + id);
+  const play = at("play"), scrub = at("scrub"), speed = at("speed"), clock = at("clock"), follow = at("follow");
+  const told = at("told"), times = scene.t, last = times.length - 1, end = times[last];
+  const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+  function make(name, attributes, parent) {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const key in attributes) element.setAttribute(key, attributes[key]);
+    if (parent) parent.appendChild(element);
+    return element;
+  }
+
+  // ---- What is seen: metres, y up ---------------------------------------------------------------------------------
+
+  const whole = (function () {
+    let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity, reach = 0;
+    const see = (x, y) => { x0 = Math.min(x0, x); x1 = Math.max(x1, x); y0 = Math.min(y0, y); y1 = Math.max(y1, y); };
+    for (const body of scene.bodies) {
+      reach = Math.max(reach, body.length, body.width);
+      for (const frame of body.at) for (let i = 0; i < frame.length; i += 3) see(frame[i], frame[i + 1]);
+    }
+    for (const [x, y] of scene.asked || []) see(x, y);
+    let width = x1 - x0 + 3 * reach, height = y1 - y0 + 3 * reach;
+    const flattest = 3, tallest = 0.8;
+    const w = Math.max(width, height / tallest), h = Math.max(height, w / flattest);
+    return { x: (x0 + x1) / 2, y: (y0 + y1) / 2, w, h };
+  })();
+  const near = (function () { // the view that follows: some two lengths of a body
+    let length = 0;
+    for (const body of scene.bodies) length = Math.max(length, body.length * body.at[0].length / 3);
+    const apart = scene.bodies.length > 1 ? Math.abs(scene.bodies[1].at[0][1] - scene.bodies[0].at[0][1]) : 0;
+    const w = Math.min(whole.w, 1.9 * length + apart);
+    return { w, h: w * Math.min(0.6, whole.h / whole.w * 1.6) };
+  })();
+
+  const picture = make("svg", { role: "img", "aria-label": scene.title, focusable: "false" });
+  const ground = make("g", {}, picture), asked = make("g", {}, picture);
+  const robots = make("g", {}, picture), water = make("g", {}, picture), notes = make("g", {}, picture);
+  stage.textContent = "";
+  stage.appendChild(picture);
+
+  const line = (points, attributes, parent) =>
+    make("polyline", Object.assign({ points: points.map(p => p[0] + "," + -p[1]).join(" ") }, attributes), parent);
+
+  if (scene.asked) line(scene.asked, { class: "asked", "vector-effect": "non-scaling-stroke", "stroke-width": 2 }, asked);
+
+  const bodies = scene.bodies.map((body, k) => {
+    const group = make("g", { class: "body" + k }, robots), links = [], joints = [], forces = [];
+    const trace = make("polyline", { class: "trace", "vector-effect": "non-scaling-stroke", "stroke-width": 1.5 }, group);
+    for (let i = 0; i < body.at[0].length / 3; i++)
+      links.push(make("line", { "stroke-width": body.width, "stroke-linecap": "round" }, group));
+    const eye = make("circle", { class: "eye", r: body.width * 0.14 }, group);
+    if (body.effort)
+      for (let i = 0; i < body.effort[0].length; i++)
+        joints.push(make("circle", { r: body.width * 0.3, stroke: "none" }, group));
+    if (body.force)
+      for (let i = 0; i < links.length; i++)
+        forces.push(make("line", { class: "force", "stroke-width": body.width * 0.09 }, group));
+    let most = 0, strongest = 0;
+    const settled = rows => rows.slice(rows.length >> 1); // the first push from rest would dwarf all else
+    if (body.effort) for (const f of settled(body.effort)) for (const u of f) most = Math.max(most, Math.abs(u));
+    if (body.force) for (const f of settled(body.force)) for (const u of f) strongest = Math.max(strongest, Math.abs(u));
+    const middle = body.at.map(f => {
+      let x = 0, y = 0;
+      for (let i = 0; i < f.length; i += 3) { x += f[i]; y += f[i + 1]; }
+      return [3 * x / f.length, 3 * y / f.length];
+    });
+    return { body, links, joints, forces, trace, eye, middle, most, strongest };
+  });
+  const most = Math.max(...bodies.map(b => b.most)), strongest = Math.max(...bodies.map(b => b.strongest));
+  const longest = Math.max(...scene.bodies.map(b => b.length)) * 2.2;
+
+  // ---- One moment -------------------------------------------------------------------------------------------------
+
+  let time = 0, running = false, before = 0, rate = 1;
+
+  function place(t) { // frames around t, and how far between them
+    let low = 0, high = last;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (times[middle] <= t) low = middle; else high = middle;
+    }
+    const span = times[high] - times[low];
+    return { low, high, part: span > 0 ? Math.min(1, Math.max(0, (t - times[low]) / span)) : 0 };
+  }
+  const mix = (rows, p, i) => rows[p.low][i] + p.part * (rows[p.high][i] - rows[p.low][i]);
+
+  function tint(share) {
+    const name = share > 0 ? "--warm" : "--cool";
+    return "color-mix(in srgb, var(" + name + ") " + Math.round(100 * Math.min(1, Math.abs(share))) + "%, var(--none))";
+  }
+
+  function drawBody(b, p) {
+    const half = b.body.length / 2;
+    b.links.forEach((link, i) => {
+      const x = mix(b.body.at, p, 3 * i), y = mix(b.body.at, p, 3 * i + 1), angle = mix(b.body.at, p, 3 * i + 2);
+      const c = half * Math.cos(angle), s = half * Math.sin(angle);
+      const inner = Math.max(0, 1 - b.body.width / b.body.length); // the round ends are part of the link
+      link.setAttribute("x1", x - inner * c); link.setAttribute("y1", -(y - inner * s));
+      link.setAttribute("x2", x + inner * c); link.setAttribute("y2", -(y + inner * s));
+      if (i === b.links.length - 1) { b.eye.setAttribute("cx", x + 0.6 * c); b.eye.setAttribute("cy", -(y + 0.6 * s)); }
+      if (b.forces[i]) {
+        const fx = mix(b.body.force, p, 2 * i), fy = mix(b.body.force, p, 2 * i + 1);
+        const scale = longest / Math.max(strongest, Math.hypot(fx, fy));
+        b.forces[i].setAttribute("x1", x); b.forces[i].setAttribute("y1", -y);
+        b.forces[i].setAttribute("x2", x + scale * fx);
+        b.forces[i].setAttribute("y2", -(y + scale * fy));
+      }
+      if (b.joints[i]) {
+        const next = 3 * (i + 1), a = mix(b.body.at, p, next + 2);
+        const jx = (x + c + mix(b.body.at, p, next) - half * Math.cos(a)) / 2;
+        const jy = (y + s + mix(b.body.at, p, next + 1) - half * Math.sin(a)) / 2;
+        b.joints[i].setAttribute("cx", jx); b.joints[i].setAttribute("cy", -jy);
+        b.joints[i].style.fill = tint(mix(b.body.effort, p, i) / most);
+      }
+    });
+    const points = b.middle.slice(0, p.low + 1).map(m => m[0] + "," + -m[1]);
+    b.trace.setAttribute("points", points.join(" "));
+  }
+
+  function view(p) {
+    if (!follow.checked) return whole;
+    let x = 0, y = 0;
+    for (const b of bodies) {
+      x += b.middle[p.low][0] + p.part * (b.middle[p.high][0] - b.middle[p.low][0]);
+      y += b.middle[p.low][1] + p.part * (b.middle[p.high][1] - b.middle[p.low][1]);
+    }
+    return { x: x / bodies.length, y: y / bodies.length, w: near.w, h: near.h };
+  }
+
+  function drawGround(v, t) {
+    const width = stage.clientWidth || 700, step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50].find(s => s * width / v.w > 55) || 100;
+    const size = v.w * 12 / width, x0 = v.x - v.w / 2, x1 = v.x + v.w / 2, y0 = v.y - v.h / 2, y1 = v.y + v.h / 2;
+    ground.textContent = notes.textContent = "";
+    const thin = { class: "grid", "vector-effect": "non-scaling-stroke", "stroke-width": 1 };
+    const label = (x, y, text, anchor) =>
+      make("text", { x, y, "font-size": size, "text-anchor": anchor }, notes).textContent = text;
+    const digits = step < 1 ? 1 : 0;
+    for (let x = Math.ceil(x0 / step) * step; x <= x1; x += step) {
+      line([[x, y0], [x, y1]], thin, ground);
+      if (x > x0 + 3 * size && x < x1 - 3 * size) label(x, -y0 - 0.4 * size, x.toFixed(digits) + " m", "middle");
+    }
+    for (let y = Math.ceil(y0 / step) * step; y <= y1; y += step) line([[x0, y], [x1, y]], thin, ground);
+    const [cx, cy] = scene.current, flow = Math.hypot(cx, cy);
+    water.textContent = "";
+    if (flow > 0) { // arrows that drift with the water
+      const apart = 2 * step, arrow = 0.35 * step, ux = cx / flow, uy = cy / flow;
+      const start = (from, drift) => Math.ceil((from - drift) / apart) * apart + drift;
+      for (let x = start(x0, cx * t); x <= x1; x += apart)
+        for (let y = start(y0, cy * t); y <= y1; y += apart) {
+          const hx = x + arrow * ux, hy = y + arrow * uy, b = 0.3 * arrow;
+          make("path", { class: "current", "vector-effect": "non-scaling-stroke", "stroke-width": 1.5,
+            d: `M${x - arrow * ux},${-(y - arrow * uy)}L${hx},${-hy}M${hx - b * (ux - uy)},${-(hy - b * (uy + ux))}` +
+               `L${hx},${-hy}L${hx - b * (ux + uy)},${-(hy - b * (uy - ux))}` }, ground);
+        }
+    }
+  }
+
+  function tell(p) {
+    const parts = bodies.map(b => {
+      const m = b.middle, x = m[p.low][0] + p.part * (m[p.high][0] - m[p.low][0]);
+      const y = m[p.low][1] + p.part * (m[p.high][1] - m[p.low][1]);
+      return b.body.name + ": " + Math.hypot(x - m[0][0], y - m[0][1]).toFixed(2) + " m from its start";
+    });
+    for (const c of scene.channels || [])
+      parts.push(c.name + ": " + (c.values[p.low] + p.part * (c.values[p.high] - c.values[p.low])).toPrecision(3) + " " + c.unit);
+    told.textContent = parts.join("; ");
+  }
+
+  function moveCursors(t) {
+    for (const figure of document.querySelectorAll("svg[data-time]")) {
+      const [t0, t1, x0, x1, y0, y1] = figure.dataset.time.split(" ").map(Number);
+      let cursor = figure.querySelector(".cursor");
+      if (!cursor) cursor = make("line", { class: "cursor", y1: y0, y2: y1 }, figure);
+      const inside = t >= t0 && t <= t1, x = x0 + (x1 - x0) * (t - t0) / (t1 - t0);
+      cursor.setAttribute("visibility", inside ? "visible" : "hidden");
+      cursor.setAttribute("x1", x); cursor.setAttribute("x2", x);
+    }
+  }
+
+  function show(t) {
+    time = Math.min(end, Math.max(times[0], t));
+    const p = place(time), v = view(p);
+    picture.setAttribute("viewBox", [v.x - v.w / 2, -v.y - v.h / 2, v.w, v.h].join(" "));
+    drawGround(v, time);
+    for (const b of bodies) drawBody(b, p);
+    clock.textContent = time.toFixed(2) + " of " + end.toFixed(0) + " s";
+    scrub.value = time;
+    scrub.setAttribute("aria-valuetext", time.toFixed(2) + " seconds");
+    stage.dataset.time = time.toFixed(3);
+    tell(p);
+    moveCursors(time);
+  }
+
+  // ---- Control ----------------------------------------------------------------------------------------------------
+
+  function run(on) {
+    running = on;
+    if (on && time >= end) time = times[0];
+    play.textContent = on ? "Pause" : "Play";
+    before = 0;
+    if (on) requestAnimationFrame(tick);
+  }
+  function tick(now) {
+    if (!running) return;
+    if (before) show(time + rate * Math.min(0.1, (now - before) / 1000));
+    before = now;
+    if (time >= end) run(false); else requestAnimationFrame(tick);
+  }
+  function step(frames) {
+    run(false);
+    const p = place(time);
+    show(times[Math.min(last, Math.max(0, (p.part > 0.5 ? p.high : p.low) + frames))]);
+  }
+  function hurry(by) {
+    speed.selectedIndex = Math.min(speed.options.length - 1, Math.max(0, speed.selectedIndex + by));
+    rate = Number(speed.value);
+  }
+
+  play.addEventListener("click", () => run(!running));
+  at("back").addEventListener("click", () => step(-1));
+  at("on").addEventListener("click", () => step(1));
+  speed.addEventListener("change", () => { rate = Number(speed.value); });
+  follow.addEventListener("change", () => show(time));
+  scrub.addEventListener("input", () => { run(false); show(Number(scrub.value)); });
+  addEventListener("resize", () => show(time));
+  document.addEventListener("keydown", event => {
+    const own = event.target.closest && event.target.closest("input, select, button, a, summary, .scroll");
+    if (own || event.ctrlKey || event.altKey || event.metaKey) return;
+    const keys = { " ": () => run(!running), k: () => run(!running), ArrowRight: () => step(1), ArrowLeft: () => step(-1),
+      Home: () => { run(false); show(times[0]); }, End: () => { run(false); show(end); },
+      "+": () => hurry(1), "-": () => hurry(-1), f: () => { follow.checked = !follow.checked; show(time); } };
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  });
+
+  scrub.min = times[0]; scrub.max = end; scrub.step = "any";
+  document.getElementById("scene").hidden = false;
+  show(times[0]);
+  addEventListener("beforeprint", () => { run(false); show(end / 2); });
+  if (!calm) run(true);
+})();
