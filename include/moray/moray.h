@@ -17,6 +17,7 @@
 #include "moray/delay.h"
 #include "moray/dense.h"
 #include "moray/export.h"
+#include "moray/fit.h"
 #include "moray/key_value.h"
 #include "moray/map.h"
 #include "moray/nlp.h"

@@ -123,6 +123,32 @@ typedef struct moray_real_end_values {
 } moray_real_end_values;
 typedef void moray_endpoint_real_fn(const moray_real_ends *at, moray_real_end_values *out, const void *data);
 
+// ---- Observations ----
+
+// What is measured of a phase, predicted where its node is.
+typedef void moray_observe_fn(const moray_node *at, moray_num *y, const void *data);
+
+typedef enum moray_loss {
+    MORAY_LEAST_SQUARES,
+    MORAY_HUBER // squares up to a threshold, straight beyond
+} moray_loss;
+
+// Data of a phase whose times are fixed: y_k = h(x, u, s, t_k) at any times within it, in any order, the same more than
+// once too. Meshes have an edge at each time, where the state is a variable, so nothing is interpolated. With z =
+// sqrt(weight) (h - value), the sum of z^2 is added to the objective; with Huber's loss of threshold d, that of
+// 2 d |z| - d^2 where |z| > d. Costates jump at the times. See fit.h for what the data say of the parameters.
+typedef struct moray_observations {
+    int n, ny;                 // times; channels
+    const double *time;        // [n]
+    const double *value;       // [n][ny]; NAN: missing
+    const double *weight;      // [ny]; NULL: 1
+    moray_observe_fn *observe; // complex step; or
+    const moray_map *map;      // analytic: in = [x, u, s, t], out = [y]; must outlive the problem
+    const char *const *names;  // [ny]; NULL: y[0], ...
+    moray_loss loss;
+    double threshold; // of Huber's loss, positive
+} moray_observations;
+
 // Of continuous, continuous_real and map, exactly one.
 typedef struct moray_phase_spec {
     const char *name; // NULL: "phase", or the number of several
@@ -136,6 +162,7 @@ typedef struct moray_phase_spec {
     moray_bounds_list x, x0, xf, u, c, q; // x0 and xf narrow x at the ends
     const char *const *x_names, *const *u_names, *const *c_names; // NULL: x[0], ...
     moray_continuous_real_fn *continuous_real;                    // differences
+    moray_observations observed;                                  // n = 0: none
 } moray_phase_spec;
 
 // Of endpoint, endpoint_real and endpoint_map, exactly one.
@@ -243,7 +270,8 @@ typedef struct moray_settings {
     int max_variables;      // 0, no limit: of a finer mesh
     double barrier;         // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool own_scaling;       // true; false leaves scaling to Ipopt
-    int print_level;        // 0: Ipopt's log on standard error
+    bool gauss_newton; // false; true leaves the curvature of constraints and of what is observed out of the Hessian
+    int print_level;   // 0: Ipopt's log on standard error
     moray_linear_solver linear_solver; // our own, which falls back on MUMPS
     bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
     const moray_key_value *ipopt;      // [n_ipopt] further options of Ipopt, which must outlive the solution

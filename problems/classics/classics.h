@@ -21,6 +21,7 @@ struct classic {
     moray_status (*build)(moray_ocp **ocp, const void *data);
     classic_start_fn *start;          // NULL: the samples of `straight`
     const moray_samples *straight;    // two, from time 0 on; NULL: straight between the bounds
+    const double *parameters;         // to begin with; NULL: from their bounds
     const char *scheme;               // recommended; NULL: gauss3
     int intervals;                    // to begin with; 0: 20
     bool fixed_mesh;                  // the published value belongs to that mesh: not to be refined
@@ -33,6 +34,12 @@ moray_status classic_new(moray_ocp **ocp, const char *name, const moray_phase_sp
 
 // Objectives of one phase: its end in time; its first integral; minus the end of its first state.
 moray_endpoint_fn classic_final_time, classic_first_integral, classic_first_state;
+
+// A start on the data of a fit, straight between them, and with the first of them before: x[ny]. Returns the time.
+double classic_start_on_data(const moray_observations *data, double tf, double tau, double *x);
+
+// Of a fit, whose objective is what its observations add: nothing.
+moray_endpoint_fn classic_no_objective;
 
 extern const struct classic *const classics[]; // ends with NULL
 const struct classic *classic_find(const char *name);

@@ -36,6 +36,26 @@ void classic_first_state(const moray_ends *at, moray_end_values *out, const void
     out->objective = -at->phase[0].xf[0];
 }
 
+void classic_no_objective(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)at, (void)data;
+    out->objective = 0;
+}
+
+double classic_start_on_data(const moray_observations *data, double tf, double tau, double *x)
+{
+    const double t = tau * tf;
+    int k = 0;
+    while (k + 2 < data->n && t >= data->time[k + 1])
+        k++;
+    const double part = fmax((t - data->time[k]) / (data->time[k + 1] - data->time[k]), 0);
+    for (int i = 0; i < data->ny; i++) {
+        const double left = data->value[k * data->ny + i], right = data->value[(k + 1) * data->ny + i];
+        x[i] = left + part * (right - left);
+    }
+    return t;
+}
+
 // ---- Solving -------------------------------------------------------------------------------------------------------
 
 struct start {
@@ -92,7 +112,7 @@ static moray_status solve_from_start(const struct classic *classic, const moray_
     if (!start)
         return moray_error(MORAY_MEMORY, "no memory for the start of %s", classic->name);
     sample_start(classic, ocp, start);
-    const moray_guess guess = {.phase = start->phase};
+    const moray_guess guess = {.phase = start->phase, .s = classic->parameters};
     moray_status status = moray_solve(ocp, settings, &guess, solution);
     free(start);
     return status;
@@ -110,8 +130,9 @@ moray_status classic_first_solution(const struct classic *classic, const moray_s
 // Whether value becomes the printed decimal number when rounded or cut to its digits.
 static bool agrees_with(double value, const char *printed)
 {
-    const char *point = strchr(printed, '.');
-    const double unit = pow(10, point ? -(double)strlen(point + 1) : 0), slack = 1e-6 * unit;
+    const char *point = strchr(printed, '.'), *exponent = strchr(printed, 'e');
+    const double digits = point ? (double)strcspn(point + 1, "e") : 0;
+    const double unit = pow(10, (exponent ? strtod(exponent + 1, NULL) : 0) - digits), slack = 1e-6 * unit;
     const double beyond = copysign(1, value) * (value - strtod(printed, NULL));
     return beyond >= -unit / 2 - slack && beyond < unit + slack;
 }

@@ -37,7 +37,11 @@
     X(two_burn)                                                                                                        \
     X(manutec)                                                                                                         \
     X(swimmer)                                                                                                         \
-    X(climb)
+    X(climb)                                                                                                           \
+    X(gas_oil)                                                                                                         \
+    X(marine_population)                                                                                               \
+    X(methanol)                                                                                                        \
+    X(alpha_pinene)
 
 #define DECLARE(name) extern const struct classic classic_##name;
 CLASSICS(DECLARE)

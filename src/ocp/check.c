@@ -14,6 +14,7 @@ enum { name_size = 60 };
 struct subject {
     const moray_ocp *ocp;
     int p;
+    bool observed; // of the phase
     const moray_map *map;
     double *points, *in, *out, *weight; // points over the whole box, and the one at hand
 };
@@ -30,6 +31,8 @@ static void output_name(const struct subject *s, int i, char *text)
 {
     if (s->p < 0)
         moray_endpoint_output_name(s->ocp, i, text, name_size);
+    else if (s->observed)
+        moray_function_entry_name("observation", "y", s->ocp->phase[s->p].observed.names, i, text, name_size);
     else
         moray_phase_output_name(s->ocp, s->p, i, text, name_size);
 }
@@ -142,7 +145,11 @@ static moray_status check_subject(struct subject s, moray_ocp_derivative_report 
 moray_status moray_ocp_check_derivatives(const moray_ocp *ocp, moray_ocp_derivative_report *report)
 {
     *report = (moray_ocp_derivative_report){.jacobian_error = -1, .hessian_error = -1};
-    for (int p = 0; p < ocp->phases; p++)
+    for (int p = 0; p < ocp->phases; p++) {
+        const moray_map *observed = ocp->phase[p].observed.map;
         MORAY_TRY(check_subject((struct subject){.ocp = ocp, .p = p, .map = ocp->phase[p].map}, report));
+        if (observed)
+            MORAY_TRY(check_subject((struct subject){.ocp = ocp, .p = p, .observed = true, .map = observed}, report));
+    }
     return check_subject((struct subject){.ocp = ocp, .p = -1, .map = ocp->endpoint->map}, report);
 }

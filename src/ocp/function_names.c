@@ -54,6 +54,22 @@ void moray_phase_end_name(const struct phase *phase, int i, char *text, int size
     snprintf(text, (size_t)size, "%s of phase %s", what, phase->name);
 }
 
+// Inputs [x, u] of each observed time in turn.
+static void observed_input_name(const moray_ocp *ocp, int i, char *text, int size)
+{
+    char what[name_size];
+    for (int p = 0; p < ocp->phases; p++) {
+        const int width = ocp->phase[p].nx + ocp->phase[p].nu, n = ocp->phase[p].observed.n;
+        if (i < width * n) {
+            moray_phase_input_name(ocp, p, i % width, what, name_size);
+            snprintf(text, (size_t)size, "%s of phase %s observed at t = %.6g", what, ocp->phase[p].name,
+                     ocp->phase[p].observed.time[i / width]);
+            return;
+        }
+        i -= width * n;
+    }
+}
+
 void moray_endpoint_input_name(const moray_ocp *ocp, int i, char *text, int size)
 {
     for (int p = 0; p < ocp->phases; p++) {
@@ -64,7 +80,10 @@ void moray_endpoint_input_name(const moray_ocp *ocp, int i, char *text, int size
         }
         i -= n;
     }
-    moray_function_entry_name("parameter", "s", ocp->s_names, i, text, size);
+    if (i < ocp->ns)
+        moray_function_entry_name("parameter", "s", ocp->s_names, i, text, size);
+    else
+        observed_input_name(ocp, i - ocp->ns, text, size);
 }
 
 void moray_endpoint_output_name(const moray_ocp *ocp, int i, char *text, int size)

@@ -14,6 +14,14 @@ struct wrapped_phase {
     const void *data;
 };
 
+static void call_observe(void *self, const double complex *in, double complex *out)
+{
+    const struct wrapped_phase *wrapped = self;
+    const struct phase *p = wrapped->phase;
+    const moray_node node = {.x = in, .u = in + p->nx, .s = in + p->nx + p->nu, .t = in[p->nx + p->nu + p->ns]};
+    p->observed.observe(&node, out, wrapped->data);
+}
+
 static void call_continuous(void *self, const double complex *in, double complex *out)
 {
     const struct wrapped_phase *wrapped = self;
@@ -116,19 +124,39 @@ static moray_status endpoint_map(moray_ocp *ocp, int trial, const struct looking
     return moray_complex_map_new(&ocp->endpoint->own->map, n_in, n_out, call_endpoint, ocp, NULL, &l->probe);
 }
 
-static moray_status wrap_phase(moray_ocp *ocp, struct phase *p, const moray_phase_spec *spec)
+static moray_status observed_map(const moray_ocp *ocp, struct phase *p, int trial, const struct looking *l)
+{
+    moray_phase_points(ocp, p, trial, l->points);
+    moray_phase_sizes(ocp, p, l->size);
+    return moray_complex_map_new(&p->observed.own->map, moray_phase_inputs(p), p->observed.ny, call_observe, p->wrapped,
+                                 NULL, &l->probe);
+}
+
+static moray_status wrap_observed(moray_ocp *ocp, struct phase *p)
 {
     struct looking l = {0};
     moray_status status = looking_new(&l, moray_phase_inputs(p));
-    p->wrapped = calloc(1, sizeof *p->wrapped);
-    if (!p->wrapped)
-        status = moray_error(MORAY_MEMORY, "no memory for its functions");
+    if (!moray_failed(status))
+        status = own_map_new(&p->observed.own);
+    if (!moray_failed(status))
+        status = observed_map(ocp, p, 0, &l);
+    for (int trial = 1; trial < trials && status.code == MORAY_INPUT; trial++)
+        status = observed_map(ocp, p, trial, &l);
+    p->observed.map = p->observed.own ? &p->observed.own->map : NULL;
+    free(l.size);
+    if (moray_failed(status))
+        return moray_error(status.code, "observations of phase %s: %s", p->name, status.text);
+    return status;
+}
+
+static moray_status wrap_phase(moray_ocp *ocp, struct phase *p)
+{
+    struct looking l = {0};
+    moray_status status = looking_new(&l, moray_phase_inputs(p));
     if (!moray_failed(status))
         status = own_map_new(&p->own);
-    if (!moray_failed(status)) {
-        *p->wrapped = (struct wrapped_phase){p, spec->continuous, spec->continuous_real, ocp->data};
+    if (!moray_failed(status))
         status = phase_map(ocp, p, 0, &l);
-    }
     for (int trial = 1; trial < trials && status.code == MORAY_INPUT; trial++)
         status = phase_map(ocp, p, trial, &l);
     p->map = p->own ? &p->own->map : NULL;
@@ -157,9 +185,17 @@ static moray_status wrap_endpoint(moray_ocp *ocp)
 
 moray_status moray_wrap_functions(moray_ocp *ocp, const moray_ocp_spec *spec)
 {
-    for (int i = 0; i < ocp->phases; i++)
-        if (!spec->phase[i].map)
-            MORAY_TRY(wrap_phase(ocp, &ocp->phase[i], &spec->phase[i]));
+    for (int i = 0; i < ocp->phases; i++) {
+        struct phase *p = &ocp->phase[i];
+        p->wrapped = calloc(1, sizeof *p->wrapped);
+        if (!p->wrapped)
+            return moray_error(MORAY_MEMORY, "no memory for the functions of phase %s", p->name);
+        *p->wrapped = (struct wrapped_phase){p, spec->phase[i].continuous, spec->phase[i].continuous_real, ocp->data};
+        if (!p->map)
+            MORAY_TRY(wrap_phase(ocp, p));
+        if (p->observed.observe)
+            MORAY_TRY(wrap_observed(ocp, p));
+    }
     return ocp->endpoint->map ? moray_ok() : wrap_endpoint(ocp);
 }
 
@@ -172,6 +208,7 @@ void moray_unwrap_functions(moray_ocp *ocp)
 {
     for (int i = 0; ocp->phase && i < ocp->phases; i++) {
         own_maps_free(ocp->phase[i].own);
+        own_maps_free(ocp->phase[i].observed.own);
         free(ocp->phase[i].wrapped);
     }
     own_maps_free(ocp->endpoint ? ocp->endpoint->own : NULL);

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "ocp/observe/observed.h"
+
 static moray_status need_scheme(struct layout *layout, int stages)
 {
     if (stages < 1 || stages > MORAY_MAX_STAGES)
@@ -78,6 +80,8 @@ moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray
     for (int p = 0; p < ocp->phases && !moray_failed(status); p++) {
         struct phase_layout *phase = &layout->phase[p];
         status = moray_mesh_copy(&phase->mesh, &meshes[p]);
+        if (!moray_failed(status))
+            status = moray_cut_at_observations(&phase->mesh, &ocp->phase[p]);
         if (!moray_failed(status))
             status = allocate_phase(layout, phase);
         if (moray_failed(status))

@@ -84,12 +84,14 @@ static moray_status check_reserved(const struct list *list, const char *where, b
 static moray_status check_phase(const struct phase *phase, bool several)
 {
     const struct list x = {"state", "x", phase->x_names, phase->nx}, u = {"control", "u", phase->u_names, phase->nu},
-                      c = {"path constraint", "c", phase->c_names, phase->nc};
+                      c = {"path constraint", "c", phase->c_names, phase->nc},
+                      y = {"observation", "y", phase->observed.names, phase->observed.ny};
     char where[2 * longest];
     snprintf(where, sizeof where, "phase %s", phase->name);
     MORAY_TRY(check_list(&x, NULL, where));
     MORAY_TRY(check_list(&u, &x, where));
     MORAY_TRY(check_list(&c, NULL, where));
+    MORAY_TRY(check_list(&y, NULL, where));
     MORAY_TRY(check_reserved(&x, where, several));
     return check_reserved(&u, where, several);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "ocp/names.h"
+#include "ocp/observe/observed.h"
 #include "ocp/probe.h"
 
 double moray_bounds_middle(moray_bounds bounds)
@@ -164,6 +165,32 @@ static moray_status copy_mesh(moray_ocp *ocp, struct phase *phase, const moray_p
     return moray_ok();
 }
 
+static moray_status copy_numbers(moray_ocp *ocp, const double *from, int n, double **copy)
+{
+    *copy = own(ocp, (size_t)n * sizeof **copy);
+    for (int i = 0; *copy && i < n; i++)
+        (*copy)[i] = from ? from[i] : 1;
+    return *copy ? moray_ok() : no_memory();
+}
+
+static moray_status copy_observed(moray_ocp *ocp, struct phase *phase, const moray_observations *given)
+{
+    if (given->n == 0)
+        return moray_ok();
+    MORAY_TRY(moray_check_observations(phase, given));
+    struct observed *o = &phase->observed;
+    *o = (struct observed){.n = given->n,
+                           .ny = given->ny,
+                           .map = given->map,
+                           .observe = given->observe,
+                           .loss = given->loss,
+                           .threshold = given->threshold};
+    MORAY_TRY(copy_names(ocp, given->names, given->ny, &o->names));
+    MORAY_TRY(copy_numbers(ocp, given->time, given->n, &o->time));
+    MORAY_TRY(copy_numbers(ocp, given->value, given->n * given->ny, &o->value));
+    return copy_numbers(ocp, given->weight, given->ny, &o->weight);
+}
+
 // Several without a name are told apart by their numbers.
 static const char *copy_phase_name(moray_ocp *ocp, const moray_phase_spec *spec, int p)
 {
@@ -206,7 +233,8 @@ static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, int
         MORAY_TRY(copy_bounds(ocp, (struct place){lists[i].what, phase->name}, lists[i].list, lists[i].n,
                               lists[i].names, lists[i].required, lists[i].copy));
     MORAY_TRY(narrow((struct place){"x0", phase->name}, phase, phase->x0));
-    return narrow((struct place){"xf", phase->name}, phase, phase->xf);
+    MORAY_TRY(narrow((struct place){"xf", phase->name}, phase, phase->xf));
+    return copy_observed(ocp, phase, &spec->observed);
 }
 
 static moray_status copy_spec(moray_ocp *ocp, const moray_ocp_spec *spec)

@@ -14,12 +14,25 @@ struct own_map {
 
 struct wrapped_phase; // calls a user's continuous function as a map does
 
+// What is observed of a phase, see moray_observations.
+struct observed {
+    int n, ny;
+    double *time, *value, *weight; // weight[ny]
+    const moray_map *map;          // in = [x, u, s, t], out = [y]
+    struct own_map *own;
+    moray_observe_fn *observe;
+    const char **names; // NULL where the user named nothing
+    moray_loss loss;
+    double threshold;
+};
+
 struct phase {
     const char *name;
     int nx, nu, nc, nq, ns;
     const moray_map *map; // in = [x, u, s, t], out = [f, c, g]
     struct own_map *own;  // where it comes from a user function; the widest first
     struct wrapped_phase *wrapped;
+    struct observed observed;
     moray_bounds t0, tf, duration;
     bool has_duration;
     int intervals; // of the first mesh; 0: those of the settings

@@ -9,6 +9,7 @@
 
 #include "ocp/examine.h"
 #include "ocp/legendre.h"
+#include "ocp/observe/observed.h"
 
 enum { most_pieces = 4, first_raise = 4 }; // first_raise: stages before which decay cannot be told
 static const double concentrated = 0.7;    // share of an interval's variation between two nodes that calls for a cut
@@ -140,7 +141,9 @@ static void keep(struct refinement *r, double end, int stages, enum mesh_past pa
     const int last = r->mesh.intervals - 1;
     const double merged = (error + r->spare) * ldexp(1, stages + 1);
     const bool tried = last >= 0 && past == mesh_settled && r->mesh.past[last] == mesh_settled;
-    if (last >= 0 && !tried && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance) {
+    const struct phase *phase = &r->e.solution->transcription->ocp->phase[r->e.p];
+    const bool stays = last >= 0 && moray_is_observed_at(phase, r->mesh.edge[r->mesh.intervals]);
+    if (last >= 0 && !tried && !stays && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance) {
         merge_last(&r->mesh, end, past);
         r->spare = INFINITY;
     } else {

@@ -67,7 +67,10 @@ static moray_status run_solver(moray_solution *solution, const moray_guess *gues
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (warm)
         MORAY_TRY(moray_carry_multipliers(guess, solution));
-    return moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
+    moray_fit_be_gauss_newton(t, solution->settings.gauss_newton);
+    const moray_status status = moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
+    moray_fit_be_gauss_newton(t, false); // what comes after asks for the true curvature
+    return status;
 }
 
 static moray_status run(moray_solution *solution, const moray_guess *guess)

@@ -180,6 +180,16 @@ static bool nlp_jacobian(void *self, const double *x, bool fresh, double *values
     return true;
 }
 
+// Integrals may stand in the objective: what they bend stays.
+static const double *without_curvature(struct transcription *t, const double *lambda)
+{
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const int row = t->layout.phase[p].integral_row;
+        memcpy(t->no_lambda + row, lambda + row, (size_t)t->ocp->phase[p].nq * sizeof *lambda);
+    }
+    return t->no_lambda;
+}
+
 static bool nlp_hessian(void *self, const double *x, bool fresh, double sigma, const double *lambda, double *values)
 {
     (void)fresh;
@@ -187,7 +197,7 @@ static bool nlp_hessian(void *self, const double *x, bool fresh, double sigma, c
     if (!moray_transcription_jacobians(t, x))
         return false;
     moray_triplets_start(&t->hess, values);
-    moray_walk_hessian(t, sigma, lambda, &t->hess);
+    moray_walk_hessian(t, sigma, t->gauss_newton ? without_curvature(t, lambda) : lambda, &t->hess);
     int bad;
     return all_finite(values, t->hess.pattern.nnz, &bad);
 }

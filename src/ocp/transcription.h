@@ -8,6 +8,7 @@
 
 #include "base/triplets.h"
 #include "ocp/layout.h"
+#include "ocp/observe/fit_map.h"
 
 // What the functions of a phase gave at every node of the current point.
 struct phase_cache {
@@ -29,7 +30,10 @@ struct transcription {
     double *x;      // the point that the caches belong to
     bool have_values, have_jacobians;
     struct phase_cache *phase;
-    const moray_map *endpoint;
+    struct fit_map *fit;       // NULL where nothing is observed
+    const moray_map *endpoint; // the problem's, or the fit's
+    bool gauss_newton;         // the Hessian is that of the sum of squares alone
+    double *no_lambda;         // [rows] scratch for it
     double *end_in, *end_out, *end_jac;
     int *end_column;           // column of each endpoint input, -1 for fixed times
     double *weight, *map_hess; // scratch for one call of a map's Hessian

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "ocp/observe/observed.h"
 #include "ocp/transcription.h"
 
 static void set_row(struct transcription *t, int row, moray_bounds bounds)
@@ -63,6 +64,19 @@ static void set_bounds(struct transcription *t)
         set_row(t, t->layout.events + i, t->ocp->e[i]);
 }
 
+// A control that is no variable at an observed time is none that h depends on, see moray_fit_map_new.
+static void set_observed_columns(struct transcription *t, int *column)
+{
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const struct phase *phase = &t->ocp->phase[p];
+        for (int k = 0; k < phase->observed.n; k++) {
+            const struct node *node = moray_observed_node(&t->layout, t->ocp, p, k);
+            for (int i = 0; i < phase->nx + phase->nu; i++)
+                *column++ = i < phase->nx || node->collocated ? node->x + i : -1;
+        }
+    }
+}
+
 // Where each input of the endpoint map lives among the variables, in the order [x0, t0, xf, tf, q of each phase, s];
 // -1: fixed.
 static void set_end_columns(struct transcription *t)
@@ -82,6 +96,8 @@ static void set_end_columns(struct transcription *t)
     }
     for (int r = 0; r < t->ocp->ns; r++)
         *column++ = t->layout.s + r;
+    if (t->fit)
+        set_observed_columns(t, column);
 }
 
 static moray_status allocate_phase_cache(struct transcription *t, int p)
@@ -124,7 +140,9 @@ static moray_status allocate(struct transcription *t)
     t->end_column = calloc((size_t)end->n_in + 1, sizeof(int));
     t->weight = calloc((size_t)outs, sizeof(double));
     t->map_hess = calloc((size_t)nnz + 1, sizeof(double));
-    if (t->bounds && t->x && t->end_in && t->end_out && t->end_jac && t->end_column && t->weight && t->map_hess)
+    t->no_lambda = calloc(rows + 1, sizeof(double));
+    if (t->bounds && t->x && t->end_in && t->end_out && t->end_jac && t->end_column && t->weight && t->map_hess &&
+        t->no_lambda)
         return moray_ok();
     return moray_error(MORAY_MEMORY, "no memory for %zu variables", columns);
 }
@@ -162,6 +180,10 @@ moray_status moray_transcription_new(struct transcription **result, const moray_
     t->ocp = ocp;
     t->endpoint = ocp->endpoint->map;
     moray_status status = moray_layout_new(&t->layout, ocp, family, meshes);
+    if (!moray_failed(status))
+        status = moray_fit_map_new(&t->fit, ocp, &t->layout);
+    if (t->fit)
+        t->endpoint = moray_fit_map(t->fit);
     if (!moray_failed(status))
         status = allocate(t);
     if (!moray_failed(status)) {
@@ -201,8 +223,10 @@ void moray_transcription_free(struct transcription *t)
     free(t->end_column);
     free(t->weight);
     free(t->map_hess);
+    free(t->no_lambda);
     moray_triplets_free(&t->jac);
     moray_triplets_free(&t->hess);
+    moray_fit_map_free(t->fit);
     moray_layout_free(&t->layout);
     free(t);
 }

@@ -44,6 +44,22 @@ static moray_status widen_phase(const struct transcription *t, struct phase *pha
     return status;
 }
 
+static moray_status widen_observed(const struct transcription *t, struct observed *observed, int p, int *found)
+{
+    const size_t n_in = (size_t)observed->map->n_in;
+    int n = 0;
+    double *points = calloc(most_points * n_in, sizeof *points);
+    if (!points)
+        return moray_error(MORAY_MEMORY, "no memory for wider patterns");
+    for (int k = 0; k < observed->n && n < most_points; k++) {
+        moray_fit_inputs(t->fit, p, k, t->end_in, points + n * n_in);
+        n += !moray_map_pattern_holds(observed->map, points + n * n_in);
+    }
+    const moray_status status = n > 0 ? widen(&observed->own, &observed->map, points, n, found) : moray_ok();
+    free(points);
+    return status;
+}
+
 moray_status moray_widen_patterns(const struct transcription *t, int *found)
 {
     const moray_ocp *ocp = t->ocp;
@@ -51,6 +67,9 @@ moray_status moray_widen_patterns(const struct transcription *t, int *found)
     for (int p = 0; p < ocp->phases; p++)
         if (ocp->phase[p].own)
             MORAY_TRY(widen_phase(t, &ocp->phase[p], p, found));
+    for (int p = 0; p < ocp->phases; p++)
+        if (ocp->phase[p].observed.own)
+            MORAY_TRY(widen_observed(t, &ocp->phase[p].observed, p, found));
     struct endpoint *end = ocp->endpoint;
     if (end->own && !moray_map_pattern_holds(end->map, t->end_in))
         return widen(&end->own, &end->map, t->end_in, 1, found);

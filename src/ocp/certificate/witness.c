@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "ocp/certificate/columns.h"
+#include "ocp/probe.h"
 
 static const double least_part = 1e-3; // of a magnitude, or of what would matter to the objective, that makes a size
 static const double driving = 0.1;     // of what it takes to move a state by its size
@@ -198,7 +199,7 @@ static void size_integrals(struct witness *e, int p)
     }
 }
 
-// Inputs of the endpoint: [x0, t0, xf, tf, q] of each phase, s.
+// Inputs of the endpoint: [x0, t0, xf, tf, q] of each phase, s, and [x, u] of each observed time.
 static void size_ends(struct witness *e)
 {
     const moray_ocp *ocp = e->solution->transcription->ocp;
@@ -214,6 +215,10 @@ static void size_ends(struct witness *e)
             *size++ = e->phase[p].integral[m] > 0 ? e->phase[p].integral[m] : 1;
     }
     memcpy(size, e->phase[0].size + ocp->phase[0].nx + ocp->phase[0].nu, (size_t)ocp->ns * sizeof *size);
+    size += ocp->ns;
+    for (int p = 0; p < ocp->phases; p++)
+        for (int k = 0; k < ocp->phase[p].observed.n; k++, size += ocp->phase[p].nx + ocp->phase[p].nu)
+            memcpy(size, e->phase[p].size, (size_t)(ocp->phase[p].nx + ocp->phase[p].nu) * sizeof *size);
 }
 
 // A state whose displacement by its size would hardly change the objective, by its costate, may be larger: one that is
@@ -387,7 +392,8 @@ void moray_witness_columns(const struct witness *e, double *size)
         if (layout->tf >= 0)
             size[layout->tf] = e->duration;
     }
-    memcpy(size + t->layout.s, e->end_size + t->endpoint->n_in - t->ocp->ns, (size_t)t->ocp->ns * sizeof *size);
+    memcpy(size + t->layout.s, e->end_size + moray_endpoint_inputs(t->ocp) - t->ocp->ns,
+           (size_t)t->ocp->ns * sizeof *size);
     for (int j = 0; j < t->layout.columns; j++)
         size[j] = size[j] > 0 ? size[j] : 1;
 }
