@@ -30,5 +30,6 @@
 #include "moray/sensitivity.h"
 #include "moray/sim.h"
 #include "moray/status.h"
+#include "moray/table.h"
 
 #endif
