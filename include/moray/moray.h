@@ -10,6 +10,7 @@
 #include "moray/app/results.h"
 #include "moray/app/run.h"
 #include "moray/control/closed_loop.h"
+#include "moray/control/kalman.h"
 #include "moray/control/path.h"
 #include "moray/control/periodic_orbit.h"
 #include "moray/control/receding_horizon.h"

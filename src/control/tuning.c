@@ -8,7 +8,8 @@
 #include "moray/parallel.h"
 #include "moray/search.h"
 
-enum { most = MORAY_TUNED_NUMBERS, SPREAD = 4, POLISHED = 3, ROUNDS = 2 };
+enum { most = MORAY_TUNED_NUMBERS, SPREAD = 4, POLISHED = 3, ROUNDS = 8 };
+static const double worthwhile = 5e-3; // relative gain of a round that calls for another
 
 // A point in the box of all scales, each of which goes from 0 to 1.
 typedef struct place {
@@ -21,7 +22,8 @@ typedef struct tuning {
     const moray_tuning_problem *problem;
     const moray_tuning_settings *settings;
     const place *from;
-    double reach;    // half the width of the box that is searched
+    double reach;   // half the width of the box that is searched
+    bool polishing; // by a quadratic model
     bool stopped;    // of one task
     int evaluations; // likewise
 } tuning;
@@ -125,7 +127,8 @@ static void improve(int k, void *result, void *self)
     const moray_search_problem problem = {.n = n, .lower = lower, .upper = upper, .self = &t, .evaluate = evaluate};
     moray_search_settings settings = moray_search_settings_default();
     moray_search_info info;
-    settings.method = MORAY_SEARCH_COBYLA;
+    // Gains that make up for one another lie in a curved valley, along which a quadratic model gets further.
+    settings.method = t.polishing && n > 1 ? MORAY_SEARCH_BOBYQA : MORAY_SEARCH_COBYLA;
     settings.x_tolerance = 1e-4;
     settings.f_tolerance = t.settings->tolerance;
     settings.max_evaluations = t.settings->evaluations * n;
@@ -176,6 +179,22 @@ static moray_status from_each(tuning *t, moray_task_fn *task, place *places, int
     return status;
 }
 
+// The best of them once more and again, in boxes around them.
+static moray_status polish(tuning *t, place *places, int n, moray_tuning_info *info)
+{
+    double before = INFINITY;
+    for (int round = 0; round < ROUNDS && !t->stopped; round++) {
+        t->polishing = round % 2 == 0;
+        t->reach = round < ROUNDS / 2 ? 0.15 : 0.04;
+        MORAY_TRY(from_each(t, improve, places, n, info));
+        qsort(places, (size_t)n, sizeof *places, by_cost);
+        if (round % 2 == 1 && !(places[0].cost < (1 - worthwhile) * before))
+            break;
+        before = round % 2 == 1 ? places[0].cost : before;
+    }
+    return moray_ok();
+}
+
 static moray_status search(tuning *t, place *places, int n, int n_from, moray_tuning_info *info)
 {
     const int starts = t->settings->starts + n_from < n ? t->settings->starts + n_from : n;
@@ -188,12 +207,7 @@ static moray_status search(tuning *t, place *places, int n, int n_from, moray_tu
     for (int k = 0; k < starts; k++)
         info->agree += places[k].cost <= 1.05 * places[0].cost;
     info->searches = starts;
-    for (int round = 0; round < ROUNDS && !t->stopped; round++) {
-        t->reach = round == 0 ? 0.15 : 0.03;
-        MORAY_TRY(from_each(t, improve, places, starts < POLISHED ? starts : POLISHED, info));
-    }
-    qsort(places, (size_t)starts, sizeof *places, by_cost);
-    return moray_ok();
+    return polish(t, places, starts < POLISHED ? starts : POLISHED, info);
 }
 
 moray_status moray_tune(const moray_tuning_problem *problem, const moray_tuning_settings *settings, const double *from,

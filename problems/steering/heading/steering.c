@@ -17,7 +17,7 @@ enum { RMS, FINAL, LARGEST, POWER, SCORES }; // as of moray_heading_score
 static const steer_number numbers[NUMBERS] = {
     [GAIN] = {"gain_m_rad", "gain, cm/deg", 100 * DEG, .searched = {MORAY_TUNED_LOGARITHMIC, 0.002, 20, 0}},
     [FORWARD] = {"forward_m_s_rad", "forward, cm s/deg", 100 * DEG, .searched = {MORAY_TUNED_WITH_ZERO, 0, 20, 0.05}},
-    [LEAD] = {"lead_s", "ahead, s", 1, .searched = {MORAY_TUNED_LINEAR, 0, 8, 0}},
+    [LEAD] = {"lead_s", "ahead, s", 1, .searched = {MORAY_TUNED_WITH_ZERO, 0, 8, 0.1}},
     [INTEGRAL] = {"integral_1_s", "integral, 1/s", 1, .searched = {MORAY_TUNED_WITH_ZERO, 0, 20, 0.01}},
     [DERIVATIVE] = {"derivative_s", "derivative, s", 1, .searched = {MORAY_TUNED_WITH_ZERO, 0, 5, 0.05}},
 };

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+//
+// The laws, each behind the same instruments, on the same gait.
+#include "sea.h"
+
+#include <string.h>
+
+static const double look_every = 0.1; // [s]
+static const double smoothing = 0.5;  // of the heading whose rate a derivative is [s]
+static const double reach = 3;        // of a path, before which its way does not count as settled [m]
+
+enum { GAIN, FORWARD, LEAD, INTEGRAL, DERIVATIVE }; // heading
+enum { LOOKAHEAD = 1, AHEAD, SIGHT_INTEGRAL };      // path, behind the gain
+enum { NOTHING = -1 };
+
+const moray_tuned_number sea_numbers[2][SEA_NUMBERS] = {{{MORAY_TUNED_LOGARITHMIC, 0.002, 20, 0},
+                                                         {MORAY_TUNED_WITH_ZERO, 0, 20, 0.05},
+                                                         {MORAY_TUNED_WITH_ZERO, 0, 8, 0.1},
+                                                         {MORAY_TUNED_WITH_ZERO, 0, 20, 0.01},
+                                                         {MORAY_TUNED_WITH_ZERO, 0, 5, 0.05}},
+                                                        {{MORAY_TUNED_LOGARITHMIC, 0.002, 20, 0},
+                                                         {MORAY_TUNED_LOGARITHMIC, 0.1, 20, 0},
+                                                         {MORAY_TUNED_WITH_ZERO, 0, 5, 0.1},
+                                                         {MORAY_TUNED_WITH_ZERO, 0, 0.3, 1e-3}}};
+const char *const sea_number_names[2][SEA_NUMBERS] = {
+    {"gain_m_rad", "forward_m_s_rad", "lead_s", "integral_1_s", "derivative_s"},
+    {"gain_m_rad", "lookahead_m", "ahead_m", "integral_m_s"}};
+
+#define NO_SUBSET                                                                                                      \
+    {                                                                                                                  \
+        NOTHING, NOTHING, NOTHING                                                                                      \
+    }
+
+static const sea_law heading_laws[] = {
+    {"P", "nothing", 1 << GAIN, {0.12}, NO_SUBSET, 0},
+    {"P, rate fed forward", "nothing", 1 << GAIN | 1 << FORWARD, {0.12, 0.2}, {0, NOTHING, NOTHING}, 0},
+    {"PID", "nothing", 1 << GAIN | 1 << INTEGRAL | 1 << DERIVATIVE, {0.12, 0, 0, 0.05, 0.5}, {0, NOTHING, NOTHING}, 0},
+    {"P ahead", "nothing", 1 << GAIN | 1 << LEAD, {0.12, 0, 2}, {0, NOTHING, NOTHING}, 0},
+    {"PID ahead, rate fed f.", "nothing", 31, {0.12, 0.2, 2, 0.05, 0.5}, {1, 2, 3}, 0},
+    {"receding, told", "all", 0, {0}, NO_SUBSET, SEA_TOLD},
+    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, SEA_BELIEVING},
+    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, SEA_ESTIMATING}};
+
+static const sea_law path_laws[] = {{"LOS", "nothing", 7, {0.06, 2.8, 0.4}, NO_SUBSET, 0},
+                                    {"ILOS", "nothing", 15, {0.06, 2.8, 0.4, 0.02}, {0, NOTHING, NOTHING}, 0},
+                                    {"receding, told", "all", 0, {0}, NO_SUBSET, SEA_TOLD},
+                                    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, SEA_BELIEVING},
+                                    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, SEA_ESTIMATING}};
+
+int sea_laws(const sea_job *job, const sea_law **laws)
+{
+    *laws = job->task == SEA_HEADING ? heading_laws : path_laws;
+    return job->task == SEA_HEADING ? sizeof heading_laws / sizeof *heading_laws : sizeof path_laws / sizeof *path_laws;
+}
+
+// ---- Who steers ----------------------------------------------------------------------------------------------------
+
+typedef struct steersman {
+    moray_feedback feedback;
+    moray_heading_law law;
+    moray_guidance guidance;
+    moray_heading_replanner heading;
+    moray_path_replanner path;
+    moray_adaptive *adaptive;
+    moray_swim_controller controller;
+    moray_instruments *instruments;
+    moray_path_seeker seeker;
+} steersman;
+
+static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw, const double *number)
+{
+    h->feedback = (moray_feedback){.gain = job->scale * number[GAIN],
+                                   .straight = &job->believed_straight,
+                                   .offset = job->offset * fabs(job->scale),
+                                   .offset_rate = job->offset_rate * fabs(job->scale),
+                                   .period = look_every};
+    if (job->task == SEA_HEADING) {
+        h->law = (moray_heading_law){
+            .gains = {number[GAIN], number[FORWARD], number[LEAD], number[INTEGRAL], number[DERIVATIVE]},
+            .reference = &draw->reference,
+            .feedback = &h->feedback,
+            .scale = job->scale,
+            .smoothing = smoothing};
+        h->feedback.target = moray_heading_law_target;
+        h->feedback.feed = moray_heading_law_feed;
+        h->feedback.self = &h->law;
+    } else {
+        h->guidance = (moray_guidance){.path = &job->path,
+                                       .lookahead = number[LOOKAHEAD],
+                                       .ahead = number[AHEAD],
+                                       .gain = number[SIGHT_INTEGRAL],
+                                       .period = look_every};
+        h->feedback.target = moray_guidance_target;
+        h->feedback.self = &h->guidance;
+    }
+    h->controller = moray_feedback_controller(&h->feedback);
+}
+
+static void pose_problems(steersman *h, const sea_job *job, const sea_draw *draw, double speed, double horizon)
+{
+    const double error_unit = 10 * DEG, across_unit = 0.1, seconds = 10 * job->path.length / speed;
+    const moray_heading_spec heading = {.robot = job->believed,
+                                        .model = MORAY_CONTROL_ORIENTED,
+                                        .averaged = true,
+                                        .weight = {1 / (error_unit * error_unit), 0, job->weight_steering},
+                                        .reference = &draw->reference,
+                                        .max_error = MORAY_INFINITY};
+    const moray_path_spec path = {
+        .robot = job->believed,
+        .model = MORAY_CONTROL_ORIENTED,
+        .averaged = true,
+        .weight = {1 / (across_unit * across_unit * seconds), 1 / seconds, job->weight_steering / seconds},
+        .path = &job->path,
+        .tube = MORAY_INFINITY,
+        .reach = reach,
+        .speed = speed};
+    h->heading = (moray_heading_replanner){.spec = heading, .horizon = horizon, .preview = true};
+    h->path = (moray_path_replanner){.spec = path, .horizon = horizon};
+}
+
+static moray_status set_receding(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law)
+{
+    const bool told = law->knows == SEA_TOLD, estimates = law->knows == SEA_ESTIMATING;
+    const double period = 2 * M_PI / job->gait.omega, horizon = job->look_ahead_periods * period;
+    const moray_straight_motion *known = told ? &draw->straight : &job->believed_straight;
+    const double current_doubt = 0.1, factor_doubt = 0.15, least_heading = 0.5 * DEG, least_position = 0.02;
+    double rate;
+    pose_problems(h, job, draw, known->speed, horizon);
+    moray_adaptive_spec spec = {.navigator = {.robot = job->believed,
+                                              .gait = job->gait,
+                                              .heading = moray_reference_at(&draw->reference, 0, &rate),
+                                              .speed = known->speed,
+                                              .belief = told ? draw->truth : job->belief,
+                                              .current_doubt = estimates ? current_doubt : 0,
+                                              .factor_doubt = estimates ? factor_doubt : 0,
+                                              .heading_error = hypot(job->sensors.heading, least_heading),
+                                              .position_error = hypot(job->sensors.position, least_position)},
+                                .measured = known,
+                                .scale = job->scale,
+                                .limits = {.offset = job->offset, .offset_rate = job->offset_rate},
+                                .heading = job->task == SEA_HEADING ? &h->heading : NULL,
+                                .path = job->task == SEA_PATH ? &h->path : NULL,
+                                .settings = moray_settings_default(),
+                                .horizon = horizon,
+                                .interval = job->replan_periods * period,
+                                .look = look_every,
+        .dead_time = job->actuators.dead_time};
+    if (job->task == SEA_PATH) {
+        spec.navigator.heading = job->path.piece->course;
+        spec.navigator.position[1] = 0.5;
+    }
+    spec.settings.scheme = "radau3";
+    spec.settings.intervals = (int)ceil(3 * job->look_ahead_periods);
+    spec.settings.tolerance = 1e-6;
+    spec.settings.max_iterations = 100;
+    MORAY_TRY(moray_adaptive_new(&h->adaptive, &spec));
+    h->controller = moray_adaptive_controller(h->adaptive);
+    return moray_ok();
+}
+
+// ---- A trial -------------------------------------------------------------------------------------------------------
+
+static void judge(const sea_job *job, const sea_draw *draw, const moray_swim_closed_loop *closed_loop, sea_score *score)
+{
+    const int last = closed_loop->track.n - 1;
+    if (job->task == SEA_HEADING) {
+        const moray_heading_score s =
+            moray_swim_closed_loop_heading_score(closed_loop, &draw->straight, &draw->reference);
+        score->value[0] = s.rms;
+        score->value[1] = s.largest;
+        score->value[2] = s.power;
+        score->cost = s.rms * s.rms / (100 * DEG * DEG);
+    } else {
+        const moray_path_score s = moray_swim_closed_loop_path_score(closed_loop, &job->path, reach);
+        const double seconds = isnan(s.time) ? closed_loop->track.t[last] : s.time;
+        score->value[0] = s.rms;
+        score->value[1] = seconds;
+        score->value[2] = score->cost = 100 * s.rms * s.rms * seconds + seconds;
+    }
+    score->known = true;
+}
+
+static moray_status swim(const sea_job *job, const sea_draw *draw, steersman *h, sea_score *score)
+{
+    const moray_swim_controller outer = moray_instruments_controller(h->instruments);
+    const moray_swim_on_gait how = {.steps = 24, .current_turning = draw->current_turning};
+    moray_swim_closed_loop closed_loop;
+    double rate;
+    moray_swim_closed_loop_spec spec = {.robot = &draw->robot,
+                                        .straight = &draw->straight,
+                                        .heading = moray_reference_at(&draw->reference, 0, &rate),
+                                        .current = {draw->current[0], draw->current[1]},
+                                        .controller = &outer,
+                                        .duration = job->duration,
+                                        .intervals = (int)ceil(10 * job->duration),
+                                        .on_gait = &how};
+    if (job->task == SEA_PATH) {
+        spec.heading = job->path.piece->course;
+        spec.position[1] = 0.5;
+        h->seeker = (moray_path_seeker){&job->path, 0};
+        spec.observe = moray_path_seek;
+        spec.observer = &h->seeker;
+    }
+    MORAY_TRY(moray_swim_closed_loop_run(&closed_loop, &spec));
+    judge(job, draw, &closed_loop, score);
+    moray_swim_closed_loop_free(&closed_loop);
+    return moray_ok();
+}
+
+moray_status sea_swim(const sea_job *job, const sea_draw *draw, int which, const double *number, sea_score *score)
+{
+    const sea_law *laws;
+    steersman h = {0};
+    moray_sensors sensors = job->sensors;
+    moray_status status = moray_ok();
+    sea_laws(job, &laws);
+    *score = (sea_score){0};
+    sensors.seed = draw->seed; // the same errors for every law
+    if (laws[which].tuned)
+        set_feedback(&h, job, draw, number);
+    else
+        status = set_receding(&h, job, draw, &laws[which]);
+    if (!moray_failed(status))
+        status = moray_instruments_new(&h.instruments, &sensors, &job->actuators, &draw->straight, draw->robot.links,
+                                       &h.controller);
+    if (h.adaptive && h.instruments)
+        moray_adaptive_look_at(h.adaptive, moray_instruments_reading(h.instruments));
+    if (!moray_failed(status))
+        status = swim(job, draw, &h, score);
+    if (h.adaptive)
+        score->failures = moray_adaptive_record(h.adaptive)->failures;
+    moray_adaptive_free(h.adaptive);
+    moray_instruments_free(h.instruments);
+    return status;
+}

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+//
+// Medians, 90th percentiles and paired differences of the trials.
+#include "sea.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const struct scale {
+    const char *key[SEA_SCORES], *json[SEA_SCORES];
+    double unit[SEA_SCORES];
+} scales[2] = {{{"RMS, deg", "largest, deg", "power, W"}, {"rms_deg", "largest_deg", "power_W"}, {DEG, DEG, 1}},
+               {{"RMS, cm", "time, s", "cost"}, {"rms_m", "time_s", "cost"}, {0.01, 1, 1}}};
+
+// What laws are compared by: the heading error, or the cost of a path.
+static int judged_by(const sea_job *job)
+{
+    return job->task == SEA_HEADING ? 0 : 2;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double part(double *values, int n, double share)
+{
+    qsort(values, (size_t)n, sizeof *values, ascending);
+    const double at = share * (n - 1);
+    const int k = (int)at;
+    return k + 1 < n ? values[k] + (at - k) * (values[k + 1] - values[k]) : values[n - 1];
+}
+
+// A share of the trials' values of a law, or of their differences to another's (other < 0: none).
+static double quantile(const sea_job *job, int law, int other, int which, double share)
+{
+    static double values[SEA_MOST_SEEDS];
+    for (int k = 0; k < job->seeds; k++) {
+        const sea_score *of = &job->score[k * SEA_LAWS];
+        values[k] = of[law].value[which] - (other < 0 ? 0 : of[other].value[which]);
+    }
+    return part(values, job->seeds, share) / scales[job->task].unit[which];
+}
+
+static double wins(const sea_job *job, int law, int other)
+{
+    int n = 0;
+    for (int k = 0; k < job->seeds; k++) {
+        const sea_score *of = &job->score[k * SEA_LAWS];
+        n += of[law].value[judged_by(job)] < of[other].value[judged_by(job)];
+    }
+    return 100.0 * n / job->seeds;
+}
+
+static int failures(const sea_job *job, int law)
+{
+    int n = 0;
+    for (int k = 0; k < job->seeds; k++)
+        n += job->score[k * SEA_LAWS + law].failures;
+    return n;
+}
+
+// The rival of the least cost in training: chosen before anything is scored.
+static int best_rival(const sea_job *job, const sea_law *laws, int n)
+{
+    int best = 0;
+    for (int law = 1; law < n; law++)
+        if (laws[law].tuned && job->tuned_cost[law] < job->tuned_cost[best])
+            best = law;
+    return best;
+}
+
+enum { MEDIAN, HIGH, SECOND_MEDIAN, SECOND_HIGH, DIFFERENCE, DIFFERENCE_HIGH, WINS, FAILED, COLUMNS };
+
+static void fill(const sea_job *job, const sea_law *laws, int n, moray_table_row *rows, char label[][64])
+{
+    const int best = best_rival(job, laws, n), by = judged_by(job), second = job->task == SEA_HEADING ? 1 : 0;
+    for (int law = 0; law < n; law++) {
+        snprintf(label[law], sizeof *label, "%s (told: %s)", laws[law].name, laws[law].told);
+        rows[law] = (moray_table_row){.label = label[law]};
+        double *value = rows[law].value;
+        value[MEDIAN] = quantile(job, law, -1, by, 0.5);
+        value[HIGH] = quantile(job, law, -1, by, 0.9);
+        value[SECOND_MEDIAN] = quantile(job, law, -1, second, 0.5);
+        value[SECOND_HIGH] = quantile(job, law, -1, second, 0.9);
+        value[DIFFERENCE] = law == best ? NAN : quantile(job, law, best, by, 0.5);
+        value[DIFFERENCE_HIGH] = law == best ? NAN : quantile(job, law, best, by, 0.9);
+        value[WINS] = law == best ? NAN : wins(job, law, best);
+        value[FAILED] = laws[law].tuned ? NAN : (double)failures(job, law);
+    }
+}
+
+static void fill_tuning(const sea_job *job, const sea_law *laws, int n, moray_table_row *rows, int *used)
+{
+    *used = 0;
+    for (int law = 0; law < n; law++) {
+        if (!laws[law].tuned)
+            continue;
+        moray_table_row *row = &rows[(*used)++];
+        *row = (moray_table_row){.label = laws[law].name};
+        for (int k = 0; k < SEA_NUMBERS; k++)
+            row->value[k] = laws[law].tuned & 1u << k ? job->number[law][k] : NAN;
+        row->value[SEA_NUMBERS] = job->tuned_cost[law];
+        row->value[SEA_NUMBERS + 1] = job->tuned_by[law];
+    }
+}
+
+static void summary(const void *found, moray_json *json)
+{
+    const sea_job *job = found;
+    const sea_law *laws;
+    const int n = sea_laws(job, &laws), best = best_rival(job, laws, n);
+    moray_snake_to_json(json, &job->snake);
+    moray_json_text(json, "task", job->task == SEA_HEADING ? "heading" : "path");
+    moray_json_text(json, "rung", job->rung);
+    moray_json_text(json, "planner_current", job->believed_current);
+    moray_json_numbers(json, "planner_factors", job->factor, SEA_COEFFICIENTS);
+    moray_json_number(json, "seeds", job->seeds);
+    moray_json_number(json, "training", job->training);
+    moray_json_text(json, "best_rival", laws[best].name);
+    moray_json_open_list(json, "laws");
+    for (int law = 0; law < n; law++) {
+        moray_json_open(json, NULL);
+        moray_json_text(json, "name", laws[law].name);
+        moray_json_text(json, "told", laws[law].told);
+        for (int k = 0; k < SEA_NUMBERS; k++)
+            if (laws[law].tuned & 1u << k)
+                moray_json_number(json, sea_number_names[job->task][k], job->number[law][k]);
+        if (laws[law].tuned)
+            moray_json_number(json, "training_cost", job->tuned_cost[law]);
+        for (int which = 0; which < SEA_SCORES; which++) {
+            moray_json_open(json, scales[job->task].json[which]);
+            const double si = job->task == SEA_PATH ? scales[SEA_PATH].unit[which] : 1; // cm only in tables
+            moray_json_number(json, "median", quantile(job, law, -1, which, 0.5) * si);
+            moray_json_number(json, "percentile_90", quantile(job, law, -1, which, 0.9) * si);
+            moray_json_number(json, "median_difference", quantile(job, law, best, which, 0.5) * si);
+            moray_json_close(json);
+        }
+        moray_json_number(json, "wins_percent", wins(job, law, best));
+        moray_json_number(json, "plans_failed", failures(job, law));
+        moray_json_close(json);
+    }
+    moray_json_close(json);
+}
+
+static void print(const void *found, const moray_report *report)
+{
+    (void)found;
+    moray_tables_print(report->tables, report->n_tables, stdout);
+    printf("%s\n", report->text);
+}
+
+static moray_status write_nothing(const void *found, moray_output *output)
+{
+    (void)found, (void)output;
+    return moray_ok();
+}
+
+moray_status sea_report(const sea_job *job)
+{
+    const sea_law *laws;
+    const int n = sea_laws(job, &laws), best = best_rival(job, laws, n), by = judged_by(job);
+    const int second = job->task == SEA_HEADING ? 1 : 0;
+    moray_table_row rows[2][SEA_LAWS];
+    char label[SEA_LAWS][64], text[1000] = "";
+    int tuned;
+    fill(job, laws, n, rows[0], label);
+    fill_tuning(job, laws, n, rows[1], &tuned);
+    const struct scale *scale = &scales[job->task];
+    const moray_table tables[] = {
+        {.title = "Trials: median and 90th percentile; differences to the best rival of the training, draw by draw",
+         .columns = {scale->key[by], "90th", scale->key[second], "90th", "less rival's", "90th", "wins, %",
+                     "failed plans"},
+         .n_columns = COLUMNS,
+         .rows = rows[0],
+         .n_rows = n},
+        {.title = "Tuned on draws of their own",
+         .columns = {sea_number_names[job->task][0], sea_number_names[job->task][1], sea_number_names[job->task][2],
+                     sea_number_names[job->task][3], sea_number_names[job->task][4], "cost", "settings"},
+         .n_columns = SEA_NUMBERS + 2,
+         .rows = rows[1],
+         .n_rows = tuned}};
+    moray_text_add(text, sizeof text,
+                   "%d draws on %s (rung %s), none of which tuned anybody; all on the paper's gait behind the same "
+                   "instruments. Rivals are told nothing of robot and current. The best rival by its training is %s.",
+                   job->seeds, moray_model_name(job->snake.model), job->rung, laws[best].name);
+    for (int law = 0; law < n; law++)
+        if (!laws[law].tuned)
+            moray_text_add(text, sizeof text, " %s wins %.0f %% of the draws, median difference %+.3g.", laws[law].name,
+                           wins(job, law, best), quantile(job, law, best, by, 0.5));
+    const moray_report report = {.title = "sea_trials", .text = text, .tables = tables, .n_tables = 2};
+    return moray_app_show(&job->common, &(moray_results){.name = "sea_trials",
+                                                         .found = job,
+                                                         .summary = summary,
+                                                         .print = print,
+                                                         .write = write_nothing,
+                                                         .report = &report});
+}

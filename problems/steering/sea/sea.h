@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+//
+// Trials at sea: many draws of robot, current and noise, each swum under every law; what a planner knows is apart from
+// what is true.
+#ifndef PROBLEMS_STEERING_SEA_SEA_H
+#define PROBLEMS_STEERING_SEA_SEA_H
+
+#include "degree.h"
+#include "moray/moray.h"
+#include "moray/snake.h"
+
+enum { SEA_HEADING, SEA_PATH }; // tasks
+enum { SEA_MOST_SEEDS = 2000, SEA_LAWS = 8, SEA_NUMBERS = 5, SEA_SCORES = 3, SEA_COEFFICIENTS = 4 };
+
+typedef struct sea_job sea_job;
+
+// One draw: what is true, and what a planner that is told everything knows.
+typedef struct sea_draw {
+    unsigned long seed;
+    moray_robot robot;
+    double current[2], current_turning; // at the start [m/s]; [rad/s]
+    moray_reference reference;          // owned
+    moray_straight_motion straight;     // of the robot
+    moray_belief truth;
+} sea_draw;
+
+// A law at sea. Laws with numbers are tuned; the others plan.
+typedef struct sea_law {
+    const char *name, *told; // what it was told of robot and current, for the table
+    unsigned tuned;          // bits of the numbers
+    double start[SEA_NUMBERS];
+    int subset[3];                                          // laws that leave some of the numbers out; -1: none
+    enum { SEA_TOLD, SEA_BELIEVING, SEA_ESTIMATING } knows; // of who plans
+} sea_law;
+
+// Of a trial. Heading: RMS and largest error [rad], power [W]; path: RMS distance [m], time to its end (the longest
+// given where it is not reached) [s], cost as of path_following.
+typedef struct sea_score {
+    double value[SEA_SCORES];
+    double cost; // what tuning minimises
+    bool known;
+    int failures; // of a receding horizon's plans
+} sea_score;
+
+struct sea_job {
+    moray_common common;
+    moray_snake_options snake; // of the plant, before the draw
+    int task;
+    char rung[32];   // "own" or of the ladder: the plant's hydrodynamics
+    double duration; // [s]; of a path at most
+    char path_text[MORAY_PATH_SIZE];
+    double radius;
+    double offset, offset_rate; // limits, of the control-oriented model
+    // planner
+    double factor[SEA_COEFFICIENTS]; // of c_n, c_t, mu_n, lambda: what it believes over what the robot's are
+    int hydrodynamics;               // a moray_robot's, as it believes
+    char believed_current[64];       // "unknown" or "VX,VY"
+    // instruments
+    moray_sensors sensors;
+    moray_actuators actuators;
+    // draws
+    int seeds, first_seed, training;
+    double current_most, current_turning, spread; // [m/s], [rad/s], of the coefficients
+    // tuning and planning
+    int starts, evaluations, jobs;
+    double replan_periods, look_ahead_periods, weight_steering;
+    char results[MORAY_PATH_SIZE]; // file of trials done; empty: none
+    // found along the way
+    moray_path path;
+    moray_robot believed;
+    moray_straight_motion believed_straight;
+    moray_belief belief;
+    moray_gait gait; // of the control-oriented model: the paper's, for all
+    double scale;    // offsets of the plant's model per offset of that
+    sea_draw *draw;  // [seeds + training], the latter behind
+    double number[SEA_LAWS][SEA_NUMBERS];
+    double tuned_cost[SEA_LAWS];
+    int tuned_by[SEA_LAWS];
+    sea_score *score;                // [seeds][SEA_LAWS]
+    double multiplier[SEA_LAWS + 1]; // largest Floquet multiplier of heading with the law, behind them of none; NaN
+    moray_ticker ticker;
+};
+
+extern const moray_tuned_number sea_numbers[2][SEA_NUMBERS];
+extern const char *const sea_number_names[2][SEA_NUMBERS];
+int sea_laws(const sea_job *job, const sea_law **laws); // how many
+
+// Draws all scenarios and what is believed. Error: MORAY_INPUT, those of moray_straight_motion_find.
+moray_status sea_prepare(sea_job *job);
+void sea_release(sea_job *job);
+
+// Swims one draw under a law with these numbers.
+moray_status sea_swim(const sea_job *job, const sea_draw *draw, int law, const double *number, sea_score *score);
+
+// Tunes what is tuned on the training draws; swims all seeds. Error: MORAY_INTERRUPTED, MORAY_IO, those of the trials.
+moray_status sea_tune(sea_job *job);
+moray_status sea_run(sea_job *job);
+
+moray_status sea_report(const sea_job *job);
+
+#endif
