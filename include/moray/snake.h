@@ -20,6 +20,7 @@
 #include "moray/snake/orbit.h"
 #include "moray/snake/path.h"
 #include "moray/snake/plant.h"
+#include "moray/snake/poincare.h"
 #include "moray/snake/receding_horizon.h"
 #include "moray/snake/scene.h"
 #include "moray/snake/steering.h"

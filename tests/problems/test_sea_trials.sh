@@ -16,10 +16,10 @@ check "a run that was cut off goes on to the same" eval '[ $code -eq 0 ] && cmp 
 run --json $few --set results=half.txt --set spread=0.1
 check "trials of other settings are told apart: $(cat err)" eval '[ $code -eq 2 ] && one_line && grep -q "other settings" err'
 if thorough; then
-run $few --seeds 1 --task path --set current_max_m_s=0.05 --set planner.current=0.02,0 --rung split2
+run $few --seeds 1 --task path --set current_max_m_s=0.05 --set planner_current=0.02,0 --rung split2
 check "a path, on a rung: $(cat err)" eval '[ $code -eq 0 ] && grep -q "^receding, estimating" out && grep -q "rung split2" out'
 fi
 refuse 'rung = no_such' --rung no_such
-refuse 'must be unknown or VX,VY' --set planner.current=some
+refuse 'must be unknown or VX,VY' --set planner_current=some
 refuse 'drop_outs' --set drop_outs=1
 tap_done

@@ -99,7 +99,7 @@ static moray_status believe(sea_job *job)
     if (strcmp(job->believed_current, "unknown") != 0 &&
         (sscanf(job->believed_current, "%lf,%lf%n", &current[0], &current[1], &used) != 2 ||
          job->believed_current[used]))
-        return moray_error(MORAY_INPUT, "current = %s of the planner: must be unknown or VX,VY", job->believed_current);
+        return moray_error(MORAY_INPUT, "planner_current = %s: must be unknown or VX,VY", job->believed_current);
     MORAY_TRY(see_through(job, &job->believed, &job->believed_straight, &job->belief));
     memcpy(job->belief.current, current, sizeof current);
     return moray_ok();

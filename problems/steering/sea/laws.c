@@ -144,7 +144,7 @@ static moray_status set_receding(steersman *h, const sea_job *job, const sea_dra
                                 .horizon = horizon,
                                 .interval = job->replan_periods * period,
                                 .look = look_every,
-        .dead_time = job->actuators.dead_time};
+                                .dead_time = job->actuators.dead_time};
     if (job->task == SEA_PATH) {
         spec.navigator.heading = job->path.piece->course;
         spec.navigator.position[1] = 0.5;

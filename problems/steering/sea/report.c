@@ -106,6 +106,17 @@ static void fill_tuning(const sea_job *job, const sea_law *laws, int n, moray_ta
     }
 }
 
+// Without feedback, and with that of the first law, P or LOS.
+static int fill_multipliers(const sea_job *job, moray_table_row *rows)
+{
+    static const char *const names[2][2] = {{"nobody steers", "P"}, {"nobody steers", "LOS"}};
+    for (int k = 0; k < 2; k++) {
+        rows[k] = (moray_table_row){.label = names[job->task][k]};
+        sea_multipliers(job, k ? job->number[0] : NULL, rows[k].value);
+    }
+    return 2;
+}
+
 static void summary(const void *found, moray_json *json)
 {
     const sea_job *job = found;
@@ -162,7 +173,7 @@ moray_status sea_report(const sea_job *job)
     const sea_law *laws;
     const int n = sea_laws(job, &laws), best = best_rival(job, laws, n), by = judged_by(job);
     const int second = job->task == SEA_HEADING ? 1 : 0;
-    moray_table_row rows[2][SEA_LAWS];
+    moray_table_row rows[3][SEA_LAWS];
     char label[SEA_LAWS][64], text[1000] = "";
     int tuned;
     fill(job, laws, n, rows[0], label);
@@ -180,7 +191,12 @@ moray_status sea_report(const sea_job *job)
                      sea_number_names[job->task][3], sea_number_names[job->task][4], "cost", "settings"},
          .n_columns = SEA_NUMBERS + 2,
          .rows = rows[1],
-         .n_rows = tuned}};
+         .n_rows = tuned},
+        {.title = "Stroboscopic map of the robot believed, straight on in still water: largest multipliers",
+         .columns = {"largest", "second"},
+         .n_columns = 2,
+         .rows = rows[2],
+         .n_rows = fill_multipliers(job, rows[2])}};
     moray_text_add(text, sizeof text,
                    "%d draws on %s (rung %s), none of which tuned anybody; all on the paper's gait behind the same "
                    "instruments. Rivals are told nothing of robot and current. The best rival by its training is %s.",
@@ -189,7 +205,7 @@ moray_status sea_report(const sea_job *job)
         if (!laws[law].tuned)
             moray_text_add(text, sizeof text, " %s wins %.0f %% of the draws, median difference %+.3g.", laws[law].name,
                            wins(job, law, best), quantile(job, law, best, by, 0.5));
-    const moray_report report = {.title = "sea_trials", .text = text, .tables = tables, .n_tables = 2};
+    const moray_report report = {.title = "sea_trials", .text = text, .tables = tables, .n_tables = 3};
     return moray_app_show(&job->common, &(moray_results){.name = "sea_trials",
                                                          .found = job,
                                                          .summary = summary,

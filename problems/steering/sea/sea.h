@@ -76,8 +76,7 @@ struct sea_job {
     double number[SEA_LAWS][SEA_NUMBERS];
     double tuned_cost[SEA_LAWS];
     int tuned_by[SEA_LAWS];
-    sea_score *score;                // [seeds][SEA_LAWS]
-    double multiplier[SEA_LAWS + 1]; // largest Floquet multiplier of heading with the law, behind them of none; NaN
+    sea_score *score; // [seeds][SEA_LAWS]
     moray_ticker ticker;
 };
 
@@ -95,6 +94,10 @@ moray_status sea_swim(const sea_job *job, const sea_draw *draw, int law, const d
 // Tunes what is tuned on the training draws; swims all seeds. Error: MORAY_INTERRUPTED, MORAY_IO, those of the trials.
 moray_status sea_tune(sea_job *job);
 moray_status sea_run(sea_job *job);
+
+// Largest multipliers of the stroboscopic map of the believed robot with a law's gain around its heading and, with a
+// lookahead, its offset; without numbers of nobody's steering. NaN where there are none.
+void sea_multipliers(const sea_job *job, const double *number, double largest[2]);
 
 moray_status sea_report(const sea_job *job);
 
