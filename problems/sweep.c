@@ -62,8 +62,8 @@ static moray_status run(sweep_arguments *a, int argc, char **argv)
                                    .quiet = a->quiet,
                                    .stop = moray_interrupted};
     moray_sweep_result result;
-    moray_status status = configuration && command ? moray_sweep(&spec, &result)
-                                                   : moray_error(MORAY_MEMORY, "no memory for the command");
+    moray_status status =
+        configuration && command ? moray_sweep(&spec, &result) : moray_error(MORAY_MEMORY, "no memory for the command");
     free(configuration);
     free(command);
     return moray_failed(status) || moray_sweep_rank() > 0 ? status : sweep_report(a, &result, argc, argv);

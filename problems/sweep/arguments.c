@@ -12,22 +12,42 @@
 #include "moray/app/options.h"
 #include "moray/app/program.h"
 
-enum { KEY_GRID = 0x100, KEY_LIST, KEY_RANDOM, KEY_RANGE, KEY_SEED, KEY_FILE, KEY_OUT, KEY_JOBS, KEY_TIME, KEY_MEMORY,
-       KEY_OBJECTIVE, KEY_SHOW, KEY_COLD, KEY_QUIET, KEY_JSON, KEY_VERSION };
+enum {
+    KEY_GRID = 0x100,
+    KEY_LIST,
+    KEY_RANDOM,
+    KEY_RANGE,
+    KEY_SEED,
+    KEY_FILE,
+    KEY_OUT,
+    KEY_JOBS,
+    KEY_TIME,
+    KEY_MEMORY,
+    KEY_OBJECTIVE,
+    KEY_SHOW,
+    KEY_COLD,
+    KEY_QUIET,
+    KEY_JSON,
+    KEY_VERSION
+};
 
 static const struct argp_option options[] = {
-    {"grid", KEY_GRID, "KEY=LOW:HIGH:COUNT|V,V,...", 0, "values of a key of the program, numbers or words; again for every further axis", 1},
-    {"list", KEY_LIST, "[KEY=]FILES", 0, "files as values of a key (robot, where none is named); a pattern, quoted, or several names behind it", 1},
+    {"grid", KEY_GRID, "KEY=LOW:HIGH:COUNT|V,V,...", 0,
+     "values of a key of the program, numbers or words; again for every further axis", 1},
+    {"list", KEY_LIST, "[KEY=]FILES", 0,
+     "files as values of a key (robot, where none is named); a pattern, quoted, or several names behind it", 1},
     {"random", KEY_RANDOM, "COUNT", 0, "draws of the keys of --range, besides all grids", 1},
     {"range", KEY_RANGE, "KEY=LOW:HIGH", 0, "a key drawn evenly; again for every further one", 1},
     {"seed", KEY_SEED, "NUMBER", 0, "of the draws [1]", 1},
     {"file", KEY_FILE, "FILE", 0, "results, NetCDF-4 [PROGRAM.nc]; an unfinished one is gone on with", 2},
     {"out", KEY_OUT, "DIR", 0, "figures and a report", 2},
-    {"show", KEY_SHOW, "NUMBER", 0, "a number of the program's summary to draw, as gain.speed_percent_at_equal_power; again for further ones", 2},
+    {"show", KEY_SHOW, "NUMBER", 0,
+     "a number of the program's summary to draw, as gain.speed_percent_at_equal_power; again for further ones", 2},
     {"jobs", KEY_JOBS, "N", 0, "processes [one a processor]; with mpirun or srun, one a rank instead", 3},
     {"time", KEY_TIME, "SECONDS", 0, "most for one point [no limit]", 3},
     {"memory", KEY_MEMORY, "MB", 0, "most for one point [no limit]", 3},
-    {"objective", KEY_OBJECTIVE, "NUMBER", 0, "number that tells the better of two solutions, the lower one [the solver's objective]", 3},
+    {"objective", KEY_OBJECTIVE, "NUMBER", 0,
+     "number that tells the better of two solutions, the lower one [the solver's objective]", 3},
     {"cold", KEY_COLD, NULL, 0, "every point from its own start, not from a solved neighbour", 3},
     {"quiet", KEY_QUIET, NULL, 0, "no progress", 4},
     {"json", KEY_JSON, NULL, 0, "what came of it as one JSON object", 4},
@@ -175,12 +195,12 @@ static moray_status take_name(reading *r, const char *name)
     if (r->listing)
         return add_files(r->a, &r->a->axis[r->a->axes - 1], name);
     if (r->a->program)
-        return moray_error(MORAY_INPUT, "unexpected argument %.60s; what the program itself is to be given stands "
-                                        "behind --",
+        return moray_error(MORAY_INPUT,
+                           "unexpected argument %.60s; what the program itself is to be given stands "
+                           "behind --",
                            name);
     r->a->program = sweepable_find(name);
-    return r->a->program ? moray_ok()
-                         : moray_error(MORAY_INPUT, "no program %.60s to sweep; --help lists them", name);
+    return r->a->program ? moray_ok() : moray_error(MORAY_INPUT, "no program %.60s to sweep; --help lists them", name);
 }
 
 static moray_status take(reading *r, int key, char *value)
@@ -289,9 +309,13 @@ static moray_status complete(sweep_arguments *a)
 bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *exit_code)
 {
     static const struct argp parser = {
-        options, parse_one, "PROGRAM [-- ARGUMENTS OF THE PROGRAM]",
+        options,
+        parse_one,
+        "PROGRAM [-- ARGUMENTS OF THE PROGRAM]",
         "Runs a program over all combinations of settings, on all cores or, under mpirun or srun, on many machines.\v",
-        NULL, list_programs, NULL};
+        NULL,
+        list_programs,
+        NULL};
     *found = (sweep_arguments){.seed = 1};
     reading r = {.a = found, .status = moray_ok()};
     int own = argc;

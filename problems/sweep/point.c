@@ -75,6 +75,10 @@ moray_status sweep_run_program(const moray_sweep_point *point, FILE *summary, vo
     add(&c, "--%s%s", "quiet", "");
     if (a->program->jobs)
         add(&c, "--%s=%s", "jobs", "1");
+    if (a->program->guess && !a->cold)
+        add(&c, "--%s=%s", "solution", point->solution);
+    if (a->program->guess && point->guess)
+        add(&c, "--%s=%s", a->program->guess, point->guess);
     if (c.no_memory || dup2(fileno(summary), STDOUT_FILENO) < 0)
         return moray_error(MORAY_MEMORY, "no memory for a command line");
     return status_of(a->program->main(c.argc, c.argv)); // this process ends: nothing here needs to be freed

@@ -5,18 +5,18 @@
 
 // meson.build compiles NAME.c once more with main under this name.
 #define PROGRAMS(X)                                                                                                    \
-    X(classics, NULL, false, false)                                                                                           \
-    X(free_gait, NULL, false, true)                                                                                           \
-    X(heading_tracking, NULL, false, false)                                                                                   \
-    X(ladder, NULL, false, true)                                                                                              \
-    X(max_speed, "solver.objective", false, true)                                                                             \
-    X(min_energy, "solver.objective", false, true)                                                                            \
-    X(min_time_turn, NULL, false, false)                                                                                      \
-    X(path_following, NULL, false, false)                                                                                     \
-    X(search_gait, NULL, false, true)                                                                                         \
-    X(sensitivity, NULL, false, true)                                                                                         \
-    X(simulate, NULL, false, false)                                                                                           \
-    X(template, "solver.objective", false, false)
+    X(classics, NULL, NULL, false)                                                                                     \
+    X(free_gait, NULL, NULL, true)                                                                                     \
+    X(heading_tracking, NULL, NULL, false)                                                                             \
+    X(ladder, NULL, NULL, true)                                                                                        \
+    X(max_speed, "solver.objective", "continue", true)                                                                 \
+    X(min_energy, "solver.objective", "continue", true)                                                                \
+    X(min_time_turn, NULL, NULL, false)                                                                                \
+    X(path_following, NULL, NULL, false)                                                                               \
+    X(search_gait, NULL, NULL, true)                                                                                   \
+    X(sensitivity, NULL, NULL, true)                                                                                   \
+    X(simulate, NULL, NULL, false)                                                                                     \
+    X(template, "solver.objective", "guess", false)
 
 #define DECLARE(name, objective, guess, jobs) program_main program_##name;
 #define ROW(name, objective, guess, jobs) {#name, program_##name, objective, guess, jobs},

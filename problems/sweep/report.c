@@ -13,18 +13,17 @@ enum { ROWS = 9, MOST_CURVES = 8 };
 static int rows(const moray_sweep_result *r, moray_table_row row[ROWS])
 {
     const double workers = r->ranks > 1 ? r->ranks : r->jobs, capacity = r->seconds * workers;
-    const moray_table_row all[ROWS] = {
-        {.label = "points", .value = {(double)r->points}},
-        {.label = "solved", .value = {(double)r->solved}},
-        {.label = "failed", .value = {(double)r->failed}},
-        {.label = "attempts that an earlier run had made", .value = {(double)r->before}},
-        {.label = "begun from a solved neighbour", .value = {(double)r->warm}},
-        {.label = "of these, solved so", .value = {(double)r->held}},
-        {.label = "bettered from a neighbour's branch", .value = {(double)r->improved}},
-        {.label = "time", .value = {r->seconds}, .unit = "s"},
-        {.label = "share of it that the processes spent on points",
-         .value = {capacity > 0 ? 100 * r->busy / capacity : NAN},
-         .unit = "%"}};
+    const moray_table_row all[ROWS] = {{.label = "points", .value = {(double)r->points}},
+                                       {.label = "solved", .value = {(double)r->solved}},
+                                       {.label = "failed", .value = {(double)r->failed}},
+                                       {.label = "attempts that an earlier run had made", .value = {(double)r->before}},
+                                       {.label = "begun from a solved neighbour", .value = {(double)r->warm}},
+                                       {.label = "of these, solved so", .value = {(double)r->held}},
+                                       {.label = "bettered from a neighbour's branch", .value = {(double)r->improved}},
+                                       {.label = "time", .value = {r->seconds}, .unit = "s"},
+                                       {.label = "share of it that the processes spent on points",
+                                        .value = {capacity > 0 ? 100 * r->busy / capacity : NAN},
+                                        .unit = "%"}};
     memcpy(row, all, sizeof all);
     return ROWS;
 }
@@ -88,15 +87,21 @@ static moray_status draw(moray_output *output, const slice *s, const char *name,
         label[k][0] = 0;
         if (s->curves)
             snprintf(label[k], sizeof label[k], "%s %.4g", s->curves->key, s->curves->value[place]);
-        curve[k] = (moray_curve){.label = s->curves ? label[k] : name, .x = s->across->value, .y = of,
-                                 .n = s->across->n, .style = MORAY_CURVE_MARKED};
+        curve[k] = (moray_curve){.label = s->curves ? label[k] : name,
+                                 .x = s->across->value,
+                                 .y = of,
+                                 .n = s->across->n,
+                                 .style = MORAY_CURVE_MARKED};
     }
     snprintf(file, sizeof file, "%.100s", name);
     for (char *c = file; *c; c++)
         *c = *c == '.' ? '_' : *c;
-    const moray_status status =
-        moray_output_figure(output, &(moray_figure){.name = file, .title = name, .x_label = s->across->key,
-                                                    .y_label = name, .curves = curve, .n_curves = (int)s->n_curves});
+    const moray_status status = moray_output_figure(output, &(moray_figure){.name = file,
+                                                                            .title = name,
+                                                                            .x_label = s->across->key,
+                                                                            .y_label = name,
+                                                                            .curves = curve,
+                                                                            .n_curves = (int)s->n_curves});
     free(y);
     return status;
 }

@@ -26,6 +26,7 @@ static const moray_option own_rows[] = {
               .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"),
     MORAY_CONTINUE(app_run, from_file),
     MORAY_GUESS(app_run, guess_file),
+    MORAY_LEAVE(app_run, solution_file),
     {.flag = "check",
      .type = MORAY_OPTION_BOOL,
      MORAY_AT(app_run, check),
@@ -197,6 +198,8 @@ static moray_status work(app_run *run)
     if (run->check)
         return check(run);
     MORAY_TRY(solve(run));
+    if (run->solution_file[0])
+        MORAY_TRY(moray_solution_save(run->solution, run->solution_file));
     MORAY_TRY(moray_run_show(run));
     return judge(run);
 }

@@ -12,7 +12,8 @@ typedef struct app_run {
     int refinements, max_iterations, max_variables;
     double max_cpu_seconds;
     bool check;
-    char from_file[MORAY_PATH_SIZE], guess_file[MORAY_PATH_SIZE]; // of --continue, --guess; empty: none
+    // Of --continue, --guess, --solution; empty: none.
+    char from_file[MORAY_PATH_SIZE], guess_file[MORAY_PATH_SIZE], solution_file[MORAY_PATH_SIZE];
     double constant[MORAY_APP_CONSTANTS];
     const moray_app *app;
     const char *name;

@@ -16,7 +16,8 @@ moray_status moray_crew_new(struct crew *crew, const struct grid *grid)
 {
     const struct ranks ranks = moray_ranks_begin();
     const int jobs = grid->spec->jobs < 1 ? moray_processors() : grid->spec->jobs;
-    *crew = (struct crew){.grid = grid, .ranks = ranks.size, .rank = ranks.rank, .n_workers = ranks.size > 1 ? 1 : jobs};
+    *crew =
+        (struct crew){.grid = grid, .ranks = ranks.size, .rank = ranks.rank, .n_workers = ranks.size > 1 ? 1 : jobs};
     crew->worker = calloc((size_t)crew->n_workers, sizeof *crew->worker);
     crew->poll = calloc(2 * (size_t)crew->n_workers, sizeof *crew->poll);
     crew->busy = calloc((size_t)crew->ranks, sizeof *crew->busy);
@@ -159,8 +160,7 @@ moray_status moray_crew_serve(struct crew *crew)
             continue;
         }
         const bool home = strcmp(text, "home") == 0;
-        const int read =
-            sscanf(text, "task %ld %ld %d %d", &task.point, &task.start, &task.round, &task.start_round);
+        const int read = sscanf(text, "task %ld %ld %d %d", &task.point, &task.start, &task.round, &task.start_round);
         free(text);
         if (home)
             return moray_ok();

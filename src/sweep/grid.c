@@ -161,7 +161,7 @@ void moray_grid_settings(const struct grid *grid, long point, moray_key_value *s
         const moray_sweep_axis *axis = k < spec->axes ? &spec->axis[k] : NULL;
         const long i = axis ? at[grid->first + k] : 0;
         value[k] = !axis ? moray_grid_draw(spec, at[0], k - spec->axes) : axis->value ? axis->value[i] : NAN;
-        setting[k] = (moray_key_value){key_of(spec, k), axis && !axis->value ? axis->word[i]
-                                                                             : moray_number_text(value[k], text[k])};
+        setting[k] = (moray_key_value){key_of(spec, k),
+                                       axis && !axis->value ? axis->word[i] : moray_number_text(value[k], text[k])};
     }
 }

@@ -145,9 +145,9 @@ static void put_flags(writer *w, const char *name, const char *about, const char
 
 static void put_starts(writer *w)
 {
-    const int id = over_points(w, "sweep_start", NC_INT64,
-                               "point, counted in the order of the dimensions, whose solution it began with; -1: none",
-                               NULL);
+    const int id =
+        over_points(w, "sweep_start", NC_INT64,
+                    "point, counted in the order of the dimensions, whose solution it began with; -1: none", NULL);
     if (w->error != NC_NOERR)
         return;
     long long *value = calloc((size_t)w->store->grid->points, sizeof *value);

@@ -50,12 +50,13 @@ moray_status moray_record_read(const char *text, struct record *record)
     *record = (struct record){0};
     cJSON *line = cJSON_Parse(text);
     const double point = member(line, "point"), round = member(line, "round"), start = member(line, "start"),
-                 start_round = member(line, "start_round"), code = member(line, "code"), seconds = member(line, "seconds");
+                 start_round = member(line, "start_round"), code = member(line, "code"),
+                 seconds = member(line, "seconds");
     const cJSON *reason = cJSON_GetObjectItemCaseSensitive(line, "reason");
     const cJSON *found = cJSON_GetObjectItemCaseSensitive(line, "found");
     moray_status status = moray_ok();
-    if (!(point >= 0 && round >= 0 && start >= -1 && start_round >= 0 && code >= MORAY_OK && code <= MORAY_INTERRUPTED && seconds >= 0 &&
-          cJSON_IsString(reason) && (!found || cJSON_IsObject(found)))) {
+    if (!(point >= 0 && round >= 0 && start >= -1 && start_round >= 0 && code >= MORAY_OK &&
+          code <= MORAY_INTERRUPTED && seconds >= 0 && cJSON_IsString(reason) && (!found || cJSON_IsObject(found)))) {
         status = moray_error(MORAY_INPUT, "no record of a sweep: %.60s", text);
     } else {
         record->task = (struct task){(long)point, (long)start, (int)round, (int)start_round};

@@ -26,8 +26,8 @@ moray_status moray_store_new(struct store *store, const struct grid *grid)
                             .objective = blank(grid->points),
                             .other = blank(grid->points),
                             .reason = calloc(n, sizeof *store->reason)};
-    if (store->state && store->code && store->round && store->start && store->seconds && store->objective && store->other &&
-        store->reason)
+    if (store->state && store->code && store->round && store->start && store->seconds && store->objective &&
+        store->other && store->reason)
         return moray_ok();
     moray_store_free(store);
     return moray_error(MORAY_MEMORY, "no memory for %ld points", grid->points);

@@ -36,7 +36,8 @@ long moray_grid_step(const struct grid *grid, long point, int axis, long steps);
 double moray_grid_draw(const moray_sweep_spec *spec, long draw, int r);
 
 // Settings of a point: texts into text[32 n]; n = axes + ranges of the spec.
-void moray_grid_settings(const struct grid *grid, long point, moray_key_value *setting, double *value, char (*text)[32]);
+void moray_grid_settings(const struct grid *grid, long point, moray_key_value *setting, double *value,
+                         char (*text)[32]);
 
 // ---- Records -------------------------------------------------------------------------------------------------------
 
@@ -55,7 +56,7 @@ struct record {
 };
 
 void moray_record_free(struct record *record);
-char *moray_record_line(const struct record *record);                 // to be freed; NULL: no memory
+char *moray_record_line(const struct record *record);                    // to be freed; NULL: no memory
 moray_status moray_record_read(const char *line, struct record *record); // Error: MORAY_INPUT, MORAY_MEMORY
 // The object that a text holds, on one line, to be freed; NULL where it holds none. Error: MORAY_MEMORY.
 moray_status moray_json_on_one_line(const char *text, char **line);
@@ -67,7 +68,7 @@ struct store {
     const struct grid *grid;
     int n, room; // columns
     char **name;
-    double **value; // [n][points], NaN where there is none
+    double **value;                    // [n][points], NaN where there is none
     signed char *state, *code, *round; // [points]; round: in which what it has was found
     long *start;
     double *seconds, *objective, *other; // other: the objective of a branch that was given up, NaN: none
@@ -87,9 +88,9 @@ moray_status moray_store_add(struct store *store, const struct record *record, b
 // torn ends it.
 struct journal {
     int fd;
-    FILE *file; // of fd, to read it; closing it would end the lock
-    double synced; // clock of the last one
-    struct record *old;   // what was there when it was opened, by (point, round, start)
+    FILE *file;         // of fd, to read it; closing it would end the lock
+    double synced;      // clock of the last one
+    struct record *old; // what was there when it was opened, by (point, round, start)
     long n_old;
     bool finished; // when it was opened
 };
@@ -98,8 +99,9 @@ struct journal {
 // MORAY_IO, MORAY_MEMORY.
 moray_status moray_journal_open(struct journal *journal, const char *path, const char *identity);
 void moray_journal_close(struct journal *journal);
-const struct record *moray_journal_find(const struct journal *journal, const struct task *task); // of the old ones; or NULL
-moray_status moray_journal_add(struct journal *journal, const struct record *record);     // Error: MORAY_IO, MORAY_MEMORY
+const struct record *moray_journal_find(const struct journal *journal,
+                                        const struct task *task);                     // of the old ones; or NULL
+moray_status moray_journal_add(struct journal *journal, const struct record *record); // Error: MORAY_IO, MORAY_MEMORY
 
 // ---- NetCDF --------------------------------------------------------------------------------------------------------
 
@@ -142,9 +144,11 @@ struct worker {
     int wait_status;
 };
 
-moray_status moray_worker_begin(struct worker *worker, const struct grid *grid, const struct task *task);      // Error: MORAY_IO
-moray_status moray_worker_read(struct worker *worker, bool *ended);                              // Error: MORAY_MEMORY
-moray_status moray_worker_record(struct worker *worker, const struct grid *grid, struct record *record);       // once ended; then idle
+moray_status moray_worker_begin(struct worker *worker, const struct grid *grid,
+                                const struct task *task);           // Error: MORAY_IO
+moray_status moray_worker_read(struct worker *worker, bool *ended); // Error: MORAY_MEMORY
+moray_status moray_worker_record(struct worker *worker, const struct grid *grid,
+                                 struct record *record); // once ended; then idle
 void moray_worker_kill(struct worker *worker);
 
 // Where a point leaves its solution, into path[size].
@@ -161,7 +165,7 @@ struct crew {
 };
 
 moray_status moray_crew_new(struct crew *crew, const struct grid *grid);
-void moray_crew_free(struct crew *crew); // kills what runs, sends the ranks home
+void moray_crew_free(struct crew *crew);       // kills what runs, sends the ranks home
 bool moray_crew_idle(const struct crew *crew); // somebody waits for a task
 moray_status moray_crew_begin(struct crew *crew, const struct task *task);
 // Waits at most `seconds` for a record. Error: MORAY_MEMORY, MORAY_IO.

@@ -68,8 +68,8 @@ static _Noreturn void solve(const struct grid *grid, const struct task *task, in
 }
 
 // A process group of its own, so that a point can be ended with all that it started; and it ends with its parent.
-static _Noreturn void become_worker(const struct grid *grid, const struct task *task, const int summary[2], const int errors[2],
-                                    pid_t parent)
+static _Noreturn void become_worker(const struct grid *grid, const struct task *task, const int summary[2],
+                                    const int errors[2], pid_t parent)
 {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);

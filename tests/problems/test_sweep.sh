@@ -39,6 +39,14 @@ run simulate --grid links=1,4,5 --file some.nc --json
 check "a point that is refused costs itself: $(number failed)" eval '[ $code -eq 0 ] && [ "$(number failed)" = 1 ]'
 check "and is listed with its reason" eval 'ncdump -v sweep_reason some.nc | grep -q "links = 1"'
 
+run template --grid l=0.08:0.12:5 --file warm.nc --json --jobs 2
+check "solutions of neighbours as starts: $(number held) of $(number warm)" eval \
+    '[ $code -eq 0 ] && [ "$(number solved)" = 5 ] && [ "$(number warm)" = 4 ] && [ "$(number held)" = 4 ]'
+# Bryson-Denham: 4 / (9 l) for l <= 1 / 6.
+check "the right optimum: $(values solver_objective warm.nc | head -n 1)" near "$(values solver_objective warm.nc | head -n 1)" 5.5555556 1e-4
+run template --cold --grid l=0.08:0.12:5 --file cold_template.nc --json --jobs 2
+check "and each from its own" eval '[ $code -eq 0 ] && [ "$(number solved)" = 5 ] && [ "$(number warm)" = 0 ]'
+
 if command -v mpirun >/dev/null; then
     root=
     [ "$(id -u)" -ne 0 ] || root=--allow-run-as-root

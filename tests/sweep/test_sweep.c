@@ -16,7 +16,8 @@
 #include "moray/app/sweep.h"
 
 static const double x_values[] = {-2, -1, 0, 1, 2, 3, 4}, y_values[] = {0.5, 1.5, 2.5};
-static const moray_sweep_axis axes[] = {{.key = "x", .value = x_values, .n = 7}, {.key = "y", .value = y_values, .n = 3}};
+static const moray_sweep_axis axes[] = {{.key = "x", .value = x_values, .n = 7},
+                                        {.key = "y", .value = y_values, .n = 3}};
 enum { points = 21 };
 
 static void nap(double seconds)
@@ -46,7 +47,8 @@ static moray_status solve(const moray_sweep_point *point, FILE *summary, void *s
         fclose(solution);
     }
     nap(seconds);
-    fprintf(summary, "{\"solver\": {\"objective\": %.17g}, \"branch\": %d, \"list\": [{\"model\": \"m\", \"twice\": %.17g}]}\n",
+    fprintf(summary,
+            "{\"solver\": {\"objective\": %.17g}, \"branch\": %d, \"list\": [{\"model\": \"m\", \"twice\": %.17g}]}\n",
             branch(which, x, y), which, 2 * x);
     return moray_ok();
 }
@@ -171,8 +173,10 @@ static void test_branches(void)
     moray_sweep_result result;
     spec.solve = solve_two;
     CHECK_OK(moray_sweep(&spec, &result), "sweep of two branches");
-    CHECK(result.solved == points && result.held == points - 4, "where a neighbour's start fails, the default one is "
-                                                                "tried: %ld of %ld held", result.held, result.warm);
+    CHECK(result.solved == points && result.held == points - 4,
+          "where a neighbour's start fails, the default one is "
+          "tried: %ld of %ld held",
+          result.held, result.warm);
     CHECK(result.improved > 0, "%ld points are bettered from a neighbour's branch", result.improved);
     double *objective = numbers("two.nc", "solver.objective", points), worst = 0;
     for (int k = 0; objective && k < points; k++) {
@@ -336,7 +340,8 @@ static void test_locks(void)
         _exit(moray_failed(moray_sweep(&spec, &result)));
     nap(0.3);
     const moray_status status = moray_sweep(&spec, &result);
-    CHECK(status.code == MORAY_INPUT && strstr(status.text, "another process"), "two at once are refused: %s", status.text);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "another process"), "two at once are refused: %s",
+          status.text);
     int ended;
     waitpid(pid, &ended, 0);
     CHECK(WIFEXITED(ended) && WEXITSTATUS(ended) == 0, "the first one is not disturbed");
@@ -376,8 +381,15 @@ static void test_draws(void)
 {
     const moray_sweep_range ranges[] = {{"a", 2, 3}, {"b", -1, 1}};
     enum { draws = 200 };
-    moray_sweep_spec spec = {.file = "draws.nc", .range = ranges, .ranges = 2, .draws = draws, .seed = 5, .solve = plain,
-                             .warm = true, .jobs = 2, .quiet = true};
+    moray_sweep_spec spec = {.file = "draws.nc",
+                             .range = ranges,
+                             .ranges = 2,
+                             .draws = draws,
+                             .seed = 5,
+                             .solve = plain,
+                             .warm = true,
+                             .jobs = 2,
+                             .quiet = true};
     moray_sweep_result result;
     CHECK_OK(moray_sweep(&spec, &result), "random draws");
     double *a = numbers("draws.nc", "a", draws), *b = numbers("draws.nc", "b", draws),

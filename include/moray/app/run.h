@@ -82,6 +82,13 @@ MORAY_API bool moray_interrupted(void);
         .help = "start from the solution in this file (solution.moray of --out, or a trajectory.csv) on a new mesh"    \
     }
 
+// The row of --solution FILE, for the solution without the other files of --out.
+#define MORAY_LEAVE(settings, field)                                                                                   \
+    {                                                                                                                  \
+        .flag = "solution", .argument = "FILE", .type = MORAY_OPTION_TEXT, MORAY_AT(settings, field),                  \
+        .help = "leave the solution in this file, as --out DIR leaves it in DIR/solution.moray"                        \
+    }
+
 // Of --continue and --guess, at most one. Error: MORAY_INPUT.
 MORAY_API moray_status moray_check_starts(const char *from_file, const char *guess_file);
 

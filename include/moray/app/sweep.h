@@ -47,10 +47,10 @@ typedef struct moray_sweep_point {
 typedef moray_status moray_sweep_fn(const moray_sweep_point *point, FILE *summary, void *self);
 
 typedef struct moray_sweep_spec {
-    const char *file;               // the results, NetCDF-4; beside it FILE.journal and FILE.solutions while it runs
-    const char *title, *command;    // for the file; NULL: none
-    const char *configuration;      // what else decides the results: one that differs cannot go on with the file
-    const moray_sweep_axis *axis;   // [axes]
+    const char *file;             // the results, NetCDF-4; beside it FILE.journal and FILE.solutions while it runs
+    const char *title, *command;  // for the file; NULL: none
+    const char *configuration;    // what else decides the results: one that differs cannot go on with the file
+    const moray_sweep_axis *axis; // [axes]
     int axes;
     const moray_sweep_range *range; // [ranges], drawn `draws` times: one more axis, "draw", the slowest
     int ranges;
@@ -58,14 +58,14 @@ typedef struct moray_sweep_spec {
     uint64_t seed;
     moray_sweep_fn *solve;
     void *self;
-    const char *objective; // number, by its path in the summary, that tells the better of two solutions: the lower
-    bool warm;             // starts from solved neighbours; and once more where a neighbour's branch is better
-    int jobs;              // processes without mpirun; < 1: one a processor
-    double point_seconds;  // of the clock, for one point; 0: no limit
+    const char *objective;  // number, by its path in the summary, that tells the better of two solutions: the lower
+    bool warm;              // starts from solved neighbours; and once more where a neighbour's branch is better
+    int jobs;               // processes without mpirun; < 1: one a processor
+    double point_seconds;   // of the clock, for one point; 0: no limit
     double point_megabytes; // of address space, for one point; 0: no limit
-    double save_seconds;   // at least so long between two savings of the file; 0: 30
+    double save_seconds;    // at least so long between two savings of the file; 0: 30
     bool quiet;
-    bool (*stop)(void);    // asked between points; true: ends early, and can be gone on with. NULL: never
+    bool (*stop)(void); // asked between points; true: ends early, and can be gone on with. NULL: never
 } moray_sweep_spec;
 
 // What came of it.
@@ -81,8 +81,9 @@ typedef struct moray_sweep_result {
 
 // Goes on where the file and its journal end, so that what is done is not done again; returns when all points have been
 // tried. SIGKILL at any time costs the points in flight. On ranks other than the first it works for the first, then
-// returns with *result all zero and `ranks` set. Error: MORAY_INPUT (spec; the file is of another sweep; another process
-// works on it), MORAY_IO (a disk that is full among them: what is there stays), MORAY_MEMORY, MORAY_INTERRUPTED.
+// returns with *result all zero and `ranks` set. Error: MORAY_INPUT (spec; the file is of another sweep; another
+// process works on it), MORAY_IO (a disk that is full among them: what is there stays), MORAY_MEMORY,
+// MORAY_INTERRUPTED.
 MORAY_API moray_status moray_sweep(const moray_sweep_spec *spec, moray_sweep_result *result);
 
 // The values of "low:high:count" or "v,v,...", numbers or words: points into text, which is changed and must stay.

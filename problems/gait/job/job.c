@@ -36,7 +36,8 @@ static const moray_option shared[] = {
      .help = "processes for what can be done at the same time; 0: one a processor"},
 };
 
-static const moray_option continuation = MORAY_CONTINUE(gait_job, from_file);
+static const moray_option continuation[2] = {MORAY_CONTINUE(gait_job, from_file),
+                                             MORAY_LEAVE(gait_job, solution_file)};
 
 // A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
 enum { usual_intervals = 12, effort_intervals = 80 };
@@ -268,7 +269,7 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
 {
     const moray_option_table common = {.rows = shared, .n = sizeof shared / sizeof *shared},
                              own = {.rows = program->options, .n = program->n_options},
-                             going_on = {.rows = &continuation, .n = program->work ? 0 : 1};
+                             going_on = {.rows = continuation, .n = program->work ? 0 : 2};
     const moray_option_group groups[] = {
         {&common, 0}, {&own, 0}, {&going_on, 0}, {&moray_snake_option_table, offsetof(gait_job, snake)}};
     const moray_program app = {.name = program->name,

@@ -60,7 +60,7 @@ struct gait_job {
     char over[MORAY_PATH_SIZE];      // names of rungs, with @VX,VY behind those in another current; empty: none
     int over_goal;                   // a moray_over_goal
     int jobs;                        // processes; 0: one a processor
-    char from_file[MORAY_PATH_SIZE]; // of --continue; empty: none
+    char from_file[MORAY_PATH_SIZE], solution_file[MORAY_PATH_SIZE]; // of --continue, --solution; empty: none
     moray_test_rig rig;
     moray_gait_trial paper;
     moray_status no_paper[2]; // by model: why it cannot be swum; ok where it is

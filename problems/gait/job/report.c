@@ -342,6 +342,8 @@ moray_status gait_job_report(gait_job *job)
     struct tables t;
     gait_job_page page;
     char title[100];
+    if (job->solution_file[0])
+        MORAY_TRY(moray_solution_save(last_stage(job)->solution, job->solution_file));
     make_tables(job, &t);
     MORAY_TRY(gait_job_page_new(job, &page));
     snprintf(title, sizeof title, "%s: %s", job->name,
