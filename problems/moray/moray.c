@@ -114,6 +114,11 @@ int main(int argc, char **argv)
         list(stdout);
         return written();
     }
+    if (strcmp(first, "--help=list") == 0) { // for programs that read it
+        for (int k = 0; k < N_PROGRAMS; k++)
+            printf("command\t%s\t%s\n", programs[k].name, programs[k].does);
+        return written();
+    }
     if (strcmp(first, "--version") == 0) {
         printf("moray %s\n", moray_version());
         return written();

@@ -118,7 +118,9 @@ static moray_status take_argument(reading *r, int key, const char *value)
     case KEY_SET:
         return take_set(r, value);
     case KEY_HELP:
-        r->arguments->request = MORAY_REQUEST_HELP;
+        if (value && strcmp(value, "list") != 0)
+            return moray_error(MORAY_INPUT, "--help = %.60s: must be nothing or list", *value ? value : "(empty)");
+        r->arguments->request = value ? MORAY_REQUEST_LIST : MORAY_REQUEST_HELP;
         return moray_ok();
     case KEY_VERSION:
         r->arguments->request = MORAY_REQUEST_VERSION;
@@ -155,7 +157,7 @@ static struct argp_option *flags_of(const moray_options *options)
                                              .key = KEY_ROWS + i,
                                              .arg = options->row[i].type == MORAY_OPTION_BOOL ? NULL : "VALUE"};
     flag[n++] = (struct argp_option){.name = "set", .key = KEY_SET, .arg = "KEY=VALUE"};
-    flag[n++] = (struct argp_option){.name = "help", .key = KEY_HELP};
+    flag[n++] = (struct argp_option){.name = "help", .key = KEY_HELP, .arg = "FORM", .flags = OPTION_ARG_OPTIONAL};
     flag[n++] = (struct argp_option){.name = "version", .key = KEY_VERSION};
     return flag;
 }

@@ -36,8 +36,7 @@ static void print_entry(FILE *file, const char *name, const char *text)
     print_wrapped(file, text, INDENT, INDENT);
 }
 
-// "--flag ARGUMENT" or "key=ARGUMENT".
-static void write_name(const moray_option *row, bool flag, char *name, size_t size)
+const char *moray_option_argument(const moray_option *row)
 {
     static const char *const by_type[] = {
         [MORAY_OPTION_LIMIT] = "X|none",   [MORAY_OPTION_INT] = "N",       [MORAY_OPTION_REAL] = "X",
@@ -45,26 +44,49 @@ static void write_name(const moray_option *row, bool flag, char *name, size_t si
         [MORAY_OPTION_RANGE] = "LOW:HIGH", [MORAY_OPTION_PAIR] = "X,Y",    [MORAY_OPTION_INI] = "FILE",
         [MORAY_OPTION_IPOPT] = "VALUE",
     };
-    const char *argument = row->argument ? row->argument : by_type[row->type];
+    return row->argument ? row->argument : by_type[row->type];
+}
+
+// "--flag ARGUMENT" or "key=ARGUMENT".
+static void write_name(const moray_option *row, bool flag, char *name, size_t size)
+{
+    const char *argument = moray_option_argument(row);
     if (flag && row->type == MORAY_OPTION_BOOL)
         snprintf(name, size, "--%s", row->flag);
     else
         snprintf(name, size, flag ? "--%s %s" : "%s=%s", flag ? row->flag : row->key, argument);
 }
 
-// What it is; what is allowed; default.
-static void print_row(FILE *file, const moray_option *row, bool flag, const void *settings)
+void moray_option_text(const moray_option *row, const void *settings, char text[MORAY_TEXT_SIZE])
 {
-    char name[80], text[700], allowed[MORAY_SHOWN_SIZE] = "", given[MORAY_SHOWN_SIZE] = "";
+    char allowed[MORAY_SHOWN_SIZE] = "", given[MORAY_SHOWN_SIZE] = "";
     if (row->type != MORAY_OPTION_TEXT && row->type != MORAY_OPTION_BOOL && row->type != MORAY_OPTION_INI &&
         row->type != MORAY_OPTION_IPOPT)
         moray_option_allowed(row, allowed);
     const bool shown = row->key && moray_option_default(row, settings, given);
-    snprintf(text, sizeof text, "%s%s%s%s%s", row->help, *allowed ? "; " : "", allowed, shown ? "; default " : "",
+    snprintf(text, MORAY_TEXT_SIZE, "%s%s%s%s%s", row->help, *allowed ? "; " : "", allowed, shown ? "; default " : "",
              shown ? given : "");
+}
+
+static void print_row(FILE *file, const moray_option *row, bool flag, const void *settings)
+{
+    char name[80], text[MORAY_TEXT_SIZE];
+    moray_option_text(row, settings, text);
     write_name(row, flag, name, sizeof name);
     print_entry(file, name, text);
 }
+
+const moray_fixed_flag moray_fixed_flags[] = {
+    {"set", "KEY=VALUE", "set any key of the lists below; may be repeated"},
+    {"help", NULL, "show this text"},
+    {"version", NULL, "show the version"},
+    {0},
+};
+const char *const moray_help_notes[] = {
+    "The INI file overrides the defaults, the command line overrides both.",
+    "Exit status: 0 solved and certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 interrupted.",
+    NULL,
+};
 
 static void print_flags(FILE *file, const moray_options *options, const void *settings)
 {
@@ -72,9 +94,12 @@ static void print_flags(FILE *file, const moray_options *options, const void *se
     for (int i = 0; i < options->n; i++)
         if (options->row[i].flag)
             print_row(file, &options->row[i], true, settings);
-    print_entry(file, "--set KEY=VALUE", "set any key of the lists below; may be repeated");
-    print_entry(file, "--help", "show this text");
-    print_entry(file, "--version", "show the version");
+    for (const moray_fixed_flag *one = moray_fixed_flags; one->flag; one++) {
+        char name[40];
+        snprintf(name, sizeof name, "--%s%s%s", one->flag, one->argument ? " " : "",
+                 one->argument ? one->argument : "");
+        print_entry(file, name, one->help);
+    }
 }
 
 static bool is_first_of_section(const moray_options *options, int at)
@@ -135,11 +160,8 @@ moray_status moray_app_help(const moray_program *program, const void *settings, 
         if (options.row[i].key && is_first_of_section(&options, i))
             print_section(file, &options, settings, options.row[i].section);
     fputc('\n', file);
-    print_wrapped(file, "The INI file overrides the defaults, the command line overrides both.", 0, 0);
-    print_wrapped(file,
-                  "Exit status: 0 solved and certified, 1 not solved, 2 bad usage or input, 3 certificate failed, 130 "
-                  "interrupted.",
-                  0, 0);
+    for (const char *const *note = moray_help_notes; *note; note++)
+        print_wrapped(file, *note, 0, 0);
     free(options.own);
     if (fflush(file) || ferror(file))
         return moray_error(MORAY_IO, "the help text cannot be written");

@@ -49,6 +49,17 @@ enum { MORAY_SHOWN_SIZE = 200 };
 void moray_option_allowed(const moray_option *row, char text[MORAY_SHOWN_SIZE]);
 bool moray_option_default(const moray_option *row, const void *settings, char text[MORAY_SHOWN_SIZE]);
 
+// What --help says of a row (what it is; what is allowed; its present value), the name of its argument, what it says of
+// the flags that no table has, and at the end.
+enum { MORAY_TEXT_SIZE = 700 };
+void moray_option_text(const moray_option *row, const void *settings, char text[MORAY_TEXT_SIZE]);
+const char *moray_option_argument(const moray_option *row);
+typedef struct moray_fixed_flag {
+    const char *flag, *argument, *help;
+} moray_fixed_flag;
+extern const moray_fixed_flag moray_fixed_flags[]; // ends with a zeroed one
+extern const char *const moray_help_notes[];       // ends with NULL
+
 // Whether the word is on the list, and the error that then names the nearest one.
 bool moray_word_known(const moray_words *words, const char *name);
 moray_status moray_word_unknown(const moray_words *words, const char *name);

@@ -31,6 +31,8 @@ static moray_status answer(const moray_program *program, const void *settings, m
 {
     if (request == MORAY_REQUEST_HELP)
         return moray_app_help(program, settings, stdout);
+    if (request == MORAY_REQUEST_LIST)
+        return moray_app_help_list(program, settings, stdout);
     printf("%s (moray) %s\n", program->name, moray_version());
     return moray_ok();
 }

@@ -116,7 +116,7 @@ typedef struct moray_program {
     const char *const *without; // flags of groups that it does not have, NULL-terminated; NULL: has all
 } moray_program;
 
-typedef enum { MORAY_REQUEST_RUN, MORAY_REQUEST_HELP, MORAY_REQUEST_VERSION } moray_request;
+typedef enum { MORAY_REQUEST_RUN, MORAY_REQUEST_HELP, MORAY_REQUEST_VERSION, MORAY_REQUEST_LIST } moray_request;
 
 // Fills the settings (a struct that begins with moray_common) from INI files, then from the command line, and finishes
 // every group. Writes nothing anywhere. With a request other than run the settings are as before.
@@ -127,6 +127,13 @@ MORAY_API moray_status moray_app_parse(const moray_program *program, int argc, c
 
 // Writes the --help text, with the settings' present values as defaults. Error: MORAY_MEMORY, MORAY_IO.
 MORAY_API moray_status moray_app_help(const moray_program *program, const void *settings, FILE *file);
+
+// The same for programs that read it (manual pages, completion of command lines; --help=list): a line for each thing,
+// fields by tabs, the last one is what --help says:
+//   program NAME TEXT;  word NAME TEXT;  flag NAME ARGUMENT VALUES TEXT;  key SECTION NAME ARGUMENT VALUES TEXT;  note TEXT
+// ARGUMENT is empty where a flag takes none; VALUES are what may be given, by blanks, where those are words.
+// Error: MORAY_MEMORY, MORAY_IO.
+MORAY_API moray_status moray_app_help_list(const moray_program *program, const void *settings, FILE *file);
 
 // A key of an INI file and what to write after its "=".
 typedef struct moray_ini_entry {
