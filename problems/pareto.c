@@ -33,8 +33,8 @@ static bool solved(const stage *at)
 
 static void show(pareto *run, const pareto_front *front, int k, const char *what)
 {
-    moray_ticker_show(&run->job.ticker, "pareto: %s model, %s, point %d of %d: %s", moray_model_name(front->model),
-                      pareto_kinds[front->kind], k + 1, front->n, what);
+    moray_ticker_show(&run->job.ticker, "pareto: front %d, %s model, %s, point %d of %d: %s", run->fronts,
+                      moray_model_name(front->model), pareto_kinds[front->kind], k + 1, front->n, what);
 }
 
 // The fastest gait of all, from the paper's gait or from that of another front; and from it, to and fro, the others.

@@ -95,7 +95,38 @@ configure_now() {
     quietly meson setup "$directory" "$root" "$@"
 }
 
-# build DIRECTORY TARGET...
+# build DIRECTORY TARGET...: a terminal sees Ninja count; elsewhere a line a minute says how far it is.
 build() {
-    locked "$1" quietly ninja -C "$@"
+    locked "$1" build_now "$@"
 }
+
+build_now() {
+    if [ -t 2 ]; then
+        ninja -C "$@" >&2 && return 0
+        say "failed: ninja -C $*"
+        return 1
+    fi
+    counted=$(mktemp) || return 1
+    say_count "$counted" &
+    if ninja -C "$@" >"$counted" 2>&1; then
+        rm -f "$counted"
+        return 0
+    fi
+    cat "$counted" >&2
+    rm -f "$counted"
+    say "failed: ninja -C $*"
+    return 1
+}
+
+# Until the file of Ninja's lines, "[3/12] ...", or this script is gone.
+say_count() {
+    waited=0
+    while [ -f "$1" ] && kill -0 $$ 2>/dev/null; do
+        sleep 1
+        waited=$((waited + 1))
+        if [ $((waited % 60)) -eq 0 ] && [ -f "$1" ]; then
+            say "Building: $(sed -n '$s/^\[\([0-9]*\)\/\([0-9]*\)\].*/\1 of \2/p' "$1"), $((waited / 60)) min"
+        fi
+    done
+} >/dev/null
+

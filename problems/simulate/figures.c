@@ -12,12 +12,13 @@ static moray_status draw_path(const simulate_results *results, moray_output *out
     double *x, *y;
     int n;
     MORAY_TRY(moray_swim_outline(track, results->swimmer, &x, &y, &n));
-    const moray_curve curves[] = {{.label = "robot, at equal intervals of time", .x = x, .y = y, .n = n},
-                                  {.label = "centre of mass",
-                                   .x = &track->pose->p_x,
-                                   .y = &track->pose->p_y,
-                                   .n = track->n,
-                                   .stride = sizeof *track->pose / sizeof(double)}};
+    const moray_curve curves[] = {
+        {.label = "robot, at equal intervals of time", .x = x, .y = y, .n = n, .style = MORAY_CURVE_BODY},
+        {.label = "centre of mass",
+         .x = &track->pose->p_x,
+         .y = &track->pose->p_y,
+         .n = track->n,
+         .stride = sizeof *track->pose / sizeof(double)}};
     const moray_status status = moray_output_figure(output, &(moray_figure){.name = "path",
                                                                             .title = "Path of the robot",
                                                                             .x_label = "x [m]",

@@ -28,7 +28,8 @@ moray_status moray_options_new(moray_options *options, const moray_program *prog
     int room = program->n_options + moray_common_table.n;
     for (int i = 0; i < program->n_groups; i++)
         room += program->groups[i].table->n;
-    *options = (moray_options){.own = calloc((size_t)room, sizeof *options->own), .words = program->words};
+    *options = (moray_options){
+        .own = calloc((size_t)room, sizeof *options->own), .words = program->words, .program = program->name};
     options->row = options->own;
     if (!options->own)
         return moray_error(MORAY_MEMORY, "no memory for the table of options");

@@ -13,6 +13,7 @@ typedef struct ini_state {
     void *settings;
     int *set_in_line;       // of each row; 0: not yet
     moray_ipopt_list ipopt; // what this file has set
+    bool words_given;       // before it was read
     moray_status status;
 } ini_state;
 
@@ -46,10 +47,30 @@ static moray_status set_ipopt(ini_state *state, const char *key, const char *val
     return moray_option_read(row, key, strchr(text, '.') + 1, state->settings);
 }
 
+// [run] of a run.ini: whose it is, and what it did unless the command line says so.
+static moray_status set_run(ini_state *state, const char *key, const char *value)
+{
+    const moray_words *words = state->options->words;
+    if (strcmp(key, "program") == 0 && strcmp(value, state->options->program) == 0)
+        return moray_ok();
+    if (strcmp(key, "program") == 0)
+        return moray_error(MORAY_INPUT, "program = %.60s: these are settings of that program, not of %s", value,
+                           state->options->program);
+    if (strcmp(key, "word") != 0 || !words)
+        return moray_error(MORAY_INPUT, "unknown key %.60s of [run]", key);
+    if (!moray_word_known(words, value))
+        return moray_word_unknown(words, value);
+    if (!state->words_given)
+        moray_word_mark(words, value, state->settings);
+    return moray_ok();
+}
+
 static moray_status set_key(ini_state *state, const char *section, const char *key, const char *value)
 {
     if (strcmp(section, "ipopt") == 0)
         return set_ipopt(state, key, value);
+    if (strcmp(section, "run") == 0)
+        return set_run(state, key, value);
     const moray_option *row = moray_option_find(state->options, key);
     if (!row)
         return moray_option_unknown(state->options, key);
@@ -91,6 +112,7 @@ moray_status moray_ini_read(const moray_options *options, const char *flag, cons
     char what[64];
     snprintf(what, sizeof what, "%s file", flag);
     ini_state state = {.options = options, .settings = settings, .status = moray_ok()};
+    state.words_given = options->words && !moray_failed(moray_words_check(options->words, settings));
     state.set_in_line = calloc((size_t)options->n, sizeof *state.set_in_line);
     moray_status status = state.set_in_line
                               ? moray_text_read(&state.text, path, what)

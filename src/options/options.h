@@ -11,6 +11,7 @@ typedef struct moray_options {
     const moray_option *row;
     int n;
     const moray_words *words; // NULL: none
+    const char *program;      // its name
     moray_option *own;        // the rows, where they were put together
 } moray_options;
 
@@ -83,6 +84,15 @@ typedef struct moray_arguments {
 
 // Values point into argv. Error: MORAY_INPUT, MORAY_MEMORY. free(item) in any case.
 moray_status moray_arguments_read(moray_arguments *arguments, const moray_options *options, int argc, char **argv);
+
+// Writes [run], which names the program and its words, and every key with its value; given[n] tells the rows that have
+// one. Then, when all is finished, what the others have become, as comments.
+void moray_options_write(const moray_options *options, const void *settings, FILE *file, bool *given);
+void moray_options_write_rest(const moray_options *options, const void *settings, FILE *file, const bool *given);
+
+// moray_app_parse that also writes both to *ini, to be freed with free(), where --out is given; else NULL.
+moray_status moray_options_parse(const moray_program *program, int argc, char **argv, void *settings,
+                                 moray_request *request, char **ini);
 
 // Sets the keys that the INI file of --flag gives. Error: MORAY_INPUT or MORAY_IO, with file and line.
 moray_status moray_ini_read(const moray_options *options, const char *flag, const char *path, void *settings);

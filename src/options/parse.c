@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "base/number.h"
+
 const char *moray_version(void)
 {
     return MORAY_VERSION;
@@ -46,20 +48,49 @@ static moray_status finish(const moray_program *program, void *settings)
     return moray_ok();
 }
 
+// Finishes the groups, and tells before and after what the settings are.
+static moray_status finish_telling(const moray_program *program, const moray_options *options, void *settings,
+                                   char **ini)
+{
+    const moray_common *common = settings;
+    size_t size;
+    if (!ini || !common->out[0])
+        return finish(program, settings);
+    bool *given = calloc((size_t)options->n, sizeof *given);
+    FILE *file = given ? open_memstream(ini, &size) : NULL;
+    moray_status status = moray_error(MORAY_MEMORY, "no memory for the settings");
+    if (file) {
+        const locale_t before = moray_c_locale_begin();
+        moray_options_write(options, settings, file, given);
+        status = finish(program, settings);
+        moray_options_write_rest(options, settings, file, given);
+        moray_c_locale_end(before);
+        fclose(file);
+    }
+    free(given);
+    return status;
+}
+
 // The command line is assigned before the files, so that its errors come first, and after them, to override them.
 static moray_status fill(const moray_program *program, const moray_options *options, const moray_arguments *arguments,
-                         void *settings)
+                         void *settings, char **ini)
 {
     MORAY_TRY(assign(options, arguments, settings));
+    MORAY_TRY(read_files(options, arguments, settings));
     if (options->words)
         MORAY_TRY(moray_words_check(options->words, settings));
-    MORAY_TRY(read_files(options, arguments, settings));
     MORAY_TRY(assign(options, arguments, settings));
-    return finish(program, settings);
+    return finish_telling(program, options, settings, ini);
 }
 
 moray_status moray_app_parse(const moray_program *program, int argc, char **argv, void *settings,
                              moray_request *request)
+{
+    return moray_options_parse(program, argc, argv, settings, request, NULL);
+}
+
+moray_status moray_options_parse(const moray_program *program, int argc, char **argv, void *settings,
+                                 moray_request *request, char **ini)
 {
     moray_common *common = settings;
     moray_options options;
@@ -70,7 +101,7 @@ moray_status moray_app_parse(const moray_program *program, int argc, char **argv
     if (!moray_failed(status) && *request == MORAY_REQUEST_RUN) {
         common->argc = argc;
         common->argv = argv;
-        status = fill(program, &options, &arguments, settings);
+        status = fill(program, &options, &arguments, settings, ini);
     }
     free(arguments.item);
     free(options.own);

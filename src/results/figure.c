@@ -67,6 +67,9 @@ static void write_curve(FILE *script, const moray_curve *curve, int number)
     case MORAY_CURVE_POINTS:
         fprintf(script, "with points ps 0.7 pt %d", looks[look].marker);
         break;
+    case MORAY_CURVE_BODY:
+        fputs("with lines lw 6", script);
+        break;
     }
     fprintf(script, " lc rgb '%s' title ", looks[look].colour);
     quote(script, curve->label);
@@ -157,6 +160,21 @@ static bool time_axis(const moray_figure *figure, double range[2])
     return figure->over_time && !figure->log_x && range[1] > range[0] && isfinite(range[1] - range[0]);
 }
 
+// Rows by name, the first one on top.
+static void write_names(FILE *script, const moray_figure *figure)
+{
+    if (!figure->n_y_names)
+        return;
+    fputs("set ytics (", script);
+    for (int i = 0; i < figure->n_y_names; i++) {
+        fputs(i ? ", " : "", script);
+        quote(script, figure->y_names[i]);
+        fprintf(script, " %d", i);
+    }
+    fprintf(script, ")\nset yrange [%g:-0.5]\nset yzeroaxis lt 1 lw 1 lc rgb '#555555'\n",
+            figure->n_y_names - 0.5);
+}
+
 static void write_time_axis(FILE *script, const moray_figure *figure)
 {
     double range[2];
@@ -183,6 +201,7 @@ static void write_script(FILE *script, const moray_figure *figure)
     if (figure->equal_axes)
         write_equal_axes(script, figure);
     write_time_axis(script, figure);
+    write_names(script, figure);
     set_text(script, "title", figure->title);
     set_text(script, "xlabel", figure->x_label);
     set_text(script, "ylabel", figure->y_label);

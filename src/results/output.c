@@ -24,7 +24,7 @@ struct moray_output {
     size_t made;                        // length of the topmost directory that we made, as a prefix of directory; or 0
     staged_file file[MOST_FILES];
     int n;
-    bool gnuplot_hangs;
+    bool gnuplot_hangs, summarised;
 };
 
 // mkdir -p that remembers the first directory it had to make; returns 0 or errno.
@@ -142,6 +142,11 @@ const char *moray_output_name(const moray_output *output, int i)
     return i < output->n ? output->file[i].name : NULL;
 }
 
+bool moray_output_summarised(const moray_output *output)
+{
+    return output->summarised;
+}
+
 bool *moray_output_gnuplot_hangs(moray_output *output)
 {
     return &output->gnuplot_hangs;
@@ -161,7 +166,7 @@ void moray_output_drop(moray_output *output)
     unlink(path_of(output, last->name, "new.", path));
 }
 
-static void discard(moray_output *output)
+void moray_output_discard(moray_output *output)
 {
     while (output->n)
         moray_output_drop(output);
@@ -219,12 +224,14 @@ moray_status moray_output_commit(moray_output *output)
     if (moray_failed(status)) {
         for (int i = 0; i < output->n; i++)
             take_back(output, &output->file[i]);
-        discard(output);
+        moray_output_discard(output);
         return status;
     }
-    for (int i = 0; i < output->n; i++)
+    for (int i = 0; i < output->n; i++) {
+        output->summarised = output->summarised || strcmp(output->file[i].name, "summary.json") == 0;
         if (output->file[i].replaces)
             unlink(path_of(output, output->file[i].name, "old.", old));
+    }
     output->n = 0;
     output->made = 0;
     unstage(output);
@@ -234,6 +241,6 @@ moray_status moray_output_commit(moray_output *output)
 void moray_output_free(moray_output *output)
 {
     if (output)
-        discard(output);
+        moray_output_discard(output);
     free(output);
 }

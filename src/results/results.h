@@ -17,6 +17,10 @@ FILE *moray_output_stream(const moray_output *output, int i);
 // Takes back the file started last.
 void moray_output_drop(moray_output *output);
 
+// Takes back all that is not committed; whether a summary.json is.
+void moray_output_discard(moray_output *output);
+bool moray_output_summarised(const moray_output *output);
+
 // Whether gnuplot had to be stopped: the pictures that follow do without it.
 bool *moray_output_gnuplot_hangs(moray_output *output);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "moray/app/program.h"
+#include "run/versions.h"
 
 moray_status moray_app_drawn(const moray_common *common, const char *name, moray_status drawn)
 {
@@ -16,6 +17,7 @@ static moray_status write_files(const moray_common *common, const moray_results 
     FILE *file;
     MORAY_TRY(moray_output_file(common->output, "summary.json", &file));
     MORAY_TRY(moray_json_write(json, file));
+    MORAY_TRY(moray_write_ini(common));
     if (results->write)
         MORAY_TRY(results->write(results->found, common->output));
     if (results->draw)
@@ -24,6 +26,7 @@ static moray_status write_files(const moray_common *common, const moray_results 
         moray_report report = *results->report;
         report.argc = common->argc;
         report.argv = common->argv;
+        report.configuration = common->ini;
         MORAY_TRY(moray_output_report(common->output, &report));
     }
     return moray_output_commit(common->output);

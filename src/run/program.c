@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "moray/app/program.h"
+#include "options/options.h"
+#include "results/results.h"
+#include "run/versions.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -67,7 +71,7 @@ bool moray_app_start(const moray_program *program, int argc, char **argv, void *
     hold_standard_streams();
     signal(SIGCHLD, SIG_DFL); // a parent that ignores it hands that on, and no child could be waited for
     before_start = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); // numbers have points, read and written
-    moray_status status = moray_app_parse(program, argc, argv, settings, &request);
+    moray_status status = moray_options_parse(program, argc, argv, settings, &request, &common->ini);
     if (!moray_failed(status) && request != MORAY_REQUEST_RUN)
         status = answer(program, settings, request);
     else if (!moray_failed(status) && common->out[0])
@@ -78,11 +82,38 @@ bool moray_app_start(const moray_program *program, int argc, char **argv, void *
     return false;
 }
 
+// A run that has nothing to show leaves why. Bad usage and an interruption are known to who caused them; what is shown
+// says it already.
+static moray_status leave_reason(const moray_program *program, const moray_common *common, moray_status status)
+{
+    const moray_exit exit_code = moray_exit_of(status.code);
+    FILE *file;
+    if (!common->output || exit_code == MORAY_EXIT_USAGE || exit_code == MORAY_EXIT_INTERRUPTED ||
+        moray_output_summarised(common->output))
+        return moray_ok();
+    moray_output_discard(common->output);
+    MORAY_TRY(moray_write_ini(common));
+    MORAY_TRY(moray_output_file(common->output, "summary.json", &file));
+    moray_json *json = moray_json_new();
+    moray_json_text(json, "problem", program->name);
+    moray_json_text(json, "version", moray_version());
+    moray_json_text(json, "status", "not solved");
+    moray_json_text(json, "reason", status.text);
+    moray_status written = moray_json_write(json, file);
+    moray_json_free(json);
+    return moray_failed(written) ? written : moray_output_commit(common->output);
+}
+
 int moray_app_end(const moray_program *program, void *settings, moray_status status)
 {
     moray_common *common = settings;
+    const moray_status left = moray_failed(status) ? leave_reason(program, common, status) : moray_ok();
+    if (moray_failed(left))
+        fprintf(stderr, "%s: %s\n", program->name, left.text);
     moray_output_free(common->output);
     common->output = NULL;
+    free(common->ini);
+    common->ini = NULL;
     const moray_status printed = finish_standard_output();
     if (moray_failed(printed))
         status = printed;

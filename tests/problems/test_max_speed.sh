@@ -22,7 +22,7 @@ check "a loss on the first-principles model is a negative gain" \
 for file in summary.json trajectory.csv start.svg report.html solution.moray; do
     check "--out has $file" [ -s results/$file ]
 done
-check "nothing else" [ "$(ls -A results | wc -l)" -eq 5 ]
+check "nothing else" [ "$(ls -A results | wc -l)" -eq 13 ]
 check "summary.json is what --json prints" cmp -s out results/summary.json
 check "the first line of trajectory.csv names and has units" \
     eval 'head -n 1 results/trajectory.csv | grep -q "^t \[s\],theta \[rad\],p_x \[m\]"'

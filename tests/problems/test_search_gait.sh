@@ -29,7 +29,7 @@ check "the global search ends at the best" [ "$(optimum 1 global_ends_here)" = t
 for file in summary.json trajectory.csv ridge.svg report.html; do
     check "--out has $file" [ -s results/$file ]
 done
-check "nothing else" [ "$(ls -A results | wc -l)" -eq 4 ]
+check "nothing else" [ "$(ls -A results | wc -l)" -eq 5 ]
 check "summary.json is what --json prints" cmp -s out results/summary.json
 
 check "two processes find what one does" same_by_jobs --set random_starts=3 --set global=none

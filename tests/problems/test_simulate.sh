@@ -114,7 +114,7 @@ found duration_s 220 0
 # Files.
 run --duration 3.03 --output-step 0.5 --model fp --links 5 --out files
 check "every file: $(ls files | tr '\n' ' ')" eval \
-    '[ "$(ls -A files | tr "\n" " ")" = "effort.svg heading.svg path.svg report.html summary.json trajectory.csv velocity.svg " ]'
+    '[ "$(ls -A files | tr "\n" " ")" = "effort.svg heading.svg path.svg report.html run.ini summary.json trajectory.csv velocity.svg " ]'
 check "trajectory.csv: a line of names, one an output step, one at the end" [ "$(wc -l <files/trajectory.csv)" -eq 9 ]
 check "trajectory.csv: pose, work, states, efforts" eval \
     'head -1 files/trajectory.csv | tr , "\n" | wc -l | grep -qx 22 && grep -q "energy \[J\],theta_1 \[rad\]" files/trajectory.csv'

@@ -73,6 +73,7 @@ typedef struct moray_common {
     bool json, quiet;
     char out[MORAY_PATH_SIZE];   // empty: none
     struct moray_output *output; // of --out, from moray_app_start; NULL without
+    char *ini;                   // the settings as an INI file that repeats the run, likewise
     int argc;                    // the command line
     char **argv;
 } moray_common;

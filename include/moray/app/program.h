@@ -27,9 +27,10 @@ MORAY_API moray_exit moray_exit_of(moray_code code);
 // thread's locale is C: numbers have points whatever the host has set.
 MORAY_API bool moray_app_start(const moray_program *program, int argc, char **argv, void *settings, int *exit_code);
 
-// Ends what moray_app_start began: a failed status becomes one line on standard error, an --out without commit leaves
-// nothing. Returns the exit code of the status; where standard output took not all that was printed, MORAY_EXIT_USAGE
-// with a line that says so.
+// Ends what moray_app_start began: a failed status becomes one line on standard error, an --out without a summary is
+// left run.ini and a summary.json with the reason, or where the usage was bad or the run interrupted nothing. Returns
+// the exit code of the status; where standard output took not all that was printed, MORAY_EXIT_USAGE with a line that
+// says so.
 MORAY_API int moray_app_end(const moray_program *program, void *settings, moray_status status);
 
 // ---- What a program found ------------------------------------------------------------------------------------------

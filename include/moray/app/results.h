@@ -109,7 +109,12 @@ MORAY_API void moray_csv_write(FILE *file, const moray_column *columns, int n_co
 
 // ---- Figures and report --------------------------------------------------------------------------------------------
 
-typedef enum { MORAY_CURVE_LINE, MORAY_CURVE_MARKED, MORAY_CURVE_POINTS } moray_curve_style;
+typedef enum {
+    MORAY_CURVE_LINE,
+    MORAY_CURVE_MARKED,
+    MORAY_CURVE_POINTS,
+    MORAY_CURVE_BODY
+} moray_curve_style; // body: a robot
 
 // Points (x[i * stride], y[i * stride]), i < n; a NaN interrupts the curve. stride 0 stands for 1.
 typedef struct moray_curve {
@@ -123,9 +128,11 @@ typedef struct moray_curve {
 typedef struct moray_figure {
     const char *name; // of the file, without .svg
     const char *title, *x_label, *y_label;
-    bool equal_axes;   // same scale on both axes, for paths in the plane
-    bool log_x, log_y; // logarithmic axes, for values above 0
-    bool over_time;    // x is time as the scene of the report has it: its cursor is shown
+    bool equal_axes;            // same scale on both axes, for paths in the plane
+    bool log_x, log_y;          // logarithmic axes, for values above 0
+    bool over_time;             // x is time as the scene of the report has it: its cursor is shown
+    const char *const *y_names; // [n_y_names] in place of y = 0, 1, ..., from the top; NULL: numbers
+    int n_y_names;
     const moray_curve *curves;
     int n_curves;
 } moray_figure;
@@ -195,14 +202,18 @@ MORAY_API moray_status moray_output_report(moray_output *output, const moray_rep
 
 // ---- Progress ------------------------------------------------------------------------------------------------------
 
-// One line rewritten in place; silent where the stream is no terminal or `quiet`.
+// One line rewritten in place on a terminal; elsewhere a plain line a minute; `quiet`: none. No colours.
 typedef struct moray_ticker {
     FILE *stream;
-    bool live;
+    bool live, plain; // rewritten in place; a line a minute
+    double started;   // [s]
 } moray_ticker;
 
 MORAY_API moray_ticker moray_ticker_start(FILE *stream, bool quiet);
 MORAY_API void moray_ticker_show(const moray_ticker *ticker, const char *format, ...) MORAY_PRINTF(2, 3);
+// The same with "3 of 12, some 4 min left" behind it, by what the `done` so far have taken since the start.
+MORAY_API void moray_ticker_count(const moray_ticker *ticker, int done, int of, const char *format, ...)
+    MORAY_PRINTF(4, 5);
 // A line that stays, above the one rewritten.
 MORAY_API void moray_ticker_note(const moray_ticker *ticker, const char *format, ...) MORAY_PRINTF(2, 3);
 MORAY_API void moray_ticker_end(const moray_ticker *ticker); // erases the line

@@ -237,6 +237,9 @@ typedef struct gait_job_page {
 } gait_job_page;
 moray_status gait_job_page_new(gait_job *job, gait_job_page *page);
 
+// Figures of the recommended gait over a period, and of the ladder. Error: MORAY_MEMORY, those of moray_output_figure.
+moray_status gait_job_draw_gait(const gait_job *job, moray_output *output);
+
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);
 

@@ -330,6 +330,13 @@ static moray_status draw_start(const void *found, moray_output *output)
     return status;
 }
 
+// What is seen first of the proof, then of the gait.
+static moray_status draw(const void *found, moray_output *output)
+{
+    MORAY_TRY(draw_start(found, output));
+    return gait_job_draw_gait(found, output);
+}
+
 static moray_status write(const void *found, moray_output *output)
 {
     const gait_job *job = found;
@@ -363,7 +370,7 @@ moray_status gait_job_report(gait_job *job)
                                                                               .summary = gait_job_summary,
                                                                               .print = print,
                                                                               .write = write,
-                                                                              .draw = draw_start,
+                                                                              .draw = draw,
                                                                               .report = &report});
     moray_swim_scene_free(&page.scene);
     return status;

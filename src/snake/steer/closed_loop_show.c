@@ -65,7 +65,8 @@ moray_status moray_swim_closed_loop_draw_path(moray_output *output, const moray_
                                     .y = &closed_loops[k].track.pose->p_y,
                                     .n = closed_loops[k].track.n,
                                     .stride = sizeof(moray_pose) / sizeof(double)};
-    all[used++] = (moray_curve){.label = "the robot on the last of these", .x = x, .y = y, .n = points};
+    all[used++] = (moray_curve){
+        .label = "the robot on the last of these", .x = x, .y = y, .n = points, .style = MORAY_CURVE_BODY};
     if (current[0] != 0 || current[1] != 0) {
         make_arrow(current, all, used, arrow_x, arrow_y);
         snprintf(label, sizeof label, "current, %.3g m/s", hypot(current[0], current[1]));

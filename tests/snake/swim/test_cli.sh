@@ -72,13 +72,14 @@ check "the table is what a human gets" eval '[ $code -eq 0 ] && grep -q "^delta 
 mkdir kept && echo old >kept/trajectory.csv
 run --set ending=unsolved --json --out kept
 check "not solved: exit 1, a line that says why" eval '[ $code -eq 1 ] && one_line && grep -q "speed hurts most" err'
-check "not solved: earlier results stay, no others come" eval '[ "$(ls -A kept)" = trajectory.csv ] && grep -q old kept/trajectory.csv'
+check "not solved: earlier results stay, the reason comes" eval '[ "$(ls -A kept | tr "\n" " ")" = "run.ini summary.json trajectory.csv " ] &&
+    grep -q old kept/trajectory.csv && grep -q "\"reason\":.*speed hurts most" kept/summary.json'
 run --set ending=unsolved --out made/deep
-check "not solved: no directory is left" [ ! -e made ]
+check "not solved: a directory with the reason is left" eval '[ "$(ls -A made/deep | tr "\n" " ")" = "run.ini summary.json " ]'
 run --set ending=interrupted
 check "interrupted: exit 130" [ $code -eq 130 ]
 run --out kept --json
-check "solved: exit 0 and all files" eval '[ $code -eq 0 ] && [ "$(ls -A kept | tr "\n" " ")" = "position.svg report.html trajectory.csv " ]'
+check "solved: exit 0 and all files" eval '[ $code -eq 0 ] && [ "$(ls -A kept | tr "\n" " ")" = "position.svg report.html run.ini summary.json trajectory.csv " ]'
 check "new files in the place of old ones" grep -q '^t \[s\],x \[m\]$' kept/trajectory.csv
 mkdir bin
 PATH=$work/bin run --out plain

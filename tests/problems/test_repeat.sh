@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+# Every run leaves run.ini, and --config run.ini does the same again. Arguments: the folder of the programs, the source
+# directory.
+programs=$1
+case $programs in
+/*) ;;
+*) programs=$PWD/$programs ;;
+esac
+set -- "$programs/simulate" "$2"
+. "$2/tests/program.sh"
+
+# numbers FOLDER: the summary without what is measured by the clock.
+numbers() {
+    grep -v -E '"[a-z_]*(time|seconds|longest|_ms)[a-z_]*"' "$1/summary.json"
+}
+
+# twice NAME ARGUMENTS: a run, and the same by the file that it left.
+twice() {
+    name=$1
+    program=$programs/$1
+    shift
+    run "$@" --quiet --out "$name.one"
+    check "$name: $(head -1 err)" [ $code -eq 0 ]
+    check "$name: run.ini has no place of its own" eval '! grep -q "$work" "$name.one/run.ini"'
+    run --config "$name.one/run.ini" --quiet --out "$name.two"
+    check "$name: the same again: $(head -1 err)" [ $code -eq 0 ]
+    numbers "$name.one" >one
+    numbers "$name.two" >two
+    check "$name: to the digit: $(diff one two | head -3 | tr '\n' ' ')" eval '[ -s one ] && cmp one two'
+    check "$name: with the same settings" cmp "$name.one/run.ini" "$name.two/run.ini"
+    check "$name: the page has them" grep -q "^program = $name" "$name.one/report.html"
+}
+
+twice simulate --current 0.1,0 --links 7 --set duration_s=3 --set theta_max_deg=17.3 --set c_n=8.123456789012345
+twice max_speed --model control --set theta_max_deg=10:17.7 --set ipopt.mu_strategy=adaptive
+twice classics brachistochrone --set tol=1e-9
+twice paper mapping --current 0.07,0.1
+if thorough; then
+    twice min_energy --model control
+    twice ladder
+    twice min_time_turn --model control
+    twice heading_tracking --model control --set starts=1 --set evaluations=2 --set intervals_per_period=4
+fi
+cp simulate.one/run.ini other.ini
+program=$programs/max_speed
+run --config other.ini
+check "a run of another program is refused: $(cat err)" eval '[ $code -eq 2 ] && grep -q "are settings of that program" err'
+program=$programs/max_speed
+run --model control --set power_W=1e-9 --quiet --out failed
+check "a run that fails: exit $code: $(head -1 err)" [ $code -eq 1 ]
+check "leaves its reason and its settings" eval '[ "$(ls -A failed | tr "\n" " ")" = "run.ini summary.json " ] &&
+    grep -q "\"status\":.*not solved" failed/summary.json && grep -q "\"reason\":" failed/summary.json'
+tap_done
