@@ -7,7 +7,7 @@
 
 #include "classics.h"
 
-enum { samples = CLASSIC_PARTS + 1, max_phases = 4, max_states = 8, max_controls = 4 };
+enum { samples = CLASSIC_PARTS + 1, max_phases = 5, max_states = 8, max_controls = 4 };
 
 // ---- Problems of one phase -----------------------------------------------------------------------------------------
 

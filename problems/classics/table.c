@@ -41,7 +41,13 @@
     X(gas_oil)                                                                                                         \
     X(marine_population)                                                                                               \
     X(methanol)                                                                                                        \
-    X(alpha_pinene)
+    X(alpha_pinene)                                                                                                    \
+    X(bioreactor)                                                                                                      \
+    X(tuberculosis)                                                                                                    \
+    X(robertson)                                                                                                       \
+    X(balanced_field)                                                                                                  \
+    X(electric_vehicle)                                                                                                \
+    X(pendulum)
 
 #define DECLARE(name) extern const struct classic classic_##name;
 CLASSICS(DECLARE)

@@ -12,8 +12,10 @@ enum { most_widenings = 8 }; // in all: each needs a place where a function depe
 struct campaign {
     const moray_ocp *ocp;
     const moray_settings *settings;
+    const moray_guess *guess; // of the user; NULL: from the bounds
     moray_family family;
-    int stages; // of new intervals
+    bool left[MORAY_GAUSS + 1]; // families that showed themselves wrong for the problem
+    int stages;                 // of new intervals
     struct mesh *meshes;
     moray_mesh_record *history; // becomes the solution's
     int tried, widenings, escapes;

@@ -7,9 +7,12 @@
 #include "ocp/refine.h"
 #include "ocp/ringing.h"
 
-static const double falls = 0.9; // of the least error before: what counts as less
-enum { patience = 8 };           // meshes in a row whose error is no less
-enum { smooth_stages = 3 };      // of Radau, where Lobatto rings
+static const double falls = 0.9;  // of the least error before: what counts as less
+static const double rings = 0.05; // of the error before: what finer meshes at least leave where a control rings
+static const double nearly = 100; // of the mesh tolerance: an error that refinement will soon have down
+static const double nonsense = 1; // error of a mesh whose solution is no start for the next
+enum { patience = 8 };            // meshes in a row whose error is no less
+enum { smooth_stages = 3 };       // of the family that takes over where another fails
 
 moray_settings moray_settings_default(void)
 {
@@ -95,22 +98,41 @@ static int intervals_at_first(const struct campaign *c)
     return intervals > 1 ? intervals : 1;
 }
 
-// Where a control rings on this mesh as on the one before, the meshes in c become those of the start, with Radau.
-static moray_status leave_ringing(struct campaign *c, const moray_solution *solution)
+// Radau damps what stiff equations or index-3 constraints do to others; on some singular arcs it is Radau that rings,
+// and Gauss that does not.
+static bool find_other_family(struct campaign *c, moray_family *other)
 {
-    const int ringing = moray_is_solved(solution) ? moray_find_ringing(solution) : 0;
-    const bool again = c->family == MORAY_LOBATTO && ringing > 0 && c->tried > 1 && c->history[c->tried - 2].seen > 0;
-    c->history[c->tried - 1].seen = ringing;
-    if (!again)
-        return moray_ok();
-    c->history[c->tried - 1].ringing = ringing;
-    c->family = MORAY_RADAU;
+    c->left[c->family] = true;
+    *other = c->left[MORAY_RADAU] ? MORAY_GAUSS : MORAY_RADAU;
+    return !c->left[*other];
+}
+
+// The meshes in c become those of the start, with another family.
+static moray_status change_family(struct campaign *c, moray_family family)
+{
+    c->history[c->tried - 1].changed_to = family == MORAY_RADAU ? "radau3" : "gauss3";
+    c->family = family;
     c->stages = smooth_stages;
     c->vain = 0;
     free_meshes(c);
     for (int p = 0; p < c->ocp->phases; p++)
         MORAY_TRY(first_mesh(c, p, intervals_at_first(c)));
     return moray_ok();
+}
+
+// Where a control goes to and fro on this mesh as on the one before, and that is no better for being finer.
+static moray_status leave_ringing(struct campaign *c, const moray_solution *solution)
+{
+    moray_mesh_record *here = &c->history[c->tried - 1], *before = here - 1;
+    moray_family other;
+    here->seen = moray_is_solved(solution) ? moray_find_ringing(solution) : 0;
+    const bool again = here->seen > 0 && c->tried > 1 && before->seen > 0 && !before->changed_to &&
+                       here->error > rings * before->error &&
+                       fmin(here->error, before->error) > nearly * c->settings->mesh_tolerance;
+    if (!again || !find_other_family(c, &other))
+        return moray_ok();
+    here->ringing = here->seen;
+    return change_family(c, other);
 }
 
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
@@ -151,7 +173,7 @@ static moray_status solve_finer(struct campaign *c, moray_solution **solution, b
 {
     moray_solution *old = *solution, *finer;
     const moray_guess guess = moray_guess_from_solution(old);
-    MORAY_TRY(moray_campaign_solve(c, &guess, &finer));
+    MORAY_TRY(moray_campaign_solve(c, c->best_error < nonsense ? &guess : c->guess, &finer));
     moray_status status = record_and_refine(c, finer, again);
     if (finer->info.outcome == MORAY_NLP_INTERRUPTED)
         c->best->info.outcome = MORAY_NLP_INTERRUPTED;
@@ -204,7 +226,7 @@ static moray_status run_campaign(struct campaign *c, const moray_guess *guess, m
 moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
                          moray_solution **solution)
 {
-    struct campaign c = {.ocp = ocp, .settings = settings};
+    struct campaign c = {.ocp = ocp, .settings = settings, .guess = guess};
     *solution = NULL;
     MORAY_TRY(check_settings(settings, guess));
     moray_status status = first_meshes(&c, guess);

@@ -11,7 +11,7 @@
 #include "ocp/certificate/saddle.h"
 #include "ocp/widen.h"
 
-static const double worst_warm_error = 1e-3;
+static const double worst_warm_error = 1e-2;
 static const double least_seconds = 1e-3; // of a solve that is begun
 
 moray_status moray_allocate_iterate(moray_solution *solution)

@@ -4,12 +4,22 @@
 #include "tap.h"
 
 #include <string.h>
+#include <tgmath.h>
 
 #include "classics/classics.h"
+#include "moray/sim.h"
 #include "rk4.h"
 
 static const int rk4_steps = 40;
 static const moray_integrator rk4 = {rk4_run, &rk4_steps};
+
+// Robertson's reaction is too stiff for the explicit one.
+static moray_integrator integrator_of(const struct classic *classic)
+{
+    static moray_sim_settings stiff;
+    stiff = moray_sim_settings_default();
+    return strcmp(classic->name, "robertson") == 0 ? moray_sim_integrator(&stiff) : rk4;
+}
 
 // Too long for here; problems/classics solves them.
 static const char *const long_ones[] = {
@@ -29,7 +39,9 @@ static void test_one(const struct classic *classic)
     struct classic_result result;
     char diagnosis[600];
     const moray_settings settings = classic_settings(classic);
-    const moray_status status = classic_solve(classic, &settings, &rk4, &result, diagnosis, (int)sizeof diagnosis);
+    const moray_integrator integrator = integrator_of(classic);
+    const moray_status status =
+        classic_solve(classic, &settings, &integrator, &result, diagnosis, (int)sizeof diagnosis);
     if (!CHECK(!moray_failed(status), "%s: %s", classic->name, status.text))
         return;
     if (!classic->published) {
@@ -78,6 +90,65 @@ static void test_ringing(void)
     CHECK(result.mesh[result.meshes - 1].nodes < 200, "%d nodes resolve it", result.mesh[result.meshes - 1].nodes);
 }
 
+// x^2 + y^2 = 1 by x = cos a, y = sin a: the index-3 pendulum without its constraint and its tension.
+static void swing(const moray_node *at, moray_rates *out, const void *data)
+{
+    const moray_num a = at->x[0], u = at->u[0];
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = -9.81 * cos(a) - u;
+    out->g[0] = u * u;
+}
+
+static void test_pendulum_in_polar_coordinates(void)
+{
+    const moray_phase_spec phase = {.name = "swing",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = swing,
+                                    .tf = moray_fixed(3),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(-M_PI / 2), moray_fixed(0))};
+    const struct classic *classic = classic_find("pendulum");
+    moray_settings settings = classic_settings(classic);
+    moray_ocp *ocp;
+    moray_solution *solution;
+    settings.scheme = "radau5";
+    settings.intervals = 40;
+    CHECK_OK(classic_new(&ocp, "polar", &phase, classic_first_integral, NULL), "in polar coordinates");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    CHECK_NEAR(moray_solution_objective(solution), strtod(classic->computed, NULL), 1e-7, "the pendulum's optimum");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// Where one family rings or fails, another takes over: Gauss on a bioreactor's singular arc, Radau on a rocket's.
+static void test_changes_of_family(void)
+{
+    static const struct {
+        const char *name, *scheme, *changed_to;
+    } cases[] = {{"bioreactor", "gauss3", "radau3"},
+                 {"goddard", "radau3", "gauss3"},
+                 {"goddard", "hermite-simpson", "radau3"},
+                 {"robertson", "hermite-simpson", NULL},
+                 {"goddard", "gauss3", NULL}};
+    for (unsigned k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct classic_result result;
+        const struct classic *classic = classic_find(cases[k].name);
+        moray_settings settings = classic_settings(classic);
+        const moray_integrator integrator = integrator_of(classic);
+        settings.scheme = cases[k].scheme;
+        CHECK_OK(classic_solve(classic, &settings, &integrator, &result, NULL, 0), classic->name);
+        const char *changed_to = NULL;
+        for (int m = 0; m < result.meshes && !changed_to; m++)
+            changed_to = result.mesh[m].changed_to;
+        CHECK(cases[k].changed_to ? changed_to && strcmp(changed_to, cases[k].changed_to) == 0 : !changed_to,
+              "%s from %s: %s", classic->name, cases[k].scheme, changed_to ? changed_to : "stays");
+        CHECK(result.agrees && result.certificate.pass, "%.10g, and passes: %s", result.value, result.certificate.why);
+    }
+}
+
 static void test_unsolved(void)
 {
     struct classic_result result;
@@ -119,6 +190,8 @@ int main(void)
     CHECK(n >= 20, "%d problems in the table", n);
     test_mesh_history();
     test_ringing();
+    test_changes_of_family();
+    test_pendulum_in_polar_coordinates();
     test_unsolved();
     test_judgement();
     return tap_done();

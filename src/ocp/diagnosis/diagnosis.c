@@ -148,8 +148,8 @@ static void say_ringing(moray_solution *solution, const moray_mesh_record *mesh)
     moray_phase_input_name(ocp, p, ocp->phase[p].nx + control, name, sizeof name);
     moray_diagnosis_say(solution,
                         "On %d intervals the %s of phase %.100s went to and fro from node to node, as on fewer: a "
-                        "singular arc, on which this scheme rings; changed to radau3.\n",
-                        mesh->intervals, name, ocp->phase[p].name);
+                        "singular arc, on which this scheme rings; changed to %s.\n",
+                        mesh->intervals, name, ocp->phase[p].name, mesh->changed_to);
 }
 
 static void say_meshes(moray_solution *solution, const moray_mesh_record *tried)
