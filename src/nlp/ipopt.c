@@ -19,11 +19,13 @@ struct session {
     const moray_nlp *nlp;
     const moray_nlp_settings *settings;
     moray_nlp_info *info;
-    double *last; // [n] where the Jacobian was last asked for: the iterate, when an iteration is reported
-    double *best; // [n] the iterate of the least violation, then objective
+    double *last;   // [n] where the Jacobian was last asked for: the iterate, when an iteration is reported
+    double *best;   // [n] the iterate of the least violation, then objective
+    double *bounds; // [2 n + 2 m] as Ipopt gets them
     double best_violation, best_objective;
 };
 
+static const double give = 1e-8; // of a bound, relative to its size: Ipopt's own
 static const double as_good_as_feasible = 1e-6;
 
 enum { eval_objective, eval_gradient, eval_constraints, eval_jacobian, eval_hessian };
@@ -207,6 +209,21 @@ static moray_status judge(enum ApplicationReturnStatus code, const struct sessio
     return moray_ok();
 }
 
+// Back within the bounds as they were given.
+static void restore(const moray_nlp *nlp, moray_iterate *iterate)
+{
+    bool moved = false;
+    for (int j = 0; j < nlp->n; j++) {
+        const double x = iterate->x[j];
+        iterate->x[j] = fmin(fmax(x, nlp->x_lower[j]), nlp->x_upper[j]);
+        moved = moved || iterate->x[j] != x;
+    }
+    if (!moved)
+        return;
+    nlp->constraints(nlp->self, iterate->x, true, iterate->g);
+    nlp->objective(nlp->self, iterate->x, false, &iterate->objective);
+}
+
 static moray_status run(IpoptProblem problem, struct session *session, moray_iterate *iterate, struct ipopt_logs *logs,
                         enum ApplicationReturnStatus *code)
 {
@@ -215,7 +232,31 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
                        iterate->z_upper, session);
     session->info->outcome = outcome_of(*code);
     take_best(session, iterate);
+    restore(session->nlp, iterate);
     return moray_ok();
+}
+
+// Bounds give way by what the solver's tolerance means in their size: Ipopt itself would take that of 1, which in small
+// units is a different problem. Fixed ones stay.
+static void relax(const double *lower, const double *upper, const double *scale, int n, double *low, double *high)
+{
+    for (int j = 0; j < n; j++) {
+        const double size = scale ? 1 / scale[j] : 1;
+        const bool fixed = lower[j] == upper[j];
+        low[j] = fixed || lower[j] <= -MORAY_INFINITY ? lower[j] : lower[j] - give * fmax(size, fabs(lower[j]));
+        high[j] = fixed || upper[j] >= MORAY_INFINITY ? upper[j] : upper[j] + give * fmax(size, fabs(upper[j]));
+    }
+}
+
+// bounds: [2 n + 2 m], filled.
+static IpoptProblem create(const moray_nlp *nlp, double *bounds)
+{
+    const int n = nlp->n, m = nlp->m;
+    double *low = bounds, *high = low + n, *g_low = high + n, *g_high = g_low + m;
+    relax(nlp->x_lower, nlp->x_upper, nlp->x_scale, n, low, high);
+    relax(nlp->g_lower, nlp->g_upper, nlp->g_scale, m, g_low, g_high);
+    return CreateIpoptProblem(n, low, high, m, g_low, g_high, nlp->nnz_jac, nlp->nnz_hess, 0, on_objective,
+                              on_constraints, on_gradient, on_jacobian, on_hessian); // which copies the bounds
 }
 
 // With the linear solver that session->info names.
@@ -229,11 +270,7 @@ static moray_status solve_with(struct session *session, moray_iterate *iterate)
         moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
     if (alone)
         moray_mumps_lock();
-    // Ipopt copies the bounds.
-    IpoptProblem problem =
-        CreateIpoptProblem(nlp->n, moray_for_ipopt(nlp->x_lower), moray_for_ipopt(nlp->x_upper), nlp->m,
-                           moray_for_ipopt(nlp->g_lower), moray_for_ipopt(nlp->g_upper), nlp->nnz_jac, nlp->nnz_hess, 0,
-                           on_objective, on_constraints, on_gradient, on_jacobian, on_hessian);
+    IpoptProblem problem = create(nlp, session->bounds);
     if (problem) {
         status = run(problem, session, iterate, &logs, &code);
         FreeIpoptProblem(problem); // writes the rest of the logs
@@ -297,10 +334,10 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
         return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
     const double wall_start = now(CLOCK_MONOTONIC), cpu_start = cpu();
-    double *block = calloc(5 * n + m + 1, sizeof *block);
+    double *block = calloc(7 * n + 3 * m + 1, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for %d variables", nlp->n);
-    struct session session = {nlp, settings, info, block, block + n, INFINITY, INFINITY};
+    struct session session = {nlp, settings, info, block, block + n, block + 5 * n + m, INFINITY, INFINITY};
     moray_iterate start = {
         .x = block + 2 * n, .z_lower = block + 3 * n, .z_upper = block + 4 * n, .lambda = block + 5 * n};
     copy_iterate(nlp, iterate, &start);

@@ -50,6 +50,7 @@ bool moray_ipopt_set_options(IpoptProblem problem, const moray_nlp *nlp, const m
     ok = ok && AddIpoptStrOption(problem, (char *)"sb", (char *)"yes");            // no banner
     if (settings->barrier > 0)
         ok = ok && AddIpoptNumOption(problem, (char *)"mu_init", settings->barrier);
+    ok = ok && AddIpoptNumOption(problem, (char *)"bound_relax_factor", 0); // ours are relaxed in their own sizes
     ok = ok && set_linear_solver(problem, nlp, solver, work);
     if (nlp->x_scale || nlp->g_scale || nlp->f_scale != 0) {
         ok = ok && AddIpoptStrOption(problem, (char *)"nlp_scaling_method", (char *)"user-scaling");

@@ -12,6 +12,7 @@
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-2;
+static const double out_of_scale = 1e-3, nothing = 1e-9; // of what a duration was scaled by
 static const double least_seconds = 1e-3; // of a solve that is begun
 
 moray_status moray_allocate_iterate(moray_solution *solution)
@@ -55,6 +56,36 @@ static bool can_start_warm(const moray_solution *solution, const moray_guess *gu
            from->history[from->meshes - 1].error < worst_warm_error;
 }
 
+// Whether a duration that was found is far smaller than what it was scaled by: a guess of one unit of time, where
+// nothing better is known.
+static bool is_out_of_scale(const moray_solution *solution)
+{
+    const struct transcription *t = solution->transcription;
+    for (int p = 0; p < t->ocp->phases; p++) {
+        double t0, tf;
+        const int column = t->layout.phase[p].tf;
+        moray_layout_span(&t->layout, t->ocp, solution->iterate.x, p, &t0, &tf);
+        const double scaled = column >= 0 ? (tf - t0) * t->nlp.x_scale[column] : 1;
+        if (scaled < out_of_scale && scaled > nothing)
+            return true;
+    }
+    return false;
+}
+
+// Once more from the solution, with scales of its own.
+static moray_status solve_in_scale(moray_solution *solution)
+{
+    struct transcription *t = solution->transcription;
+    const moray_nlp_settings settings = solver_settings(&solution->settings, true);
+    const moray_nlp_info first = solution->info;
+    MORAY_TRY(moray_choose_scales(t, solution->iterate.x));
+    MORAY_TRY(moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info));
+    solution->info.iterations += first.iterations;
+    solution->info.seconds += first.seconds;
+    solution->info.cpu_seconds += first.cpu_seconds;
+    return moray_ok();
+}
+
 static moray_status run_solver(moray_solution *solution, const moray_guess *guess, bool warm)
 {
     struct transcription *t = solution->transcription;
@@ -68,7 +99,10 @@ static moray_status run_solver(moray_solution *solution, const moray_guess *gues
     if (warm)
         MORAY_TRY(moray_carry_multipliers(guess, solution));
     moray_fit_be_gauss_newton(t, solution->settings.gauss_newton);
-    const moray_status status = moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
+    moray_status status = moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
+    if (!moray_failed(status) && solution->settings.own_scaling && moray_is_solved(solution) &&
+        is_out_of_scale(solution))
+        status = solve_in_scale(solution);
     moray_fit_be_gauss_newton(t, false); // what comes after asks for the true curvature
     return status;
 }
