@@ -236,12 +236,12 @@ static moray_status run(IpoptProblem problem, struct session *session, moray_ite
     return moray_ok();
 }
 
-// Bounds give way by what the solver's tolerance means in their size: Ipopt itself would take that of 1, which in small
-// units is a different problem. Fixed ones stay.
+// Bounds give way as in Ipopt, but in their own size where that is less than 1: in small units, 1 is another problem.
+// Fixed ones stay.
 static void relax(const double *lower, const double *upper, const double *scale, int n, double *low, double *high)
 {
     for (int j = 0; j < n; j++) {
-        const double size = scale ? 1 / scale[j] : 1;
+        const double size = scale ? fmin(1 / scale[j], 1) : 1;
         const bool fixed = lower[j] == upper[j];
         low[j] = fixed || lower[j] <= -MORAY_INFINITY ? lower[j] : lower[j] - give * fmax(size, fabs(lower[j]));
         high[j] = fixed || upper[j] >= MORAY_INFINITY ? upper[j] : upper[j] + give * fmax(size, fabs(upper[j]));
