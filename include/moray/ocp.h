@@ -391,8 +391,9 @@ MORAY_API moray_status moray_solution_failure(const moray_solution *solution);
 typedef struct moray_certificate {
     bool pass;
     double kkt;           // larger of: what the first-order conditions leave of the objective to gain, relative to what
-                          // it moves by where all that it depends on moves by its size; and the largest violation of a
-                          // row or bound relative to its size. Limit MORAY_LIMIT_KKT
+                          // it moves by where all that it depends on moves by its size; the largest violation of a row
+                          // or bound relative to its size; and what the solution's objective is from that of its
+                          // trajectory. Limit MORAY_LIMIT_KKT
     double mesh_error;    // largest over intervals of integral |x~' - f(x~, u~)| / (size + max |x|), and of the same of
                           // integrands g and integrals q; limit mesh_tolerance
     double between_nodes; // largest violation of bounds and path constraints between nodes, / (size + |bound|); limit

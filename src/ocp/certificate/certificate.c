@@ -84,7 +84,7 @@ static moray_status gather(struct verdict *v, const moray_integrator *integrator
     moray_status status = question_witness(v, &w, integrator);
     moray_witness_free(&w);
     MORAY_TRY(status);
-    v->c->kkt = fmax(v->optimality.improvement, v->optimality.feasibility);
+    v->c->kkt = fmax(fmax(v->optimality.improvement, v->optimality.feasibility), v->optimality.told);
     v->c->gap = v->optimality.gap;
     v->c->mesh_error = v->mesh.value;
     v->c->between_nodes = v->between.value;
@@ -127,6 +127,8 @@ static void judge_optimality(struct verdict *v)
         moray_layout_column_name(&t->layout, t->ocp, x, o->row - t->nlp.m, name, sizeof name);
     else if (o->row >= 0)
         moray_layout_row_name(&t->layout, t->ocp, x, o->row, name, sizeof name);
+    judge(v, "the objective that is told differs from that of the trajectory, relative to its size", o->told,
+          MORAY_LIMIT_KKT, "");
     judge(v, "constraints are violated, relative to their size", o->feasibility, MORAY_LIMIT_KKT, name);
     if (o->column >= 0) {
         moray_layout_column_name(&t->layout, t->ocp, x, o->column, name, sizeof name);

@@ -176,6 +176,7 @@ static void judge(const struct measure *m, struct optimality *o)
     o->improvement /= moray_witness_objective(m->e);
     o->gap /= moray_witness_objective(m->e);
     o->improvement = isnan(o->improvement) ? INFINITY : o->improvement;
+    o->told = fabs(m->e->solution->iterate.objective - m->t->end_out[0]) / moray_witness_objective(m->e);
 }
 
 static moray_status allocate(struct measure *m)

@@ -11,6 +11,8 @@
 #include "ocp/names.h"
 
 enum { most_lines = 12 };
+static const double small_error = 1e-2; // of a mesh whose optimum is to be believed
+static const double much = 0.1;         // of an optimum, that another is away
 
 void moray_diagnosis_say(moray_solution *solution, const char *format, ...)
 {
@@ -152,8 +154,26 @@ static void say_ringing(moray_solution *solution, const moray_mesh_record *mesh)
                         mesh->intervals, name, ocp->phase[p].name, mesh->changed_to);
 }
 
+// Meshes whose errors are small, and whose optima differ by far more: other optima, or an error that no sample sees.
+static void say_disagreement(moray_solution *solution)
+{
+    const moray_mesh_record *before = NULL;
+    for (int k = 0; k < solution->meshes; k++) {
+        const moray_mesh_record *mesh = &solution->history[k];
+        if (!(mesh->error < small_error))
+            continue;
+        const double size = before ? fmax(fabs(before->objective), fabs(mesh->objective)) : 0;
+        if (before && fabs(mesh->objective - before->objective) > much * size)
+            moray_diagnosis_say(solution,
+                                "The optima of %d and %d intervals differ, %.6g and %.6g: try other guesses.\n",
+                                before->intervals, mesh->intervals, before->objective, mesh->objective);
+        before = mesh;
+    }
+}
+
 static void say_meshes(moray_solution *solution, const moray_mesh_record *tried)
 {
+    say_disagreement(solution);
     const bool solved = tried->outcome == MORAY_NLP_SOLVED || tried->outcome == MORAY_NLP_ACCEPTABLE;
     for (int k = 0; k < solution->meshes; k++)
         if (solution->history[k].ringing > 0)

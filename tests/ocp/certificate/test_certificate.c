@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <tgmath.h>
 
 #include "ocp/solution.h"
 #include "rk4.h"
@@ -193,6 +194,154 @@ static void test_spoiled(void)
     moray_ocp_free(ocp);
 }
 
+// All multipliers with the other sign: stationary where the objective is turned, too.
+static void test_negated(void)
+{
+    moray_ocp *ocp = NULL;
+    struct cart cart = right;
+    moray_solution *solution = solve_cart(&cart, &ocp);
+    for (int i = 0; i < solution->transcription->nlp.m; i++)
+        solution->iterate.lambda[i] *= -1;
+    const moray_certificate c = certify(solution);
+    CHECK(!c.pass && c.kkt > MORAY_LIMIT_KKT, "negated multipliers: %.1e, %s", c.kkt, c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+static void test_edited_objective(void)
+{
+    moray_ocp *ocp = NULL;
+    struct cart cart = right;
+    moray_solution *solution = solve_cart(&cart, &ocp);
+    solution->iterate.objective *= 1 - 1e-3;
+    const moray_certificate c = certify(solution);
+    CHECK(!c.pass && c.kkt > MORAY_LIMIT_KKT && strstr(c.why, "objective that is told"), "objective: %s", c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// Positions in millimetres where metres were meant.
+static void test_wrong_units(void)
+{
+    moray_ocp *ocp = NULL;
+    struct cart cart = right;
+    moray_solution *solution = solve_cart(&cart, &ocp);
+    const struct phase_layout *layout = &solution->transcription->layout.phase[0];
+    for (int n = 0; n < layout->nodes; n++)
+        solution->iterate.x[layout->node[n].x] *= 1e3;
+    const moray_certificate c = certify(solution);
+    CHECK(!c.pass && c.kkt > MORAY_LIMIT_KKT && c.resimulation > 1e-3, "wrong units: %s", c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- A maximum at its bounds: minimise x(1), x' = u, |u| <= 1, where u = 1 with multipliers of the wrong sign ----
+
+static void end_value(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].xf[0];
+}
+
+static void test_maximum_at_bounds(void)
+{
+    const moray_phase_spec line = {.name = "line",
+                                   .nx = 1,
+                                   .nu = 1,
+                                   .continuous = symmetric_drift,
+                                   .t0 = moray_fixed(0),
+                                   .tf = moray_fixed(1),
+                                   .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                   .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &line, .endpoint = end_value}), "line");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    CHECK(certify(solution).pass, "the minimum, %.9g, passes", moray_solution_objective(solution));
+    moray_iterate *at = &solution->iterate;
+    for (int j = 0; j < solution->transcription->nlp.n; j++) {
+        const double kept = at->z_lower[j];
+        at->x[j] *= -1;
+        at->z_lower[j] = -at->z_upper[j], at->z_upper[j] = -kept;
+    }
+    at->objective *= -1;
+    const moray_certificate c = certify(solution);
+    CHECK(!c.pass && c.kkt > MORAY_LIMIT_KKT && strstr(c.why, "could still improve"), "the maximum: %s", c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- A spike between the nodes: x' = u + spike of height 50 that no node meets, J = integral of u^2 ----
+
+static void spiked(const moray_node *at, moray_rates *out, const void *data)
+{
+    const moray_num far = (at->t - 0.5122) / 0.003, u = at->u[0];
+    (void)data;
+    out->f[0] = u + 50 * exp(-far * far);
+    out->g[0] = u * u;
+}
+
+static void test_spike(void)
+{
+    const moray_phase_spec line = {.name = "line",
+                                   .nx = 1,
+                                   .nu = 1,
+                                   .nq = 1,
+                                   .continuous = spiked,
+                                   .t0 = moray_fixed(0),
+                                   .tf = moray_fixed(1),
+                                   .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                   .xf = MORAY_BOUNDS(moray_fixed(1))};
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &line, .endpoint = total}), "spike");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    CHECK_NEAR(moray_solution_objective(solution), 1, 1e-3, "as if there were no spike");
+    const moray_certificate c = certify(solution);
+    CHECK(!c.pass && c.mesh_error > 1e-3 && c.resimulation > 1e-3, "a spike between the nodes: %s", c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// ---- Meshes that disagree on the optimum ----
+
+static void test_disagreement(void)
+{
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    moray_settings settings = moray_settings_default();
+    settings.max_refinements = 4;
+    settings.intervals = 4;
+    CHECK_OK(
+        moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1,
+                                              .phase = &(const moray_phase_spec){.name = "line",
+                                                                                 .nx = 1,
+                                                                                 .nu = 1,
+                                                                                 .nq = 1,
+                                                                                 .continuous = spiked,
+                                                                                 .t0 = moray_fixed(0),
+                                                                                 .tf = moray_fixed(0.3),
+                                                                                 .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                                                                 .xf = MORAY_BOUNDS(moray_fixed(1))},
+                                              .endpoint = total}),
+        "line");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    CHECK(!strstr(moray_solution_diagnosis(solution), "differ"), "one optimum: %s", moray_solution_diagnosis(solution));
+    moray_mesh_record two[2] = {solution->history[0], solution->history[0]};
+    moray_mesh_record *kept = solution->history;
+    const int meshes = solution->meshes;
+    two[0].objective *= 100;
+    solution->history = two, solution->meshes = 2;
+    moray_diagnose(solution);
+    CHECK(strstr(moray_solution_diagnosis(solution), "The optima of 4 and 4 intervals differ"), "two optima: %s",
+          moray_solution_diagnosis(solution));
+    solution->history = kept, solution->meshes = meshes;
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- A saddle: minimise -x(1)^2 at x = u = 0 ----
 
 static void test_saddle(void)
@@ -207,6 +356,7 @@ static void test_saddle(void)
     memset(solution->iterate.z_lower, 0, n * sizeof(double));
     memset(solution->iterate.z_upper, 0, n * sizeof(double));
     memset(solution->iterate.lambda, 0, m * sizeof(double));
+    solution->iterate.objective = 0;
     const moray_certificate c = certify(solution);
     CHECK(!c.pass && c.kkt < 1e-12 && c.curvature > MORAY_LIMIT_CURVATURE, "stationary, but %s", c.why);
     moray_solution_free(solution);
@@ -220,6 +370,12 @@ int main(void)
     test_wrong_meshes();
     test_stopped_early();
     test_spoiled();
+    test_negated();
+    test_edited_objective();
+    test_wrong_units();
+    test_maximum_at_bounds();
+    test_spike();
+    test_disagreement();
     test_saddle();
     return tap_done();
 }
