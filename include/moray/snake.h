@@ -22,6 +22,7 @@
 #include "moray/snake/plant.h"
 #include "moray/snake/poincare.h"
 #include "moray/snake/receding_horizon.h"
+#include "moray/snake/robust.h"
 #include "moray/snake/scene.h"
 #include "moray/snake/steering.h"
 #include "moray/snake/swim.h"

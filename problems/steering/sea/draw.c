@@ -43,7 +43,7 @@ static moray_status draw_reference(sea_draw *draw, unsigned long *seed)
 
 // What the robot does straight ahead and turning, as the averaged plant has it.
 static moray_status see_through(const sea_job *job, const moray_robot *robot, moray_straight_motion *straight,
-                                moray_belief *belief)
+                                moray_belief *belief, double *turn)
 {
     const moray_model model = job->snake.model;
     moray_gait gait = moray_gait_map(&job->snake.robot, &job->gait, MORAY_CONTROL_ORIENTED, model);
@@ -51,6 +51,7 @@ static moray_status see_through(const sea_job *job, const moray_robot *robot, mo
     MORAY_TRY(moray_straight_motion_find(straight, robot, model, &gait));
     gait.offset = 0.5 * job->offset * job->scale;
     MORAY_TRY(moray_turn_rate(robot, model, &gait, &rate));
+    *turn = rate / (0.5 * job->offset);
     return moray_belief_find(belief, &job->believed, &job->gait, straight->speed, 0.5 * job->offset, rate);
 }
 
@@ -68,7 +69,7 @@ static moray_status make(const sea_job *job, sea_draw *draw, unsigned long numbe
         factor[k] = 1 + between(&seed, -job->spread, job->spread);
     scale_coefficients(&draw->robot, factor);
     MORAY_TRY(draw_reference(draw, &seed));
-    MORAY_TRY(see_through(job, &draw->robot, &draw->straight, &draw->truth));
+    MORAY_TRY(see_through(job, &draw->robot, &draw->straight, &draw->truth, &draw->turn));
     memcpy(draw->truth.current, draw->current, sizeof draw->current);
     return moray_ok();
 }
@@ -91,7 +92,7 @@ static moray_status choose_rung(sea_job *job)
 static moray_status believe(sea_job *job)
 {
     const moray_hydrodynamics paper = {0}, consistent = moray_hydrodynamics_consistent();
-    double current[2] = {0, 0};
+    double current[2] = {0, 0}, turn;
     int used = 0;
     job->believed = job->snake.robot; // before the rung: the planner does not know the plant's
     job->believed.hydro = job->hydrodynamics == MORAY_CONSISTENT ? consistent : paper;
@@ -100,7 +101,7 @@ static moray_status believe(sea_job *job)
         (sscanf(job->believed_current, "%lf,%lf%n", &current[0], &current[1], &used) != 2 ||
          job->believed_current[used]))
         return moray_error(MORAY_INPUT, "planner_current = %s: must be unknown or VX,VY", job->believed_current);
-    MORAY_TRY(see_through(job, &job->believed, &job->believed_straight, &job->belief));
+    MORAY_TRY(see_through(job, &job->believed, &job->believed_straight, &job->belief, &turn));
     memcpy(job->belief.current, current, sizeof current);
     return moray_ok();
 }

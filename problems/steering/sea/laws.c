@@ -32,20 +32,33 @@ const char *const sea_number_names[2][SEA_NUMBERS] = {
     }
 
 static const sea_law heading_laws[] = {
-    {"P", "nothing", 1 << GAIN, {0.12}, NO_SUBSET, 0},
-    {"P, rate fed forward", "nothing", 1 << GAIN | 1 << FORWARD, {0.12, 0.2}, {0, NOTHING, NOTHING}, 0},
-    {"PID", "nothing", 1 << GAIN | 1 << INTEGRAL | 1 << DERIVATIVE, {0.12, 0, 0, 0.05, 0.5}, {0, NOTHING, NOTHING}, 0},
-    {"P ahead", "nothing", 1 << GAIN | 1 << LEAD, {0.12, 0, 2}, {0, NOTHING, NOTHING}, 0},
-    {"PID ahead, rate fed f.", "nothing", 31, {0.12, 0.2, 2, 0.05, 0.5}, {1, 2, 3}, 0},
-    {"receding, told", "all", 0, {0}, NO_SUBSET, SEA_TOLD},
-    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, SEA_BELIEVING},
-    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, SEA_ESTIMATING}};
+    {"P", "nothing", 1 << GAIN, {0.12}, NO_SUBSET, false, 0},
+    {"P, rate fed forward", "nothing", 1 << GAIN | 1 << FORWARD, {0.12, 0.2}, {0, NOTHING, NOTHING}, false, 0},
+    {"PID",
+     "nothing",
+     1 << GAIN | 1 << INTEGRAL | 1 << DERIVATIVE,
+     {0.12, 0, 0, 0.05, 0.5},
+     {0, NOTHING, NOTHING},
+     false,
+     0},
+    {"P ahead", "nothing", 1 << GAIN | 1 << LEAD, {0.12, 0, 2}, {0, NOTHING, NOTHING}, false, 0},
+    {"PID ahead, rate fed f.", "nothing", 31, {0.12, 0.2, 2, 0.05, 0.5}, {1, 2, 3}, false, 0},
+    {"PI, rate, by collocation",
+     "nothing",
+     1 << GAIN | 1 << FORWARD | 1 << INTEGRAL,
+     {0.05, 0.05},
+     NO_SUBSET,
+     true,
+     SEA_TOLD},
+    {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
+    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
+    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING}};
 
-static const sea_law path_laws[] = {{"LOS", "nothing", 7, {0.06, 2.8, 0.4}, NO_SUBSET, 0},
-                                    {"ILOS", "nothing", 15, {0.06, 2.8, 0.4, 0.02}, {0, NOTHING, NOTHING}, 0},
-                                    {"receding, told", "all", 0, {0}, NO_SUBSET, SEA_TOLD},
-                                    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, SEA_BELIEVING},
-                                    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, SEA_ESTIMATING}};
+static const sea_law path_laws[] = {{"LOS", "nothing", 7, {0.06, 2.8, 0.4}, NO_SUBSET, false, 0},
+                                    {"ILOS", "nothing", 15, {0.06, 2.8, 0.4, 0.02}, {0, NOTHING, NOTHING}, false, 0},
+                                    {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
+                                    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
+                                    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING}};
 
 int sea_laws(const sea_job *job, const sea_law **laws)
 {

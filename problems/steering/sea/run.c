@@ -82,6 +82,19 @@ static moray_status tune(sea_job *job, const sea_law *laws, int which)
     return moray_ok();
 }
 
+static moray_status plan_gains(sea_job *job, const sea_law *laws, int which)
+{
+    tuning t = {job, which, laws[which].tuned};
+    double x[SEA_NUMBERS], *to = x;
+    memcpy(job->number[which], laws[which].start, sizeof laws[which].start);
+    MORAY_TRY(sea_robust(job, job->number[which]));
+    gather(job->number[which], laws[which].tuned, &to);
+    job->tuned_by[which] = 1;
+    if (!training_cost(&t, x, &job->tuned_cost[which]))
+        return moray_error(MORAY_NUMERIC, "the gains by collocation cannot be swum");
+    return moray_ok();
+}
+
 moray_status sea_tune(sea_job *job)
 {
     const sea_law *laws;
@@ -90,7 +103,7 @@ moray_status sea_tune(sea_job *job)
         if (!laws[law].tuned)
             continue;
         moray_ticker_show(&job->ticker, "sea_trials: tuning %s", laws[law].name);
-        MORAY_TRY(tune(job, laws, law));
+        MORAY_TRY(laws[law].collocated ? plan_gains(job, laws, law) : tune(job, laws, law));
         moray_ticker_note(&job->ticker, "sea_trials: %s tuned on %d draws by %d settings: cost %.5g", laws[law].name,
                           job->training, job->tuned_by[law], job->tuned_cost[law]);
     }

@@ -10,7 +10,7 @@
 #include "moray/snake.h"
 
 enum { SEA_HEADING, SEA_PATH }; // tasks
-enum { SEA_MOST_SEEDS = 2000, SEA_LAWS = 8, SEA_NUMBERS = 5, SEA_SCORES = 3, SEA_COEFFICIENTS = 4 };
+enum { SEA_MOST_SEEDS = 2000, SEA_LAWS = 9, SEA_NUMBERS = 5, SEA_SCORES = 3, SEA_COEFFICIENTS = 4 };
 
 typedef struct sea_job sea_job;
 
@@ -22,6 +22,7 @@ typedef struct sea_draw {
     moray_reference reference;          // owned
     moray_straight_motion straight;     // of the robot
     moray_belief truth;
+    double turn; // rate of turning per offset of the control-oriented model [rad/(s m)]
 } sea_draw;
 
 // A law at sea. Laws with numbers are tuned; the others plan.
@@ -29,7 +30,8 @@ typedef struct sea_law {
     const char *name, *told; // what it was told of robot and current, for the table
     unsigned tuned;          // bits of the numbers
     double start[SEA_NUMBERS];
-    int subset[3];                                          // laws that leave some of the numbers out; -1: none
+    int subset[3];   // laws that leave some of the numbers out; -1: none
+    bool collocated; // its numbers come from a robust plan over the training draws, not from the tuner
     enum { SEA_TOLD, SEA_BELIEVING, SEA_ESTIMATING } knows; // of who plans
 } sea_law;
 
@@ -94,6 +96,10 @@ moray_status sea_swim(const sea_job *job, const sea_draw *draw, int law, const d
 // Tunes what is tuned on the training draws; swims all seeds. Error: MORAY_INTERRUPTED, MORAY_IO, those of the trials.
 moray_status sea_tune(sea_job *job);
 moray_status sea_run(sea_job *job);
+
+// Gain, forward and integral numbers of a law by collocation over the training draws; those it began with where that
+// does not solve, told. Error: those of moray_robust_gains.
+moray_status sea_robust(const sea_job *job, double number[SEA_NUMBERS]);
 
 // Largest multipliers of the stroboscopic map of the believed robot with a law's gain around its heading and, with a
 // lookahead, its offset; without numbers of nobody's steering. NaN where there are none.

@@ -12,16 +12,16 @@
 #include <string.h>
 #include <tgmath.h>
 
-#include "moray/snake/plant.h"
 #include "snake/model/control_body.h"
+#include "snake/plant/average.h"
 
 enum { states = MORAY_STEERING_STATES, STEERING = states, AMPLITUDE, OMEGA, DELTA, TIME, inputs };
 
-typedef struct average {
+struct moray_average {
     control_body body;
     int n;           // joints
     double Q_0, G_0; // |A^T e|^2 and e^T G e, G = (D D^T)^{-1}
-} average;
+};
 
 // What depends on delta alone: means of quadratic forms of the wave, per a^2 (and omega).
 typedef struct wave {
@@ -35,7 +35,7 @@ static double gram_diagonal(int N, int m)
     return K * (K + 1) * (K + 2) / (6 * N);
 }
 
-static wave wave_of(const average *self, double complex delta)
+static wave wave_of(const moray_average *self, double complex delta)
 {
     const int n = self->n, N = n + 1;
     wave out = {.Q_1 = 2 + (n - 1) * (2 + 2 * cos(delta)), .sigma = n};
@@ -91,9 +91,9 @@ static void accelerations(const control_body *b, const means *y, double complex 
 }
 
 // in = [theta, p_x, p_y, v_theta, v_t, v_n, phi_0, phi_0', phi_0'', a, omega, delta, t]
-static void evaluate(void *context, const double complex *in, double complex *out)
+void moray_average_rates(void *context, const double complex *in, double complex *out)
 {
-    const average *self = context;
+    const moray_average *self = context;
     const control_body *b = &self->body;
     const double complex c = cos(in[MORAY_STATE_THETA]), s = sin(in[MORAY_STATE_THETA]),
                          v_theta = in[MORAY_STATE_V_THETA], v_t = in[MORAY_STATE_V_1], v_n = in[MORAY_STATE_V_2];
@@ -133,18 +133,27 @@ static void evaluate(void *context, const double complex *in, double complex *ou
                   b->mt * self->G_0 * v_phi_0 * dv_phi_0 + kappa * y.w;
 }
 
-moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec)
+moray_status moray_average_new(moray_average **result, const moray_plant_spec *spec)
 {
-    const double probe[inputs] = {0.1, 0, 0, 0.2, 0.2, 0.05, 0.01, 0.003, 0.002, 0.04, 2, 0.7, 0.4};
-    *map = (moray_map){0};
+    *result = NULL;
     MORAY_TRY(moray_robot_check(&spec->robot));
     if (spec->joints != MORAY_JOINTS_STEERED || spec->path_forces || spec->path_angles)
         return moray_error(MORAY_INPUT, "the averaged plant is steered and has no path outputs");
-    average *self = calloc(1, sizeof *self);
+    moray_average *self = calloc(1, sizeof *self);
     if (!self)
         return moray_error(MORAY_MEMORY, "no memory for an averaged plant");
     const int N = spec->robot.links;
-    *self = (average){.body = moray_body_of(&spec->robot, spec->current), .n = N - 1, .Q_0 = 4 * N - 6};
+    *self = (moray_average){.body = moray_body_of(&spec->robot, spec->current), .n = N - 1, .Q_0 = 4 * N - 6};
     self->G_0 = N * ((double)N * N - 1) / 12; // sum of k (N - k) / 2, the solution of D D^T x = e
-    return moray_map_from_complex(map, inputs, states + 1, evaluate, self, free, probe);
+    *result = self;
+    return moray_ok();
+}
+
+moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec)
+{
+    const double probe[inputs] = {0.1, 0, 0, 0.2, 0.2, 0.05, 0.01, 0.003, 0.002, 0.04, 2, 0.7, 0.4};
+    moray_average *self;
+    *map = (moray_map){0};
+    MORAY_TRY(moray_average_new(&self, spec));
+    return moray_map_from_complex(map, inputs, states + 1, moray_average_rates, self, free, probe);
 }

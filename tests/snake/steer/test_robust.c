@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+//
+// Gains by collocation over scenarios: an optimum of its own model, simulated apart; and, behind noisy, late
+// instruments on the first-principles model, better than where they began.
+#include "degree.h"
+#include "tap.h"
+
+#include "moray/snake/closed_loop.h"
+#include "moray/snake/plant.h"
+#include "moray/snake/robust.h"
+#include "moray/snake/trial.h"
+
+enum { scenarios = 2, duration = 24 };
+
+static const moray_sensors sensors = {
+    .heading = 0.5 * DEG, .joints = 0.2 * DEG, .sampling = 0.2, .delay = 0.1, .seed = 3};
+static const moray_actuators actuators = {.dead_time = 0.1};
+
+typedef struct pool {
+    moray_robot robot;
+    moray_gait gait; // of the control-oriented model
+    double scale;
+    moray_straight_motion straight;
+    moray_reference reference[scenarios];
+    moray_scenario scenario[scenarios];
+    moray_robust_spec spec;
+} pool;
+
+static void pool_new(pool *at)
+{
+    static const char *const texts[scenarios] = {"sine:30,40", "ramps:4=0,12=32"};
+    const double offset = 0.007;
+    double rate;
+    *at = (pool){.robot = moray_robot_paper()};
+    at->gait = moray_gait_paper(&at->robot);
+    moray_gait mapped = moray_gait_map(&at->robot, &at->gait, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    at->scale = -mapped.amplitude / at->gait.amplitude; // erratum E3
+    CHECK_OK(moray_straight_motion_find(&at->straight, &at->robot, MORAY_FIRST_PRINCIPLES, &mapped), "straight");
+    mapped.offset = offset * at->scale;
+    CHECK_OK(moray_turn_rate(&at->robot, MORAY_FIRST_PRINCIPLES, &mapped, &rate), "turning");
+    for (int k = 0; k < scenarios; k++) {
+        CHECK_OK(moray_reference_read(&at->reference[k], texts[k]), "reference");
+        at->scenario[k] =
+            (moray_scenario){.speed = at->straight.speed, .turn = rate / offset, .reference = &at->reference[k]};
+        CHECK_OK(moray_belief_find(&at->scenario[k].belief, &at->robot, &at->gait, at->straight.speed, offset, rate),
+                 "belief");
+    }
+    at->spec = (moray_robust_spec){.robot = at->robot,
+                                   .gait = at->gait,
+                                   .offset = 0.015,
+                                   .offset_rate = 0.01,
+                                   .lag = 0.4,
+                                   .noise = 0.6 * DEG,
+                                   .sampling = sensors.sampling,
+                                   .scenario = at->scenario,
+                                   .n = scenarios,
+                                   .duration = duration,
+                                   .start = {.proportional = 0.05, .forward = 0.05},
+                                   .settings = moray_settings_default()};
+    at->spec.settings.scheme = "radau3";
+    at->spec.settings.intervals = 96;
+    at->spec.settings.tolerance = 1e-7;
+}
+
+// What collocation minimises, of the swimmer.
+static bool swum(void *self, const double *x, double *cost)
+{
+    const pool *at = self;
+    *cost = 0;
+    for (int k = 0; k < scenarios; k++) {
+        moray_feedback feedback = {.target = moray_heading_law_target,
+                                   .feed = moray_heading_law_feed,
+                                   .gain = at->scale * x[0],
+                                   .straight = &at->straight,
+                                   .offset = 0.015 * fabs(at->scale),
+                                   .offset_rate = 0.01 * fabs(at->scale),
+                                   .period = 0.1};
+        moray_heading_law law = {.gains = {.proportional = x[0], .forward = x[1], .integral = x[2]},
+                                 .reference = &at->reference[k],
+                                 .feedback = &feedback,
+                                 .scale = at->scale,
+                                 .smoothing = 0.5};
+        feedback.self = &law;
+        const moray_swim_controller inner = moray_feedback_controller(&feedback);
+        moray_instruments *instruments;
+        moray_swim_closed_loop closed_loop;
+        if (moray_failed(moray_instruments_new(&instruments, &sensors, &actuators, &at->straight, 10, &inner)))
+            return false;
+        const moray_swim_controller outer = moray_instruments_controller(instruments);
+        const moray_swim_on_gait how = {.steps = 16};
+        const moray_swim_closed_loop_spec spec = {.robot = &at->robot,
+                                                  .straight = &at->straight,
+                                                  .controller = &outer,
+                                                  .duration = duration,
+                                                  .intervals = 10 * duration,
+                                                  .on_gait = &how};
+        const moray_status status = moray_swim_closed_loop_run(&closed_loop, &spec);
+        moray_instruments_free(instruments);
+        if (moray_failed(status))
+            return false;
+        const double rms =
+            moray_swim_closed_loop_heading_score(&closed_loop, &at->straight, &at->reference[k]).rms / (10 * DEG);
+        *cost += rms * rms / scenarios;
+        moray_swim_closed_loop_free(&closed_loop);
+    }
+    return true;
+}
+
+// ---- The same model, simulated -------------------------------------------------------------------------------------
+
+enum { THETA, V_THETA, V_T, V_N, PHI_0, SUM, SQUARES, states };
+
+static void rates(const pool *at, moray_map *plant, int k, const double g[3], double t, const double *x, double *dx)
+{
+    const moray_scenario *own = &at->scenario[k];
+    const moray_robust_spec *spec = &at->spec;
+    double r, out[MORAY_STEERING_STATES + 1];
+    const double error = moray_reference_at(own->reference, t, &r) - x[THETA];
+    const double share = tanh((g[0] * (error + g[2] * x[SUM]) + g[1] * r) / spec->offset);
+    const double v = spec->offset_rate * tanh((share * spec->offset - x[PHI_0]) / spec->lag / spec->offset_rate);
+    const double in[] = {x[THETA],
+                         0,
+                         0,
+                         x[V_THETA],
+                         x[V_T],
+                         x[V_N],
+                         own->belief.turning * x[PHI_0],
+                         own->belief.turning * v,
+                         0,
+                         own->belief.amplitude * at->gait.amplitude,
+                         at->gait.omega,
+                         at->gait.delta,
+                         t};
+    plant->value(plant->self, in, out);
+    dx[THETA] = out[MORAY_STATE_THETA];
+    dx[V_THETA] = out[MORAY_STATE_V_THETA];
+    dx[V_T] = out[MORAY_STATE_V_1];
+    dx[V_N] = out[MORAY_STATE_V_2];
+    dx[PHI_0] = v;
+    dx[SUM] = error * (1 - share * share);
+    dx[SQUARES] = error * error / (100 * DEG * DEG);
+}
+
+// The objective at these gains, by the midpoint rule on short steps.
+static double modelled(const pool *at, const double g[3])
+{
+    const moray_plant_spec plant_spec = {.robot = at->robot, .joints = MORAY_JOINTS_STEERED};
+    const moray_robust_spec *spec = &at->spec;
+    const int steps = 4000;
+    const double h = (double)duration / steps;
+    moray_map plant;
+    double sum = 0;
+    CHECK_OK(moray_average_plant(&plant, &plant_spec), "averaged plant");
+    for (int k = 0; k < scenarios; k++) {
+        double x[states] = {[V_T] = at->scenario[k].speed}, dx[states], middle[states];
+        for (int i = 0; i < steps; i++) {
+            rates(at, &plant, k, g, i * h, x, dx);
+            for (int j = 0; j < states; j++)
+                middle[j] = x[j] + h / 2 * dx[j];
+            rates(at, &plant, k, g, (i + 0.5) * h, middle, dx);
+            for (int j = 0; j < states; j++)
+                x[j] += h * dx[j];
+        }
+        const double noise = spec->noise * spec->noise * spec->sampling / 2 * g[0] * fabs(at->scenario[k].turn);
+        sum += (x[SQUARES] / duration + noise / (100 * DEG * DEG)) / scenarios;
+    }
+    moray_map_release(&plant);
+    return sum;
+}
+
+static void test_optimum(const pool *at, const double gains[3], double objective)
+{
+    const double least = modelled(at, gains);
+    CHECK_NEAR(least, objective, 2e-3 * objective, "what it minimises, simulated");
+    for (int k = 0; k < 2; k++)
+        for (int side = -1; side <= 1; side += 2) {
+            double beside[3] = {gains[0], gains[1], gains[2]};
+            beside[k] *= 1 + 0.1 * side;
+            const double other = modelled(at, beside);
+            CHECK(other > least, "gain %d a tenth %s is worse: %.6g", k, side < 0 ? "smaller" : "larger", other);
+        }
+}
+
+int main(void)
+{
+    pool at;
+    moray_heading_gains found;
+    double objective, cost, start;
+    pool_new(&at);
+    if (!tap_thorough()) {
+        at.spec.n = 1;
+        at.spec.settings.intervals = 24;
+    }
+    CHECK_OK(moray_robust_gains(&found, &objective, &at.spec), "gains");
+    const double gains[3] = {found.proportional, found.forward, found.integral};
+    const double began[3] = {at.spec.start.proportional, at.spec.start.forward, 0};
+    if (tap_thorough())
+        test_optimum(&at, gains, objective);
+    swum(&at, gains, &cost);
+    swum(&at, began, &start);
+    printf("# gains %g m/rad, %g m s/rad, %g 1/s: swum %g deg, at the start %g deg\n", gains[0], gains[1], gains[2],
+           10 * sqrt(cost), 10 * sqrt(start));
+    CHECK(cost < 0.25 * start, "swum, half the error from where it began");
+    at.spec.n = 0;
+    CHECK(moray_robust_gains(&found, &objective, &at.spec).code == MORAY_INPUT, "no scenarios are refused");
+    for (int k = 0; k < scenarios; k++)
+        moray_reference_free(&at.reference[k]);
+    return tap_done();
+}
