@@ -33,8 +33,8 @@ static bool solved(const stage *at)
 
 static void show(pareto *run, const pareto_front *front, int k, const char *what)
 {
-    moray_ticker_show(&run->job.ticker, "pareto: front %d, %s model, %s, point %d of %d: %s", run->fronts,
-                      moray_model_name(front->model), pareto_kinds[front->kind], k + 1, front->n, what);
+    moray_ticker_count(&run->job.ticker, (run->fronts - 1) * run->points + k, run->planned * run->points,
+                       "pareto: %s model, %s: %s", moray_model_name(front->model), pareto_kinds[front->kind], what);
 }
 
 // The fastest gait of all, from the paper's gait or from that of another front; and from it, to and fro, the others.
@@ -120,6 +120,7 @@ static moray_status work(gait_job *job)
     const int kinds = job->taper[0] < job->taper[1] ? PARETO_KINDS : PARETO_KINDS - 1;
     if (isnan(run->eel_taper))
         run->eel_taper = (2.0 - job->snake.robot.links) / job->snake.robot.links;
+    run->planned = ((int)job->snake.model + 1) * kinds;
     MORAY_TRY(gait_job_prepare(job));
     for (int model = 0; model <= (int)job->snake.model; model++)
         for (int kind = 0; kind < kinds; kind++)

@@ -21,7 +21,7 @@ typedef struct pareto {
     int points;
     double eel_taper, least_share; // of the power that the fastest lateral gait uses
     pareto_front front[PARETO_FRONTS];
-    int fronts;
+    int fronts, planned; // made, or being made; in all
 } pareto;
 
 extern const char *const pareto_kinds[PARETO_KINDS]; // "lateral", "eel-like", "free taper"

@@ -195,6 +195,15 @@ static moray_status measure(sensitivity *run, moray_sensitivity *slopes, const s
     return moray_ok();
 }
 
+static int applying(const sensitivity *run)
+{
+    const sensitivity_parameter *parameter;
+    int n = 0;
+    for (int k = 0; (parameter = sensitivity_parameter_at(k)); k++)
+        n += sensitivity_parameter_applies(parameter, &run->job);
+    return n;
+}
+
 static moray_status by_parameter(sensitivity *run, moray_sensitivity *slopes, const sensitivity_parameter *parameter)
 {
     const double share = 1e-3; // of the scale
@@ -202,7 +211,7 @@ static moray_status by_parameter(sensitivity *run, moray_sensitivity *slopes, co
     struct displaced at = {0};
     sensitivity_parameter_describe(parameter, &run->job, last_stage(&run->job)->prediction.course_speed, row);
     row->step = share * row->scale;
-    moray_ticker_show(&run->job.ticker, "%s: by %s", run->job.name, row->name);
+    moray_ticker_count(&run->job.ticker, run->rows, applying(run), "%s: by %s", run->job.name, row->name);
     moray_status status = displace(run, parameter, row, &at);
     if (!moray_failed(status))
         status = measure(run, slopes, &at, sensitivity_parameter_is_limit(parameter), row);

@@ -238,7 +238,7 @@ static moray_status run_some(trials *t, int n, FILE *file)
     for (int done = 0; done < n; done += at_a_time) {
         const int count = n - done < at_a_time ? n - done : at_a_time;
         t->todo = all + done;
-        moray_ticker_show(&job->ticker, "sea_trials: %d of %d trials", done, n);
+        moray_ticker_count(&job->ticker, done, n, "sea_trials: trials");
         MORAY_TRY(moray_parallel(count, sizeof *some, some, try, t, job->jobs));
         for (int k = 0; k < count; k++) {
             const int draw = t->todo[k][0], law = t->todo[k][1];
