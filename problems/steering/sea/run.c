@@ -17,7 +17,8 @@ typedef struct tuning {
     unsigned tuned;
 } tuning;
 
-// Mean over the training draws.
+// Geometric mean over the training draws, so that the hardest of them does not decide alone: what is scored are
+// medians.
 static bool training_cost(void *self, const double *x, double *cost)
 {
     const tuning *t = self;
@@ -31,8 +32,9 @@ static bool training_cost(void *self, const double *x, double *cost)
         sea_score score;
         if (moray_failed(sea_swim(job, &job->draw[job->seeds + k], t->law, number, &score)))
             return false;
-        *cost += score.cost / job->training;
+        *cost += log(score.cost) / job->training;
     }
+    *cost = exp(*cost);
     return true;
 }
 
