@@ -53,6 +53,6 @@ static bool fill(struct track *t, int p)
 
 moray_status moray_run_write_costates(const app_run *run)
 {
-    static const struct track_form form = {entries, describe, rows, fill};
+    static const struct track_form form = {entries, describe, rows, fill, NULL};
     return moray_track_write_new(run, &form, "costates.csv");
 }

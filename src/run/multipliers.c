@@ -10,7 +10,8 @@ static int entries(const moray_phase_spec *phase)
     return phase->nc + phase->nx + phase->nu;
 }
 
-// In units of the objective over those of what is bounded and of time, which are not known of constraints and go unsaid.
+// In units of the objective over those of what is bounded and of time, which are not known of constraints and go
+// unsaid.
 static void describe(const app_run *run, int p, int i, struct track_column *column)
 {
     const moray_phase_spec *phase = &run->app->spec->phase[p];
@@ -54,6 +55,6 @@ static bool fill(struct track *t, int p)
 
 moray_status moray_run_write_multipliers(const app_run *run)
 {
-    static const struct track_form form = {entries, describe, rows, fill};
+    static const struct track_form form = {entries, describe, rows, fill, NULL};
     return moray_track_write_new(run, &form, "multipliers.csv");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "run/run.h"
+#include "run/fit.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,6 +24,8 @@ static const moray_option own_rows[] = {
               .help = "limit of the variables of a finer mesh; 0: none"),
     MORAY_ROW(REAL, app_run, barrier, "solver", "barrier", .max = INFINITY, .open = true,
               .help = "barrier parameter to start with; less when the guess is nearly feasible and nearly right"),
+    MORAY_ROW(BOOL, app_run, gauss_newton, "solver", "gauss_newton",
+              .help = "second derivatives of a fit without the curvature of constraints and of what is observed"),
     MORAY_CONTINUE(app_run, from_file),
     MORAY_GUESS(app_run, guess_file),
     MORAY_LEAVE(app_run, solution_file),
@@ -62,6 +64,7 @@ static void start_from_defaults(app_run *run)
     run->max_variables = settings.max_variables;
     run->max_cpu_seconds = settings.max_cpu_seconds;
     run->barrier = settings.barrier;
+    run->gauss_newton = settings.gauss_newton;
     for (int i = 0; i < app->n_constants; i++)
         run->constant[i] = *app->constants[i].value;
 }
@@ -91,6 +94,7 @@ static moray_settings settings_of(app_run *run)
     settings.max_variables = run->max_variables;
     settings.max_cpu_seconds = run->max_cpu_seconds;
     settings.barrier = run->barrier;
+    settings.gauss_newton = run->gauss_newton;
     settings.progress = show_iteration;
     settings.observer = run;
     return settings;
@@ -112,7 +116,8 @@ static moray_status certify(app_run *run)
     return status;
 }
 
-// Reads what --guess names, or goes on from --continue, on the mesh of the file unless the options name another than by default.
+// Reads what --guess names, or goes on from --continue, on the mesh of the file unless the options name another than by
+// default.
 static moray_status load(app_run *run, moray_settings *settings)
 {
     app_run usual = {.app = run->app};
@@ -132,8 +137,8 @@ static moray_status solve(app_run *run)
     moray_settings settings = settings_of(run);
     MORAY_TRY(load(run, &settings));
     const moray_guess from = moray_guess_from_solution(run->from), *guess = run->from            ? &from
-                                                                                : run->guess_file[0] ? &run->read
-                                                                                                     : run->app->guess;
+                                                                            : run->guess_file[0] ? &run->read
+                                                                                                 : run->app->guess;
     run->ticker = moray_ticker_start(stderr, run->common.quiet);
     moray_interrupt_begin();
     moray_status status = moray_solve(run->ocp, &settings, guess, &run->solution);
@@ -200,6 +205,7 @@ static moray_status work(app_run *run)
     MORAY_TRY(solve(run));
     if (run->solution_file[0])
         MORAY_TRY(moray_solution_save(run->solution, run->solution_file));
+    MORAY_TRY(moray_run_fit(run));
     MORAY_TRY(moray_run_show(run));
     return judge(run);
 }
@@ -228,6 +234,7 @@ int moray_app_run(const moray_app *app, int argc, char **argv)
         say_failure(&run);
         exit_code = MORAY_EXIT_CERTIFICATE;
     }
+    moray_fit_free(&run.fit);
     moray_solution_free(run.solution);
     moray_solution_free(run.from);
     moray_guess_free(&run.read);

@@ -5,13 +5,14 @@
 #define SRC_RUN_RUN_H
 
 #include "moray/app/run.h"
+#include "moray/fit.h"
 
 typedef struct app_run {
     moray_common common;
     double mesh_tol, barrier;
     int refinements, max_iterations, max_variables;
     double max_cpu_seconds;
-    bool check;
+    bool check, gauss_newton;
     // Of --continue, --guess, --solution; empty: none.
     char from_file[MORAY_PATH_SIZE], guess_file[MORAY_PATH_SIZE], solution_file[MORAY_PATH_SIZE];
     double constant[MORAY_APP_CONSTANTS];
@@ -20,10 +21,12 @@ typedef struct app_run {
     // found along the way
     moray_ocp *ocp;
     moray_solution *solution, *from;
-    moray_guess read; // of --guess
+    moray_guess read;           // of --guess
     char kept[MORAY_PATH_SIZE]; // where the best iterate is after an interruption
     bool certified;             // whether there is a certificate at all
     moray_certificate certificate;
+    bool fitted; // whether there is
+    moray_fit fit;
     moray_ticker ticker;
 } app_run;
 
@@ -37,7 +40,7 @@ const char *moray_phase_name(const moray_ocp_spec *spec, int p);
 moray_status moray_run_show(app_run *run);
 
 // The tables of a run: rows belong to them. Error: MORAY_MEMORY. Free with moray_run_tables_free.
-enum { MORAY_RUN_TABLES = 4 };
+enum { MORAY_RUN_TABLES = 6 };
 typedef struct run_tables {
     moray_table table[MORAY_RUN_TABLES];
     int n;

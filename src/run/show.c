@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "run/run.h"
+#include "run/fit.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -128,12 +128,12 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
 moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
     enum { solver_room = 10, certificate_room = 10 };
-    const int solution_room = count_rows(run->app->spec);
+    const int solution_room = count_rows(run->app->spec), ns = run->app->spec->ns, fit_room = MORAY_FIT_ROWS + ns;
     int meshes;
     moray_solution_history(run->solution, &meshes);
-    *t =
-        (run_tables){.rows = calloc((size_t)(solution_room + solver_room + meshes + certificate_room), sizeof *t->rows),
-                     .texts = calloc((size_t)solution_room, sizeof *t->texts)};
+    const size_t room = (size_t)(solution_room + fit_room + solver_room + meshes + certificate_room);
+    *t = (run_tables){.rows = calloc(room, sizeof *t->rows),
+                      .texts = calloc((size_t)(solution_room + ns), sizeof *t->texts)};
     if (!t->rows || !t->texts) {
         moray_run_tables_free(t);
         return moray_error(MORAY_MEMORY, "no memory for %d rows of results", solution_room);
@@ -142,6 +142,9 @@ moray_status moray_run_tables_new(run_tables *t, const app_run *run)
     int n = solution_rows(t, run);
     t->table[t->n++] = (moray_table){.title = "Solution", .n_columns = 1, .rows = rows, .n_rows = n};
     rows += n;
+    if (run->fitted)
+        t->n += moray_run_fit_tables(run, t->table + t->n, rows, t->texts + solution_room);
+    rows += fit_room;
     n = solver_rows(run, rows);
     t->table[t->n++] = (moray_table){.title = "Solver", .n_columns = 1, .rows = rows, .n_rows = n};
     rows += n;
@@ -226,6 +229,7 @@ static void summarise(const void *found, moray_json *json)
     json_meshes(json, run->solution);
     moray_certificate_to_json(json, run->certified ? &run->certificate : NULL);
     moray_json_text(json, "diagnosis", solved ? NULL : moray_solution_diagnosis(run->solution));
+    moray_run_fit_to_json(json, run);
 }
 
 // ---- Everything ----------------------------------------------------------------------------------------------------
@@ -234,6 +238,8 @@ static moray_status write(const void *found, moray_output *output)
 {
     const app_run *run = found;
     MORAY_TRY(moray_run_write_trajectory(run));
+    if (moray_run_observes(run->app->spec))
+        MORAY_TRY(moray_run_write_residuals(run));
     if (moray_solution_info(run->solution)->outcome != MORAY_NLP_INTERRUPTED) // else it is in the file of the iterate
         MORAY_TRY(moray_solution_leave(run->solution, output));
     MORAY_TRY(moray_run_write_costates(run));

@@ -105,9 +105,13 @@ moray_status moray_track_write(const struct track *t, const char *name)
 moray_status moray_track_write_new(const app_run *run, const struct track_form *form, const char *name)
 {
     struct track t;
-    moray_status status = moray_track_new(&t, run, form);
+    moray_status status = moray_track_new(&t, run, form), figure = moray_ok();
     if (!moray_failed(status))
         status = moray_track_write(&t, name);
+    for (int p = 0; form->draw && p < run->app->spec->phases && !moray_failed(status) && !moray_failed(figure); p++)
+        figure = form->draw(&t, p);
+    if (!moray_failed(status))
+        status = moray_app_drawn(&run->common, run->name, figure);
     moray_track_free(&t);
     return status;
 }

@@ -20,6 +20,7 @@ struct track_form {
     void (*describe)(const app_run *run, int p, int i, struct track_column *column);
     int (*rows)(const app_run *run, int p);
     bool (*fill)(struct track *t, int p);
+    moray_status (*draw)(const struct track *t, int p); // figures of a phase; NULL: none
 };
 
 // Entries of the same name and unit share a column, which is NaN in phases that have none. Column 0 is the phase's
@@ -41,7 +42,7 @@ void moray_track_free(struct track *t);
 // To a file of --out; without the phase's number where there is only one. Error: MORAY_IO, MORAY_MEMORY.
 moray_status moray_track_write(const struct track *t, const char *name);
 
-// All of it. Error: MORAY_IO, MORAY_MEMORY.
+// All of it, and its figures; one that cannot be drawn is only remarked upon. Error: MORAY_IO, MORAY_MEMORY.
 moray_status moray_track_write_new(const app_run *run, const struct track_form *form, const char *name);
 
 #endif

@@ -136,15 +136,6 @@ static moray_status draw_phase(const struct track *t, int p)
 
 moray_status moray_run_write_trajectory(const app_run *run)
 {
-    static const struct track_form form = {entries, describe, rows, fill};
-    struct track t;
-    moray_status status = moray_track_new(&t, run, &form), figure = moray_ok();
-    if (!moray_failed(status))
-        status = moray_track_write(&t, "trajectory.csv");
-    for (int p = 0; p < run->app->spec->phases && !moray_failed(status) && !moray_failed(figure); p++)
-        figure = draw_phase(&t, p);
-    if (!moray_failed(status))
-        status = moray_app_drawn(&run->common, run->name, figure);
-    moray_track_free(&t);
-    return status;
+    static const struct track_form form = {entries, describe, rows, fill, draw_phase};
+    return moray_track_write_new(run, &form, "trajectory.csv");
 }

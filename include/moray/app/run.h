@@ -33,6 +33,7 @@ typedef struct moray_app {
     const moray_app_units *units;           // [phases]
     const moray_app_constant *constants;    // at most MORAY_APP_CONSTANTS
     int n_constants;
+    bool known_variance; // weights of observations are 1 / variance, not only ratios (moray_fit_new)
 } moray_app;
 
 enum { MORAY_APP_CONSTANTS = 32 };
@@ -40,7 +41,9 @@ enum { MORAY_APP_CONSTANTS = 32 };
 // Reads the options, solves, certifies by re-simulation, prints a table or (--json) one JSON object on standard output,
 // and leaves with --out summary.json, trajectory.csv, figures of states and controls over time, report.html, and
 // solution.moray, from which --continue FILE goes on, and from which --guess FILE starts on the mesh of the options (as
-// from a trajectory.csv, which has no multipliers).
+// from a trajectory.csv, which has no multipliers). A problem with observations has a table of its parameters with
+// intervals of 95 %, in the summary as "fit"; with --out residuals.csv (for each channel NAME, "NAME predicted" and
+// "NAME residual", observed less predicted) and figures of data and prediction.
 // Ctrl-C ends the solve at the next iteration and leaves the best iterate in a file, from which --continue FILE starts,
 // on the mesh it has unless --scheme or --intervals name another; a second Ctrl-C ends at once. What the solver left is
 // shown and written in any case: solved (exit code 0, or 3 where the certificate failed), not solved (1) or interrupted
@@ -72,7 +75,7 @@ MORAY_API bool moray_interrupted(void);
 #define MORAY_CONTINUE(settings, field)                                                                                \
     {                                                                                                                  \
         .flag = "continue", .argument = "FILE", .type = MORAY_OPTION_TEXT, MORAY_AT(settings, field),                  \
-        .help = "go on from the solution in this file (solution.moray of --out, or what Ctrl-C left)"                   \
+        .help = "go on from the solution in this file (solution.moray of --out, or what Ctrl-C left)"                  \
     }
 
 // The row of --guess FILE, likewise.
