@@ -89,6 +89,7 @@ typedef void moray_continuous_fn(const moray_node *at, moray_rates *out, const v
 typedef struct moray_phase_ends {
     const moray_num *x0, *xf, *q; // [nx], [nx], [nq]
     moray_num t0, tf;
+    const moray_num *u0, *uf; // [nu], NULL unless the phase has end_controls
 } moray_phase_ends;
 typedef struct moray_ends {
     const moray_phase_ends *phase;
@@ -113,6 +114,7 @@ typedef void moray_continuous_real_fn(const moray_real_node *at, moray_real_rate
 typedef struct moray_real_phase_ends {
     const double *x0, *xf, *q;
     double t0, tf;
+    const double *u0, *uf;
 } moray_real_phase_ends;
 typedef struct moray_real_ends {
     const moray_real_phase_ends *phase;
@@ -163,6 +165,8 @@ typedef struct moray_phase_spec {
     const char *const *x_names, *const *u_names, *const *c_names; // NULL: x[0], ...
     moray_continuous_real_fn *continuous_real;                    // differences
     moray_observations observed;                                  // n = 0: none
+    moray_bounds_list u0, uf; // narrow u at the ends: what its polynomials of the first and last interval are there
+    bool end_controls;        // whether the endpoint reads u0 and uf
 } moray_phase_spec;
 
 // Of endpoint, endpoint_real and endpoint_map, exactly one.
@@ -171,7 +175,8 @@ typedef struct moray_ocp_spec {
     int phases, ns, ne;
     const moray_phase_spec *phase; // [phases]
     moray_endpoint_fn *endpoint;   // complex step
-    const moray_map *endpoint_map; // analytic: in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
+    const moray_map *endpoint_map; // analytic: in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e];
+                                   // u0, uf after the q of a phase that has end_controls
     moray_bounds_list s, e;
     const char *const *s_names, *const *e_names;
     const void *data;                      // handed to the functions
@@ -334,8 +339,8 @@ MORAY_API const double *moray_solution_event_multipliers(const moray_solution *s
 // Multipliers of path constraints c[count][nc], and of the bounds on states x[count][nx] and controls u[count][nu], at
 // the nodes, as densities in time: mu(t) dt is minus dJ of moving the active bound up for dt, so that it is positive at
 // an upper bound, negative at a lower one, 0 between, and the Hamiltonian g + lambda f + mu c is stationary in u. NaN
-// where c and u are not collocated, and for states at both ends of the phase, whose bounds are of x0 and xf: see
-// moray_solution_end_multipliers. Where a state stays on a bound of its own, the density may hold single nodes with
+// where c and u are not collocated, for states at both ends of the phase, whose bounds are of x0 and xf (see
+// moray_solution_end_multipliers), and for controls there that u0 or uf narrows. Where a state stays on a bound of its own, the density may hold single nodes with
 // what jumps the costate: its integral by the quadrature of the mesh converges, its values there grow. Any array may be
 // NULL. Returns the count, as moray_solution_nodes, whose times these are.
 MORAY_API int moray_solution_multipliers(const moray_solution *solution, int phase, double *c, double *x, double *u);

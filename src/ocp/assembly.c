@@ -5,6 +5,7 @@
 //   defect   sum_j P_ij x_j - T w sum_j Q_ij f_j
 //   integral q - T sum_n weight_n g_n
 //   length   T
+//   end      u0 - sum_j ell_j(0) u_j over the first interval, or the same of uf, where no node has the control
 #include "ocp/transcription.h"
 
 #include <string.h>
@@ -54,12 +55,28 @@ static void path_and_integrals(const struct transcription *t, int p, double *g)
     }
 }
 
+static void end_controls(const struct transcription *t, int p, int end, double *g)
+{
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const int nx = t->ocp->phase[p].nx, nu = t->ocp->phase[p].nu;
+    double ell[MORAY_MAX_STAGES + 2], *row = g + layout->u_row[end];
+    const struct interval *interval = moray_layout_end(layout, end, ell);
+    const struct node *node = layout->node + interval->first;
+    memcpy(row, t->x + layout->u_end[end], (size_t)nu * sizeof *row);
+    for (int j = interval->scheme->first; j <= interval->scheme->last; j++)
+        for (int r = 0; r < nu; r++)
+            row[r] -= ell[j] * t->x[node[j].x + nx + r];
+}
+
 void moray_assemble_constraints(const struct transcription *t, double *g)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
         for (int k = 0; k < t->layout.phase[p].mesh.intervals; k++)
             interval_defects(t, p, &t->layout.phase[p].interval[k], g);
         path_and_integrals(t, p, g);
+        for (int end = 0; end < 2; end++)
+            if (t->layout.phase[p].u_row[end] >= 0)
+                end_controls(t, p, end, g);
         if (t->layout.phase[p].length_row >= 0)
             g[t->layout.phase[p].length_row] = duration(t, p);
     }
@@ -145,6 +162,20 @@ static void put_path_and_integrals(const struct transcription *t, int p, int n, 
         put_duration(t, p, layout->integral_row + m, -node->weight * value[before_g + m], out);
 }
 
+static void put_end_controls(const struct transcription *t, int p, int end, triplets *out)
+{
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const int nx = t->ocp->phase[p].nx;
+    double ell[MORAY_MAX_STAGES + 2];
+    const struct interval *interval = moray_layout_end(layout, end, ell);
+    const struct node *node = layout->node + interval->first;
+    for (int r = 0; r < t->ocp->phase[p].nu; r++) {
+        triplets_put(out, layout->u_row[end] + r, layout->u_end[end] + r, 1);
+        for (int j = interval->scheme->first; j <= interval->scheme->last; j++)
+            triplets_put(out, layout->u_row[end] + r, node[j].x + nx + r, -ell[j]);
+    }
+}
+
 // One walk for pattern and values: recording, it notes where entries go, and ever after writes values in that order.
 void moray_walk_jacobian(const struct transcription *t, triplets *out)
 {
@@ -157,6 +188,9 @@ void moray_walk_jacobian(const struct transcription *t, triplets *out)
                 put_path_and_integrals(t, p, n, out);
         for (int m = 0; m < t->ocp->phase[p].nq; m++)
             triplets_put(out, layout->integral_row + m, layout->q + m, 1);
+        for (int end = 0; end < 2; end++)
+            if (layout->u_row[end] >= 0)
+                put_end_controls(t, p, end, out);
         if (layout->length_row >= 0)
             put_duration(t, p, layout->length_row, 1, out);
     }

@@ -74,6 +74,11 @@ static double bound_multiplier(const moray_solution *solution, int column)
     return solution->iterate.z_upper[column] - solution->iterate.z_lower[column];
 }
 
+static bool same_bounds(moray_bounds one, moray_bounds other)
+{
+    return one.lower == other.lower && one.upper == other.upper;
+}
+
 int moray_solution_multipliers(const moray_solution *solution, int p, double *c, double *x, double *u)
 {
     const struct transcription *t = solution->transcription;
@@ -84,13 +89,15 @@ int moray_solution_multipliers(const moray_solution *solution, int p, double *c,
         const struct node *node = &layout->node[n];
         const double share = node->collocated ? T * node->weight : NAN;
         const bool inside = n > 0 && n < layout->nodes - 1;
+        const moray_bounds *own = n == 0 ? phase->u0 : inside ? phase->u : phase->uf;
         for (int r = 0; c && r < phase->nc; r++)
             c[n * phase->nc + r] = node->collocated ? solution->iterate.lambda[node->path + r] / share : NAN;
         for (int r = 0; x && r < phase->nx; r++)
             x[n * phase->nx + r] = inside ? bound_multiplier(solution, node->x + r) / share : NAN;
         for (int r = 0; u && r < phase->nu; r++)
-            u[n * phase->nu + r] =
-                node->collocated ? bound_multiplier(solution, node->x + phase->nx + r) / share : NAN;
+            u[n * phase->nu + r] = node->collocated && same_bounds(own[r], phase->u[r])
+                                       ? bound_multiplier(solution, node->x + phase->nx + r) / share
+                                       : NAN;
     }
     return layout->nodes;
 }

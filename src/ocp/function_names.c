@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "ocp/names.h"
+#include "ocp/probe.h"
 
 void moray_function_entry_name(const char *kind, const char *letter, const char *const *names, int i, char *text,
                                int size)
@@ -42,9 +43,12 @@ enum { name_size = 100 };
 
 void moray_phase_end_name(const struct phase *phase, int i, char *text, int size)
 {
-    const int nx = phase->nx, first = i <= nx;
+    const int nx = phase->nx, first = i <= nx, u0 = 2 * nx + 2 + phase->nq, uf = u0 + phase->nu;
     char what[name_size];
-    if (i >= 2 * nx + 2)
+    if (i >= u0)
+        moray_function_entry_name(i < uf ? "initial control" : "final control", "u", phase->u_names,
+                                  i < uf ? i - u0 : i - uf, what, name_size);
+    else if (i >= 2 * nx + 2)
         moray_function_entry_name("integral", "q", NULL, i - 2 * nx - 2, what, name_size);
     else if (i == nx || i == 2 * nx + 1)
         snprintf(what, name_size, first ? "initial time" : "final time");
@@ -73,7 +77,7 @@ static void observed_input_name(const moray_ocp *ocp, int i, char *text, int siz
 void moray_endpoint_input_name(const moray_ocp *ocp, int i, char *text, int size)
 {
     for (int p = 0; p < ocp->phases; p++) {
-        const int n = 2 * ocp->phase[p].nx + 2 + ocp->phase[p].nq;
+        const int n = moray_end_inputs(&ocp->phase[p]);
         if (i < n) {
             moray_phase_end_name(&ocp->phase[p], i, text, size);
             return;

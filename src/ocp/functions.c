@@ -44,10 +44,13 @@ static void call_endpoint(void *self, const double complex *in, double complex *
 {
     const moray_ocp *ocp = self;
     for (int p = 0; p < ocp->phases; p++) {
-        const int nx = ocp->phase[p].nx;
+        const struct phase *phase = &ocp->phase[p];
+        const int nx = phase->nx, u = 2 * nx + 2 + phase->nq;
         ocp->ends[p] =
             (moray_phase_ends){.x0 = in, .t0 = in[nx], .xf = in + nx + 1, .tf = in[2 * nx + 1], .q = in + 2 * nx + 2};
-        in += 2 * nx + 2 + ocp->phase[p].nq;
+        if (phase->end_controls)
+            ocp->ends[p].u0 = in + u, ocp->ends[p].uf = in + u + phase->nu;
+        in += moray_end_inputs(phase);
     }
     const moray_ends ends = {.phase = ocp->ends, .s = in};
     moray_end_values verdict = {.e = out + 1};
@@ -59,10 +62,13 @@ static void call_endpoint_real(void *self, const double *in, double *out)
 {
     const moray_ocp *ocp = self;
     for (int p = 0; p < ocp->phases; p++) {
-        const int nx = ocp->phase[p].nx;
+        const struct phase *phase = &ocp->phase[p];
+        const int nx = phase->nx, u = 2 * nx + 2 + phase->nq;
         ocp->real_ends[p] = (moray_real_phase_ends){
             .x0 = in, .t0 = in[nx], .xf = in + nx + 1, .tf = in[2 * nx + 1], .q = in + 2 * nx + 2};
-        in += 2 * nx + 2 + ocp->phase[p].nq;
+        if (phase->end_controls)
+            ocp->real_ends[p].u0 = in + u, ocp->real_ends[p].uf = in + u + phase->nu;
+        in += moray_end_inputs(phase);
     }
     const moray_real_ends ends = {.phase = ocp->real_ends, .s = in};
     moray_real_end_values verdict = {.e = out + 1};

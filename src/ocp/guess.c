@@ -164,12 +164,17 @@ moray_guess moray_guess_from_solution(const moray_solution *solution)
     return (moray_guess){.from = solution};
 }
 
-// q of the guessed trajectory: what makes its definition hold.
-static void guess_integrals(const struct transcription *t, const double *g, double *x)
+// q and the controls at the ends of the guessed trajectory: what makes their definitions hold.
+static void guess_defined(const struct transcription *t, const double *g, double *x)
 {
-    for (int p = 0; p < t->ocp->phases; p++)
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const struct phase_layout *layout = &t->layout.phase[p];
         for (int m = 0; m < t->ocp->phase[p].nq; m++)
-            x[t->layout.phase[p].q + m] -= g[t->layout.phase[p].integral_row + m];
+            x[layout->q + m] -= g[layout->integral_row + m];
+        for (int end = 0; end < 2; end++)
+            for (int r = 0; r < t->ocp->phase[p].nu && layout->u_row[end] >= 0; r++)
+                x[layout->u_end[end] + r] -= g[layout->u_row[end] + r];
+    }
 }
 
 static void clamp(const struct transcription *t, double *x)
@@ -181,7 +186,11 @@ static void clamp(const struct transcription *t, double *x)
 static moray_status fill_phase(struct transcription *t, int p, const moray_guess *guess, double *x)
 {
     const struct phase *phase = &t->ocp->phase[p];
-    memset(x + t->layout.phase[p].q, 0, (size_t)phase->nq * sizeof *x);
+    const struct phase_layout *layout = &t->layout.phase[p];
+    memset(x + layout->q, 0, (size_t)phase->nq * sizeof *x);
+    for (int end = 0; end < 2; end++)
+        for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
+            x[layout->u_end[end] + r] = moray_bounds_middle(phase->u[r]);
     if (guess && guess->from) {
         guess_from_solution(t, p, guess, x);
     } else if (guess && guess->phase && guess->phase[p].n != 0) {
@@ -217,7 +226,7 @@ moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess,
         return moray_error(MORAY_MEMORY, "no memory for %d constraints", t->layout.rows);
     const bool ok = t->nlp.constraints(t, x, true, g);
     if (ok)
-        guess_integrals(t, g, x);
+        guess_defined(t, g, x);
     clamp(t, x);
     free(g);
     return ok ? moray_ok() : moray_error(MORAY_NUMERIC, "at the guess, %.200s", t->failure.text);

@@ -44,6 +44,30 @@ static void place_points(const struct layout *layout, struct phase_layout *phase
     }
 }
 
+const struct interval *moray_layout_end(const struct phase_layout *phase, int end, double *ell)
+{
+    const struct interval *interval = &phase->interval[end ? phase->mesh.intervals - 1 : 0];
+    double integral[MORAY_MAX_STAGES + 2];
+    moray_scheme_basis(interval->scheme, end, ell, integral);
+    return interval;
+}
+
+// The controls at an end are those of the node there; where it has none, columns and rows of their own if asked for.
+static void number_end_controls(struct layout *layout, struct phase_layout *phase, const struct phase *p, int end)
+{
+    const struct node *node = &phase->node[end ? phase->nodes - 1 : 0];
+    const bool wanted = p->end_controls || p->bounds_end_controls;
+    phase->u_end[end] = phase->u_row[end] = -1;
+    if (node->collocated) {
+        phase->u_end[end] = node->x + p->nx;
+    } else if (wanted) {
+        phase->u_end[end] = layout->columns;
+        phase->u_row[end] = layout->rows;
+        layout->columns += p->nu;
+        layout->rows += p->nu;
+    }
+}
+
 // Columns and rows of a phase in the order of time, which keeps the factorisation's fill low.
 static void number_phase(struct layout *layout, struct phase_layout *phase, const struct phase *p)
 {
@@ -61,6 +85,8 @@ static void number_phase(struct layout *layout, struct phase_layout *phase, cons
     layout->columns += p->nq;
     phase->integral_row = layout->rows;
     layout->rows += p->nq;
+    for (int end = 0; end < 2; end++)
+        number_end_controls(layout, phase, p, end);
     phase->t0 = moray_bounds_are_fixed(p->t0) ? -1 : layout->columns++;
     phase->tf = moray_bounds_are_fixed(p->tf) ? -1 : layout->columns++;
     const bool may_turn = phase->t0 >= 0 && phase->tf >= 0 && p->t0.upper > p->tf.lower;

@@ -31,6 +31,8 @@ struct phase_layout {
     int t0, tf;       // columns, -1 where fixed
     int q;            // first column of the integrals
     int integral_row; // first row of their definitions
+    int u_end[2];     // first columns of the controls at the ends: of a node, or after q; -1 where nothing asks
+    int u_row[2];     // first rows of the definitions of those after q, after those of the integrals; else -1
     int length_row;   // tf - t0 >= 0, or within its bounds; -1 where the bounds of the times say so already
 };
 
@@ -47,6 +49,9 @@ struct layout {
 moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family,
                               const struct mesh *meshes);
 void moray_layout_free(struct layout *layout);
+
+// The interval at an end (0, 1) of a phase, and ell[points] of its nodes' controls in the control there.
+const struct interval *moray_layout_end(const struct phase_layout *phase, int end, double *ell);
 
 // Time of tau in phase p at the decision vector x.
 double moray_layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau);

@@ -72,6 +72,9 @@ static void carry_bounds(const struct transfer *t, const double *source, double 
     const size_t state = (size_t)phase->nx * sizeof *target; // at the ends they are no densities
     memcpy(target + t->new->node[0].x, source + t->old->node[0].x, state);
     memcpy(target + t->new->node[t->new->nodes - 1].x, source + t->old->node[t->old->nodes - 1].x, state);
+    for (int end = 0; end < 2 && phase->bounds_end_controls; end++)
+        if (t->new->u_end[end] >= 0 && t->old->u_end[end] >= 0)
+            memcpy(target + t->new->u_end[end], source + t->old->u_end[end], (size_t)phase->nu * sizeof *target);
     memcpy(target + t->new->q, source + t->old->q, (size_t)phase->nq * sizeof *target);
     if (t->new->t0 >= 0 && t->old->t0 >= 0)
         target[t->new->t0] = source[t->old->t0];
@@ -105,8 +108,8 @@ static moray_status carry_phase(const moray_guess *guess, moray_solution *to, in
     double t0, tf;
     moray_layout_span(&to->transcription->layout, to->transcription->ocp, to->iterate.x, p, &t0, &tf);
     const struct phase *phase = &to->transcription->ocp->phase[p];
-    struct transfer t = {moray_align(guess, p, t0, tf), from, to, p, &from->transcription->layout.phase[p], &to->transcription->layout.phase[p],
-                         NULL, NULL};
+    struct transfer t = {moray_align(guess, p, t0, tf),       from, to,  p, &from->transcription->layout.phase[p],
+                         &to->transcription->layout.phase[p], NULL, NULL};
     const size_t width = (size_t)(phase->nx + phase->nu + phase->nc);
     t.density = calloc(((size_t)t.old->nodes + 1) * width, sizeof *t.density);
     if (!t.density)
@@ -118,6 +121,10 @@ static moray_status carry_phase(const moray_guess *guess, moray_solution *to, in
     carry(&t, from->iterate.lambda, to->iterate.lambda, of_path, phase->nc);
     memcpy(to->iterate.lambda + t.new->integral_row, from->iterate.lambda + t.old->integral_row,
            (size_t)phase->nq * sizeof *t.here);
+    for (int end = 0; end < 2; end++)
+        if (t.new->u_row[end] >= 0 && t.old->u_row[end] >= 0)
+            memcpy(to->iterate.lambda + t.new->u_row[end], from->iterate.lambda + t.old->u_row[end],
+                   (size_t)phase->nu * sizeof *t.here);
     if (t.new->length_row >= 0 && t.old->length_row >= 0)
         to->iterate.lambda[t.new->length_row] = from->iterate.lambda[t.old->length_row];
     free(t.density);

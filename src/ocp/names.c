@@ -69,6 +69,10 @@ void moray_layout_row_name(const struct layout *layout, const moray_ocp *ocp, co
     const struct phase_layout *phase = &layout->phase[p];
     if (row == phase->length_row) {
         snprintf(text, (size_t)size, "length of phase %s", ocp->phase[p].name);
+    } else if (row >= phase->integral_row + ocp->phase[p].nq) {
+        const int m = row - phase->integral_row;
+        moray_phase_end_name(&ocp->phase[p], 2 * ocp->phase[p].nx + 2 + m, what, name_size);
+        snprintf(text, (size_t)size, "definition of %s", what);
     } else if (row >= phase->integral_row) {
         snprintf(text, (size_t)size, "definition of integral q[%d] of phase %s", row - phase->integral_row,
                  ocp->phase[p].name);

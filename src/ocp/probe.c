@@ -8,11 +8,16 @@ int moray_phase_inputs(const struct phase *p)
     return p->nx + p->nu + p->ns + 1;
 }
 
+int moray_end_inputs(const struct phase *p)
+{
+    return 2 * p->nx + 2 + p->nq + (p->end_controls ? 2 * p->nu : 0);
+}
+
 int moray_endpoint_inputs(const moray_ocp *ocp)
 {
     int n = ocp->ns;
     for (int i = 0; i < ocp->phases; i++)
-        n += 2 * ocp->phase[i].nx + 2 + ocp->phase[i].nq;
+        n += moray_end_inputs(&ocp->phase[i]);
     return n;
 }
 
@@ -61,6 +66,8 @@ void moray_endpoint_sizes(const moray_ocp *ocp, double *size)
             *size++ = fmin(size_of(p->t0), size_of(p->tf));
         }
         size_list(p->q, p->nq, &size);
+        for (int end = 0; end < 2 && p->end_controls; end++)
+            size_list(p->u, p->nu, &size);
     }
     size_list(ocp->s, ocp->ns, &size);
 }
@@ -108,6 +115,10 @@ void moray_endpoint_probe(const moray_ocp *ocp, int trial, double *in)
         probe_list(p->xf, p->nx, trial, &in);
         probe_list(&p->tf, 1, trial + 1, &in);
         probe_list(p->q, p->nq, trial, &in);
+        if (p->end_controls) {
+            probe_list(p->u0, p->nu, trial, &in);
+            probe_list(p->uf, p->nu, trial + 1, &in);
+        }
     }
     probe_list(ocp->s, ocp->ns, trial, &in);
 }
@@ -196,6 +207,10 @@ void moray_endpoint_points(const moray_ocp *ocp, int trial, double *points)
             box_list(p->xf, p->nx, (int)(in - point), k, &in);
             box_list(&p->tf, 1, (int)(in - point), k, &in);
             box_list(p->q, p->nq, (int)(in - point), k, &in);
+            if (p->end_controls) {
+                box_list(p->u0, p->nu, (int)(in - point), k, &in);
+                box_list(p->uf, p->nu, (int)(in - point), k, &in);
+            }
         }
         box_list(ocp->s, ocp->ns, (int)(in - point), k, &in);
     }

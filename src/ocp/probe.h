@@ -8,6 +8,7 @@
 
 int moray_phase_inputs(const struct phase *p);
 int moray_endpoint_inputs(const moray_ocp *ocp);
+int moray_end_inputs(const struct phase *p); // of one phase: x0, t0, xf, tf, q, and where read u0, uf
 
 // A point within the bounds, off the middle, so that nothing vanishes by symmetry; another trial moves it.
 // in[moray_phase_inputs] = [x, u, s, t]; in[moray_endpoint_inputs] = [x0, t0, xf, tf, q of each phase in turn, s].

@@ -89,18 +89,27 @@ static moray_status copy_bounds(moray_ocp *ocp, struct place place, moray_bounds
     return moray_ok();
 }
 
-// x0 and xf narrow x.
-static moray_status narrow(struct place place, const struct phase *phase, moray_bounds *end)
+// x0 and xf narrow x, u0 and uf narrow u.
+static moray_status narrow(struct place place, const moray_bounds *along, int n, moray_bounds *end)
 {
-    for (int i = 0; i < phase->nx; i++) {
+    for (int i = 0; i < n; i++) {
         const moray_bounds given = end[i];
-        end[i].lower = fmax(given.lower, phase->x[i].lower);
-        end[i].upper = fmin(given.upper, phase->x[i].upper);
+        end[i].lower = fmax(given.lower, along[i].lower);
+        end[i].upper = fmin(given.upper, along[i].upper);
         if (end[i].lower > end[i].upper)
-            return moray_error(MORAY_INPUT, "%s[%d] of %s: [%g, %g] does not meet the bounds [%g, %g] of x", place.what,
-                               i, place.where, given.lower, given.upper, phase->x[i].lower, phase->x[i].upper);
+            return moray_error(MORAY_INPUT, "%s[%d] of %s: [%g, %g] does not meet the bounds [%g, %g] of %c",
+                               place.what, i, place.where, given.lower, given.upper, along[i].lower, along[i].upper,
+                               place.what[0]);
     }
     return moray_ok();
+}
+
+static moray_status narrow_ends(struct phase *phase)
+{
+    MORAY_TRY(narrow((struct place){"x0", phase->name}, phase->x, phase->nx, phase->x0));
+    MORAY_TRY(narrow((struct place){"xf", phase->name}, phase->x, phase->nx, phase->xf));
+    MORAY_TRY(narrow((struct place){"u0", phase->name}, phase->u, phase->nu, phase->u0));
+    return narrow((struct place){"uf", phase->name}, phase->u, phase->nu, phase->uf);
 }
 
 static moray_status check_phase(const struct phase *phase, const moray_phase_spec *spec)
@@ -134,7 +143,8 @@ static moray_status take_duration(struct phase *phase, moray_bounds duration)
                            duration.upper);
     const moray_bounds t0 = phase->t0, tf = phase->tf, d = phase->duration;
     if (tf.upper - t0.lower < d.lower || tf.lower - t0.upper > d.upper)
-        return moray_error(MORAY_INPUT, "phase %s: duration in [%g, %g] does not meet t0 in [%g, %g] and tf in [%g, %g]",
+        return moray_error(MORAY_INPUT,
+                           "phase %s: duration in [%g, %g] does not meet t0 in [%g, %g] and tf in [%g, %g]",
                            phase->name, d.lower, d.upper, t0.lower, t0.upper, tf.lower, tf.upper);
     if (moray_bounds_are_fixed(t0) && !moray_bounds_are_fixed(tf))
         phase->tf = moray_between(fmax(tf.lower, t0.lower + d.lower), fmin(tf.upper, t0.lower + d.upper));
@@ -208,6 +218,7 @@ static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, int
     phase->nx = spec->nx, phase->nu = spec->nu, phase->nc = spec->nc, phase->nq = spec->nq, phase->ns = ocp->ns;
     phase->map = spec->map;
     phase->t0 = spec->t0, phase->tf = spec->tf;
+    phase->end_controls = spec->end_controls, phase->bounds_end_controls = spec->u0.n > 0 || spec->uf.n > 0;
     MORAY_TRY(check_phase(phase, spec));
     MORAY_TRY(check_bounds((struct place){"t0", phase->name}, NULL, 0, spec->t0));
     MORAY_TRY(check_bounds((struct place){"tf", phase->name}, NULL, 0, spec->tf));
@@ -227,13 +238,14 @@ static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, int
                  {"x0", spec->x0, spec->nx, phase->x_names, false, &phase->x0},
                  {"xf", spec->xf, spec->nx, phase->x_names, false, &phase->xf},
                  {"u", spec->u, spec->nu, phase->u_names, false, &phase->u},
+                 {"u0", spec->u0, spec->nu, phase->u_names, false, &phase->u0},
+                 {"uf", spec->uf, spec->nu, phase->u_names, false, &phase->uf},
                  {"c", spec->c, spec->nc, phase->c_names, true, &phase->c},
                  {"q", spec->q, spec->nq, NULL, false, &phase->q}};
     for (unsigned i = 0; i < sizeof lists / sizeof *lists; i++)
         MORAY_TRY(copy_bounds(ocp, (struct place){lists[i].what, phase->name}, lists[i].list, lists[i].n,
                               lists[i].names, lists[i].required, lists[i].copy));
-    MORAY_TRY(narrow((struct place){"x0", phase->name}, phase, phase->x0));
-    MORAY_TRY(narrow((struct place){"xf", phase->name}, phase, phase->xf));
+    MORAY_TRY(narrow_ends(phase));
     return copy_observed(ocp, phase, &spec->observed);
 }
 

@@ -37,12 +37,13 @@ struct phase {
     bool has_duration;
     int intervals; // of the first mesh; 0: those of the settings
     double *mesh;  // [intervals + 1]; NULL: of equal length
-    moray_bounds *x, *x0, *xf, *u, *c, *q;
+    moray_bounds *x, *x0, *xf, *u, *u0, *uf, *c, *q;
+    bool end_controls, bounds_end_controls; // whether the endpoint reads u0 and uf; whether one is narrower than u
     const char **x_names, **u_names, **c_names; // NULL where the user named nothing
 };
 
 struct endpoint {
-    const moray_map *map; // in = [x0, t0, xf, tf, q of each phase in turn, s], out = [J, e]
+    const moray_map *map; // in = [x0, t0, xf, tf, q, u0 and uf if read, of each phase in turn, s], out = [J, e]
     struct own_map *own;  // as of a phase
 };
 

@@ -117,6 +117,9 @@ static void scale_phase(struct transcription *t, int p, const double *x, double 
         for (int i = 0; i < layout->interval[k].scheme->points - 1; i++)
             for (int r = 0; r < phase->nx; r++)
                 g_scale[layout->interval[k].defect + i * phase->nx + r] = 1 / size[r];
+    for (int end = 0; end < 2; end++)
+        for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
+            x_scale[layout->u_end[end] + r] = g_scale[layout->u_row[end] + r] = 1 / size[phase->nx + r];
     for (int m = 0; m < phase->nq; m++)
         x_scale[layout->q + m] = g_scale[layout->integral_row + m] = 1 / size_of(phase->q[m], fabs(x[layout->q + m]));
     if (layout->t0 >= 0)

@@ -6,13 +6,9 @@
 #include <string.h>
 
 #include "ocp/names.h"
+#include "ocp/probe.h"
 
 enum { name_size = 100 };
-
-static int end_inputs(const struct phase *p)
-{
-    return 2 * p->nx + 2 + p->nq;
-}
 
 const int *moray_node_columns(const struct transcription *t, int p, const struct node *node)
 {
@@ -81,7 +77,7 @@ static bool end_values(struct transcription *t)
         const int nx = t->ocp->phase[p].nx;
         t->end_in[k + nx] = t->phase[p].t0;
         t->end_in[k + 2 * nx + 1] = t->phase[p].tf;
-        k += end_inputs(&t->ocp->phase[p]);
+        k += moray_end_inputs(&t->ocp->phase[p]);
     }
     for (int i = 0; i < map->n_in; i++)
         if (t->end_column[i] >= 0)

@@ -49,6 +49,9 @@ static void set_phase_bounds(struct transcription *t, int p)
         for (int r = 0; r < phase->nc && node->collocated; r++)
             set_row(t, node->path + r, phase->c[r]);
     }
+    for (int end = 0; end < 2; end++)
+        for (int r = 0; r < phase->nu && layout->u_end[end] >= 0; r++)
+            set_column(t, layout->u_end[end] + r, end ? phase->uf[r] : phase->u0[r]);
     for (int r = 0; r < phase->nq; r++)
         set_column(t, layout->q + r, phase->q[r]); // rows of defects and integrals stay at zero
     set_times(t, phase, layout);
@@ -77,8 +80,8 @@ static void set_observed_columns(struct transcription *t, int *column)
     }
 }
 
-// Where each input of the endpoint map lives among the variables, in the order [x0, t0, xf, tf, q of each phase, s];
-// -1: fixed.
+// Where each input of the endpoint map lives among the variables, in the order [x0, t0, xf, tf, q, and where
+// read u0, uf of each phase, s]; -1: fixed.
 static void set_end_columns(struct transcription *t)
 {
     int *column = t->end_column;
@@ -93,6 +96,9 @@ static void set_end_columns(struct transcription *t)
         *column++ = layout->tf;
         for (int r = 0; r < phase->nq; r++)
             *column++ = layout->q + r;
+        for (int end = 0; end < 2 && phase->end_controls; end++)
+            for (int r = 0; r < phase->nu; r++)
+                *column++ = layout->u_end[end] + r;
     }
     for (int r = 0; r < t->ocp->ns; r++)
         *column++ = t->layout.s + r;

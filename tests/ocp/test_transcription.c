@@ -40,9 +40,13 @@ static void verdict(const moray_ends *at, moray_end_values *out, const void *dat
     out->objective = two->tf * one->q[0] + two->xf[0] * two->xf[1] + at->s[0] * one->x0[1] + two->q[0] * one->q[1];
     out->e[0] = one->tf - two->t0;
     out->e[1] = one->xf[0] * at->s[1] - two->x0[0] + two->x0[1] * two->t0;
+    if (two->u0) {
+        out->objective += two->u0[1] * two->uf[0] * one->tf;
+        out->e[0] += exp(two->u0[0] * 0.3) * two->uf[1] * two->xf[1];
+    }
 }
 
-static moray_status make_problem(moray_ocp **ocp, moray_bounds t0)
+static moray_status make_problem(moray_ocp **ocp, moray_bounds t0, bool end_controls)
 {
     const moray_phase_spec phases[] = {{.name = "first",
                                         .nx = 3,
@@ -58,6 +62,7 @@ static moray_status make_problem(moray_ocp **ocp, moray_bounds t0)
                                         .nu = 2,
                                         .nc = 2,
                                         .nq = 1,
+                                        .end_controls = end_controls,
                                         .continuous = second_leg,
                                         .t0 = moray_between(0.5, 2),
                                         .tf = moray_between(2, 4),
@@ -165,16 +170,19 @@ static void check_programme(const moray_ocp *ocp, moray_family family, int stage
 
 int main(void)
 {
-    moray_ocp *free_start, *fixed_start;
-    CHECK_OK(make_problem(&free_start, moray_between(0, 0.4)), "a problem with free times");
-    CHECK_OK(make_problem(&fixed_start, moray_fixed(0.25)), "a problem with a fixed start");
+    moray_ocp *free_start, *fixed_start, *with_controls;
+    CHECK_OK(make_problem(&free_start, moray_between(0, 0.4), false), "a problem with free times");
+    CHECK_OK(make_problem(&fixed_start, moray_fixed(0.25), false), "a problem with a fixed start");
+    CHECK_OK(make_problem(&with_controls, moray_between(0, 0.4), true), "whose endpoint reads controls");
     for (int stages = 1; stages <= 4; stages++)
         for (int family = 0; family < 3; family++)
             if (family != MORAY_LOBATTO || stages > 1) {
                 check_programme(free_start, (moray_family)family, stages, 7u + (unsigned)stages);
                 check_programme(fixed_start, (moray_family)family, stages, 70u + (unsigned)stages);
+                check_programme(with_controls, (moray_family)family, stages, 700u + (unsigned)stages);
             }
     moray_ocp_free(free_start);
     moray_ocp_free(fixed_start);
+    moray_ocp_free(with_controls);
     return tap_done();
 }

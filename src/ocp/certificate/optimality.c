@@ -65,6 +65,20 @@ static void add_node(struct measure *m, int p, int n)
     add_time(m, layout, by_time * (1 - node->tau) - by_duration, by_time * node->tau + by_duration);
 }
 
+static void add_end_controls(struct measure *m, int p, int end)
+{
+    const struct phase_layout *layout = &m->t->layout.phase[p];
+    const int nx = m->t->ocp->phase[p].nx;
+    const double *lambda = m->e->solution->iterate.lambda + layout->u_row[end];
+    double ell[MORAY_MAX_STAGES + 2];
+    const struct interval *interval = moray_layout_end(layout, end, ell);
+    for (int r = 0; r < m->t->ocp->phase[p].nu; r++) {
+        m->gradient[layout->u_end[end] + r] += lambda[r];
+        for (int j = interval->scheme->first; j <= interval->scheme->last; j++)
+            m->gradient[layout->node[interval->first + j].x + nx + r] -= ell[j] * lambda[r];
+    }
+}
+
 // What stands in the defects and the definitions of integrals beside the functions.
 static void add_linear(struct measure *m, int p)
 {
@@ -82,6 +96,9 @@ static void add_linear(struct measure *m, int p)
     }
     for (int q = 0; q < m->t->ocp->phase[p].nq; q++)
         m->gradient[layout->q + q] += lambda[layout->integral_row + q];
+    for (int end = 0; end < 2; end++)
+        if (layout->u_row[end] >= 0)
+            add_end_controls(m, p, end);
     if (layout->length_row >= 0)
         add_time(m, layout, -lambda[layout->length_row], lambda[layout->length_row]);
 }

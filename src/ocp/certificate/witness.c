@@ -199,7 +199,8 @@ static void size_integrals(struct witness *e, int p)
     }
 }
 
-// Inputs of the endpoint: [x0, t0, xf, tf, q] of each phase, s, and [x, u] of each observed time.
+// Inputs of the endpoint: [x0, t0, xf, tf, q, and where read u0, uf] of each phase, s, and [x, u] of each observed
+// time.
 static void size_ends(struct witness *e)
 {
     const moray_ocp *ocp = e->solution->transcription->ocp;
@@ -213,6 +214,8 @@ static void size_ends(struct witness *e)
         }
         for (int m = 0; m < phase->nq; m++)
             *size++ = e->phase[p].integral[m] > 0 ? e->phase[p].integral[m] : 1;
+        for (int end = 0; end < 2 && phase->end_controls; end++, size += phase->nu)
+            memcpy(size, e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
     }
     memcpy(size, e->phase[0].size + ocp->phase[0].nx + ocp->phase[0].nu, (size_t)ocp->ns * sizeof *size);
     size += ocp->ns;
@@ -387,6 +390,9 @@ void moray_witness_columns(const struct witness *e, double *size)
             memcpy(size + layout->node[n].x, e->phase[p].size,
                    (size_t)(phase->nx + (layout->node[n].collocated ? phase->nu : 0)) * sizeof *size);
         memcpy(size + layout->q, e->phase[p].integral, (size_t)phase->nq * sizeof *size);
+        for (int end = 0; end < 2; end++)
+            if (layout->u_row[end] >= 0)
+                memcpy(size + layout->u_end[end], e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
         if (layout->t0 >= 0)
             size[layout->t0] = e->duration;
         if (layout->tf >= 0)
@@ -413,6 +419,9 @@ void moray_witness_rows(const struct witness *e, double *size)
                 memcpy(size + layout->interval[k].defect + i * phase->nx, e->phase[p].size,
                        (size_t)phase->nx * sizeof *size);
         memcpy(size + layout->integral_row, e->phase[p].integral, (size_t)phase->nq * sizeof *size);
+        for (int end = 0; end < 2; end++)
+            if (layout->u_row[end] >= 0)
+                memcpy(size + layout->u_row[end], e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
         if (layout->length_row >= 0)
             size[layout->length_row] = e->duration;
     }
