@@ -9,6 +9,7 @@
 #include "moray/app/program.h"
 #include "moray/app/results.h"
 #include "moray/app/run.h"
+#include "moray/casadi.h"
 #include "moray/control/closed_loop.h"
 #include "moray/control/kalman.h"
 #include "moray/control/path.h"
