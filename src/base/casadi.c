@@ -20,7 +20,7 @@ static any_function *find(void *object, const char *name, const char *suffix)
     return found;
 }
 
-bool casadi_has(void *object, const char *name)
+bool moray_casadi_has(void *object, const char *name)
 {
     return find(object, name, "") != NULL;
 }
@@ -118,7 +118,7 @@ static moray_status take_memory(struct casadi_function *f, void *object)
     return moray_ok();
 }
 
-moray_status casadi_open(struct casadi_function *f, void *object, const char *name)
+moray_status moray_casadi_open(struct casadi_function *f, void *object, const char *name)
 {
     *f = (struct casadi_function){0};
     if (strlen(name) >= sizeof f->name)
@@ -148,7 +148,7 @@ static void free_blocks(struct casadi_block *block, int n)
     free(block);
 }
 
-void casadi_close(struct casadi_function *f)
+void moray_casadi_close(struct casadi_function *f)
 {
     if (f->give_back)
         f->give_back(f->mem);
@@ -163,7 +163,7 @@ void casadi_close(struct casadi_function *f)
     *f = (struct casadi_function){0};
 }
 
-bool casadi_evaluate(struct casadi_function *f)
+bool moray_casadi_evaluate(struct casadi_function *f)
 {
     for (int k = 0; k < f->n_in; k++) // which a function may overwrite: they are room for its own calls, too
         f->arg[k] = f->in[k].value;
@@ -176,7 +176,7 @@ bool casadi_evaluate(struct casadi_function *f)
     return good;
 }
 
-int casadi_entries(const struct casadi_block *block, int n)
+int moray_casadi_entries(const struct casadi_block *block, int n)
 {
     int sum = 0;
     for (int k = 0; k < n; k++)

@@ -27,16 +27,16 @@ struct casadi_function {
 };
 
 // Whether the shared object has it.
-bool casadi_has(void *object, const char *name);
+bool moray_casadi_has(void *object, const char *name);
 
-// Error: MORAY_INPUT naming what is missing or wrong, MORAY_MEMORY. casadi_close in any case.
-moray_status casadi_open(struct casadi_function *function, void *object, const char *name);
-void casadi_close(struct casadi_function *function);
+// Error: MORAY_INPUT naming what is missing or wrong, MORAY_MEMORY. moray_casadi_close in any case.
+moray_status moray_casadi_open(struct casadi_function *function, void *object, const char *name);
+void moray_casadi_close(struct casadi_function *function);
 
 // Evaluates what stands in the values of in; false, and NaN in all of out, when the function fails.
-bool casadi_evaluate(struct casadi_function *function);
+bool moray_casadi_evaluate(struct casadi_function *function);
 
 // Entries of all blocks together, zeros among them.
-int casadi_entries(const struct casadi_block *block, int n);
+int moray_casadi_entries(const struct casadi_block *block, int n);
 
 #endif

@@ -31,7 +31,7 @@ static void put_results(struct casadi_map *m, struct casadi_function *f, const d
     if (!wanted)
         return;
     put(m, &m->value, in);
-    casadi_evaluate(&m->value);
+    moray_casadi_evaluate(&m->value);
     for (int k = 0; k < m->value.n_out; k++) {
         const struct casadi_block *to = &f->in[m->value.n_in + k];
         if (to->nnz == m->value.out[k].nnz)
@@ -43,7 +43,7 @@ static void map_value(void *self, const double *in, double *out)
 {
     struct casadi_map *m = self;
     put(m, &m->value, in);
-    casadi_evaluate(&m->value);
+    moray_casadi_evaluate(&m->value);
     memset(out, 0, (size_t)m->n_out * sizeof *out);
     for (int k = 0, first = 0; k < m->value.n_out; k++) {
         const struct casadi_block *block = &m->value.out[k];
@@ -58,7 +58,7 @@ static void map_jacobian(void *self, const double *in, double *values)
     struct casadi_map *m = self;
     put_results(m, &m->jacobian, in);
     put(m, &m->jacobian, in);
-    casadi_evaluate(&m->jacobian);
+    moray_casadi_evaluate(&m->jacobian);
     for (int k = 0; k < m->jac.nnz; k++)
         values[k] = *m->jac_from[k];
 }
@@ -79,7 +79,7 @@ static void map_hessian(void *self, const double *in, const double *weight, doub
     put_results(m, &m->adjoint, in);
     put(m, &m->adjoint, in);
     put_weights(m, weight);
-    casadi_evaluate(&m->adjoint);
+    moray_casadi_evaluate(&m->adjoint);
     for (int k = 0; k < m->hess.nnz; k++)
         values[k] = *m->hess_from[k];
 }
@@ -110,9 +110,9 @@ static void map_differences(void *self, const double *in, const double *weight, 
 static void free_self(void *self)
 {
     struct casadi_map *m = self;
-    casadi_close(&m->adjoint);
-    casadi_close(&m->jacobian);
-    casadi_close(&m->value);
+    moray_casadi_close(&m->adjoint);
+    moray_casadi_close(&m->jacobian);
+    moray_casadi_close(&m->value);
     if (m->object)
         dlclose(m->object);
     moray_pattern_free(&m->jac);
@@ -132,8 +132,8 @@ static void release(moray_map *map)
 
 static moray_status set_places(struct casadi_map *m, const moray_casadi_spec *spec)
 {
-    m->entries = casadi_entries(m->value.in, m->value.n_in);
-    m->n_out = casadi_entries(m->value.out, m->value.n_out);
+    m->entries = moray_casadi_entries(m->value.in, m->value.n_in);
+    m->n_out = moray_casadi_entries(m->value.out, m->value.n_out);
     m->n_in = spec->n_in ? spec->n_in : m->entries;
     if (m->n_in < m->entries)
         return moray_error(MORAY_INPUT, "%s has %d inputs: the map must have as many, and has %d", spec->name, m->entries,
@@ -161,14 +161,14 @@ static moray_status open_all(struct casadi_map *m, const moray_casadi_spec *spec
         const char *why = dlerror();
         return moray_error(MORAY_IO, "shared object %.100s: cannot be loaded: %.150s", spec->path, why ? why : "?");
     }
-    MORAY_TRY(casadi_open(&m->value, m->object, spec->name));
+    MORAY_TRY(moray_casadi_open(&m->value, m->object, spec->name));
     MORAY_TRY(set_places(m, spec));
     snprintf(name, sizeof name, "jac_%s", spec->name);
-    if (!casadi_has(m->object, name))
+    if (!moray_casadi_has(m->object, name))
         return moray_ok();
-    MORAY_TRY(casadi_open_jacobian(m, name));
+    MORAY_TRY(moray_casadi_open_jacobian(m, name));
     snprintf(name, sizeof name, "jac_adj1_%s", spec->name);
-    return casadi_has(m->object, name) ? casadi_open_adjoint(m, name) : casadi_plan_differences(m);
+    return moray_casadi_has(m->object, name) ? moray_casadi_open_adjoint(m, name) : moray_casadi_plan_differences(m);
 }
 
 static moray_status without_jacobian(moray_map *map, struct casadi_map *m, const double *probe)

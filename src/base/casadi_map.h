@@ -20,8 +20,8 @@ struct casadi_map {
 
 // Opens jac_NAME, jac_adj1_NAME and takes the patterns and places of their entries; or makes the pattern that Hessians by
 // differences have. Error: MORAY_INPUT naming what is of the wrong shape, MORAY_MEMORY.
-moray_status casadi_open_jacobian(struct casadi_map *map, const char *name);
-moray_status casadi_open_adjoint(struct casadi_map *map, const char *name);
-moray_status casadi_plan_differences(struct casadi_map *map);
+moray_status moray_casadi_open_jacobian(struct casadi_map *map, const char *name);
+moray_status moray_casadi_open_adjoint(struct casadi_map *map, const char *name);
+moray_status moray_casadi_plan_differences(struct casadi_map *map);
 
 #endif

@@ -75,10 +75,10 @@ static moray_status check_arguments(const struct casadi_map *m, const struct cas
     return moray_ok();
 }
 
-moray_status casadi_open_jacobian(struct casadi_map *m, const char *name)
+moray_status moray_casadi_open_jacobian(struct casadi_map *m, const char *name)
 {
     struct casadi_function *f = &m->jacobian;
-    MORAY_TRY(casadi_open(f, m->object, name));
+    MORAY_TRY(moray_casadi_open(f, m->object, name));
     MORAY_TRY(check_arguments(m, f, m->value.n_in + m->value.n_out));
     const bool whole = f->n_out == 1;
     if (whole && (f->out->rows != m->n_out || f->out->cols != m->entries))
@@ -98,10 +98,10 @@ moray_status casadi_open_jacobian(struct casadi_map *m, const char *name)
     return moray_ok();
 }
 
-moray_status casadi_open_adjoint(struct casadi_map *m, const char *name)
+moray_status moray_casadi_open_adjoint(struct casadi_map *m, const char *name)
 {
     struct casadi_function *f = &m->adjoint;
-    MORAY_TRY(casadi_open(f, m->object, name));
+    MORAY_TRY(moray_casadi_open(f, m->object, name));
     MORAY_TRY(check_arguments(m, f, m->value.n_in + 2 * m->value.n_out));
     const int per_row = m->value.n_in + 2 * m->value.n_out;
     if (f->n_out != m->value.n_in * per_row)
@@ -116,7 +116,7 @@ moray_status casadi_open_adjoint(struct casadi_map *m, const char *name)
 }
 
 // Without a Hessian: any two inputs that one output depends on may meet.
-moray_status casadi_plan_differences(struct casadi_map *m)
+moray_status moray_casadi_plan_differences(struct casadi_map *m)
 {
     const int n = m->n_in;
     int nnz = 0;
