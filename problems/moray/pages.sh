@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Manual pages and completions of the command, from what it and the programs list of themselves. Arguments: the command,
-# the folder of this script, the folder to write into, the version.
+# the folder of this script, the folder to write into, the version,
+# the programs that there are.
 moray=$1
 here=$2
 to=$3
 version=$4
+shift 4
 export ASAN_OPTIONS=detect_leaks=0
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -19,6 +21,9 @@ list() {
 }
 
 "$moray" --help=list >"$work/commands" || exit 1
+for name; do
+    cut -f 2 "$work/commands" | grep -qx "$name" || { echo "$name is not in the table of problems/moray/moray.c" >&2; exit 1; }
+done
 for name in $(cut -f 2 "$work/commands"); do
     list "$name" >"$work/$name" && [ -s "$work/$name" ] || { echo "$name does not tell its options" >&2; exit 1; }
     cat "$work/$name" >>"$work/all"

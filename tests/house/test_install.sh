@@ -32,10 +32,21 @@ for header in $(sed 's|^\./||' installed); do
     check "$header compiles from there" "$@" -std=c11 -Wall -Wextra -Werror -fsyntax-only $(pkg-config --cflags moray) one.c
 done
 
+share=$prefix/share/moray
+for file in LICENSE guide.md template.c robots/paper.ini schedules/turning.csv python/moray.py python/brachistochrone.py; do
+    check "share/moray has $file" [ -s "$share/$file" ]
+done
+check "a robot from there swims" eval '"$prefix/bin/moray" simulate --robot "$share/robots/paper.ini" --duration 1 --json --quiet | grep -q v_x_m_s'
+
 # ---- A stranger's program
-cp "$source/problems/template.c" mine.c
+cp "$share/template.c" mine.c
 # shellcheck disable=SC2046
 check "template.c builds with pkg-config's flags alone" "$@" mine.c -o mine $(pkg-config --cflags --libs moray)
+
+# shellcheck disable=SC2046
+check "and with the static library" "$@" mine.c -o alone $(pkg-config --cflags moray) "$library/libmoray.a" \
+    $(pkg-config --static --libs-only-l moray | sed 's/-lmoray//')
+check "which then is all it needs of moray" eval '! ldd ./alone | grep -q moray && ./alone --json --quiet | grep -q objective'
 
 # optimum ARGUMENTS: the objective that the program finds.
 optimum() {
