@@ -27,7 +27,7 @@ static const listed programs[] = {
     {"heading_tracking", "gait and joint offset over time that follow a heading", NULL},
     {"path_following", "gait and joint offset over time that follow legs and arcs", NULL},
     {"min_time_turn", "fastest change of heading, or from pose to pose", NULL},
-    {"sea_trials", "steering judged on robots and currents that its planner did not know", NULL},
+    {"sea_trials", "steering under robots, currents and noise not foreseen", NULL},
     {"ladder", "any gaits on the ladder of models", NULL},
     {"simulate", "any gait or schedule of gaits, on either model", NULL},
     {"paper", "the figures and propositions of the paper as studies", NULL},
