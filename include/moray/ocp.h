@@ -167,6 +167,8 @@ typedef struct moray_phase_spec {
     moray_observations observed;                                  // n = 0: none
     moray_bounds_list u0, uf; // narrow u at the ends: what its polynomials of the first and last interval are there
     bool end_controls;        // whether the endpoint reads u0 and uf
+    const bool *held;         // [nu] controls that stay constant over each of this phase's own intervals, which it must
+                              // then give; meshes may cut these. NULL: none. With schemes radau<s> and gauss<s> only
 } moray_phase_spec;
 
 // Of endpoint, endpoint_real and endpoint_map, exactly one.
@@ -340,13 +342,14 @@ MORAY_API const double *moray_solution_event_multipliers(const moray_solution *s
 // the nodes, as densities in time: mu(t) dt is minus dJ of moving the active bound up for dt, so that it is positive at
 // an upper bound, negative at a lower one, 0 between, and the Hamiltonian g + lambda f + mu c is stationary in u. NaN
 // where c and u are not collocated, for states at both ends of the phase, whose bounds are of x0 and xf (see
-// moray_solution_end_multipliers), and for controls there that u0 or uf narrows. Where a state stays on a bound of its own, the density may hold single nodes with
-// what jumps the costate: its integral by the quadrature of the mesh converges, its values there grow. Any array may be
-// NULL. Returns the count, as moray_solution_nodes, whose times these are.
+// moray_solution_end_multipliers), for controls there that u0 or uf narrows, and for held ones. Where a state stays on
+// a bound of its own, the density may hold single nodes with what jumps the costate: its integral by the quadrature of
+// the mesh converges, its values there grow. Any array may be NULL. Returns the count, as moray_solution_nodes, whose
+// times these are.
 MORAY_API int moray_solution_multipliers(const moray_solution *solution, int phase, double *c, double *x, double *u);
 
-// The same of the bounds on x0[nx] and xf[nx], which are no densities: minus dJ / d(bound). NaN where the state is fixed
-// there: its costate tells. Either may be NULL.
+// The same of the bounds on x0[nx] and xf[nx], which are no densities: minus dJ / d(bound). NaN where the state is
+// fixed there: its costate tells. Either may be NULL.
 MORAY_API void moray_solution_end_multipliers(const moray_solution *solution, int phase, double *x0, double *xf);
 
 // Sizes of the programme that was solved.

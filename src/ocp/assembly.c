@@ -6,9 +6,9 @@
 //   integral q - T sum_n weight_n g_n
 //   length   T
 //   end      u0 - sum_j ell_j(0) u_j over the first interval, or the same of uf, where no node has the control
-#include "ocp/transcription.h"
-
 #include <string.h>
+
+#include "ocp/hold.h"
 
 static double duration(const struct transcription *t, int p)
 {
@@ -77,6 +77,7 @@ void moray_assemble_constraints(const struct transcription *t, double *g)
         for (int end = 0; end < 2; end++)
             if (t->layout.phase[p].u_row[end] >= 0)
                 end_controls(t, p, end, g);
+        moray_assemble_holds(t, p, g);
         if (t->layout.phase[p].length_row >= 0)
             g[t->layout.phase[p].length_row] = duration(t, p);
     }
@@ -191,6 +192,7 @@ void moray_walk_jacobian(const struct transcription *t, triplets *out)
         for (int end = 0; end < 2; end++)
             if (layout->u_row[end] >= 0)
                 put_end_controls(t, p, end, out);
+        moray_walk_holds(t, p, out);
         if (layout->length_row >= 0)
             put_duration(t, p, layout->length_row, 1, out);
     }

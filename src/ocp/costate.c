@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "ocp/hold.h"
 #include "ocp/solution.h"
 
 // Where f is collocated its coefficient in the Lagrangian is T weight times the costate. At other points the costate is
@@ -95,7 +96,7 @@ int moray_solution_multipliers(const moray_solution *solution, int p, double *c,
         for (int r = 0; x && r < phase->nx; r++)
             x[n * phase->nx + r] = inside ? bound_multiplier(solution, node->x + r) / share : NAN;
         for (int r = 0; u && r < phase->nu; r++)
-            u[n * phase->nu + r] = node->collocated && same_bounds(own[r], phase->u[r])
+            u[n * phase->nu + r] = node->collocated && same_bounds(own[r], phase->u[r]) && !moray_is_held(phase, r)
                                        ? bound_multiplier(solution, node->x + phase->nx + r) / share
                                        : NAN;
     }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ocp/hold.h"
 #include "ocp/solution.h"
 
 // Linear interpolation of row-major samples v[n][width] at time.
@@ -221,6 +222,8 @@ moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess,
     for (int p = 0; p < t->ocp->phases; p++)
         MORAY_TRY(fill_phase(t, p, guess, x));
     clamp(t, x);
+    for (int p = 0; p < t->ocp->phases; p++)
+        moray_guess_holds(t, p, x); // of clamped ones
     double *g = calloc((size_t)t->layout.rows + 1, sizeof *g);
     if (!g)
         return moray_error(MORAY_MEMORY, "no memory for %d constraints", t->layout.rows);

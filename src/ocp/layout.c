@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "ocp/hold.h"
+
 #include "ocp/observe/observed.h"
 
 static moray_status need_scheme(struct layout *layout, int stages)
@@ -87,6 +89,11 @@ static void number_phase(struct layout *layout, struct phase_layout *phase, cons
     layout->rows += p->nq;
     for (int end = 0; end < 2; end++)
         number_end_controls(layout, phase, p, end);
+    phase->hold_row = layout->rows;
+    for (int n = 0; n < phase->nodes; n++) {
+        phase->node[n].hold = layout->rows;
+        layout->rows += phase->node[n].before >= 0 ? p->n_held : 0;
+    }
     phase->t0 = moray_bounds_are_fixed(p->t0) ? -1 : layout->columns++;
     phase->tf = moray_bounds_are_fixed(p->tf) ? -1 : layout->columns++;
     const bool may_turn = phase->t0 >= 0 && phase->tf >= 0 && p->t0.upper > p->tf.lower;
@@ -113,6 +120,9 @@ moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray
         if (moray_failed(status))
             break;
         place_points(layout, phase);
+        status = moray_link_holds(phase, &ocp->phase[p], family);
+        if (moray_failed(status))
+            break;
         number_phase(layout, phase, &ocp->phase[p]);
     }
     layout->s = layout->columns;

@@ -12,8 +12,9 @@ struct node {
     double tau;    // time in the phase, 0..1
     double weight; // quadrature weight in tau; 0 where not collocated
     bool collocated;
-    int x;    // first column of the state; the control follows where collocated
-    int path; // first row of the path constraints, where collocated
+    int x;            // first column of the state; the control follows where collocated
+    int path;         // first row of the path constraints, where collocated
+    int before, hold; // the node whose held controls it has, -1 if none; first of the rows that say so
 };
 
 struct interval {
@@ -33,6 +34,7 @@ struct phase_layout {
     int integral_row; // first row of their definitions
     int u_end[2];     // first columns of the controls at the ends: of a node, or after q; -1 where nothing asks
     int u_row[2];     // first rows of the definitions of those after q, after those of the integrals; else -1
+    int hold_row;     // first row of all that hold controls
     int length_row;   // tf - t0 >= 0, or within its bounds; -1 where the bounds of the times say so already
 };
 

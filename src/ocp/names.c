@@ -55,6 +55,19 @@ static void defect_name(const struct layout *layout, const moray_ocp *ocp, const
     in_phase(layout, ocp, x, p, phase->node[phase->interval[k].first + i / nx + 1].tau, what, text, size);
 }
 
+static void hold_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, int row, char *text,
+                      int size)
+{
+    const struct phase_layout *phase = &layout->phase[p];
+    char what[name_size];
+    int n = 0;
+    while (n + 1 < phase->nodes && row >= phase->node[n + 1].hold)
+        n++;
+    moray_function_entry_name("hold of control", "u", ocp->phase[p].u_names,
+                              ocp->phase[p].held[row - phase->node[n].hold], what, name_size);
+    in_phase(layout, ocp, x, p, phase->node[n].tau, what, text, size);
+}
+
 void moray_layout_row_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int row, char *text,
                            int size)
 {
@@ -69,6 +82,8 @@ void moray_layout_row_name(const struct layout *layout, const moray_ocp *ocp, co
     const struct phase_layout *phase = &layout->phase[p];
     if (row == phase->length_row) {
         snprintf(text, (size_t)size, "length of phase %s", ocp->phase[p].name);
+    } else if (row >= phase->hold_row) {
+        hold_name(layout, ocp, x, p, row, text, size);
     } else if (row >= phase->integral_row + ocp->phase[p].nq) {
         const int m = row - phase->integral_row;
         moray_phase_end_name(&ocp->phase[p], 2 * ocp->phase[p].nx + 2 + m, what, name_size);

@@ -201,6 +201,22 @@ static moray_status copy_observed(moray_ocp *ocp, struct phase *phase, const mor
     return copy_numbers(ocp, given->weight, given->ny, &o->weight);
 }
 
+static moray_status copy_held(moray_ocp *ocp, struct phase *phase, const moray_phase_spec *spec)
+{
+    phase->held = own(ocp, (size_t)spec->nu * sizeof *phase->held);
+    if (!phase->held)
+        return no_memory();
+    for (int r = 0; r < spec->nu && spec->held; r++)
+        if (spec->held[r])
+            phase->held[phase->n_held++] = r;
+    if (phase->n_held > 0 && phase->intervals == 0)
+        return moray_error(MORAY_INPUT,
+                           "phase %s: holds controls over its own intervals, and gives neither intervals "
+                           "nor a mesh",
+                           phase->name);
+    return moray_ok();
+}
+
 // Several without a name are told apart by their numbers.
 static const char *copy_phase_name(moray_ocp *ocp, const moray_phase_spec *spec, int p)
 {
@@ -224,6 +240,7 @@ static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, int
     MORAY_TRY(check_bounds((struct place){"tf", phase->name}, NULL, 0, spec->tf));
     MORAY_TRY(take_duration(phase, spec->duration));
     MORAY_TRY(copy_mesh(ocp, phase, spec));
+    MORAY_TRY(copy_held(ocp, phase, spec));
     MORAY_TRY(copy_names(ocp, spec->x_names, spec->nx, &phase->x_names));
     MORAY_TRY(copy_names(ocp, spec->u_names, spec->nu, &phase->u_names));
     MORAY_TRY(copy_names(ocp, spec->c_names, spec->nc, &phase->c_names));

@@ -37,8 +37,10 @@ struct phase {
     bool has_duration;
     int intervals; // of the first mesh; 0: those of the settings
     double *mesh;  // [intervals + 1]; NULL: of equal length
+    int *held;     // [n_held] controls that are constant over each of these intervals
+    int n_held;
     moray_bounds *x, *x0, *xf, *u, *u0, *uf, *c, *q;
-    bool end_controls, bounds_end_controls; // whether the endpoint reads u0 and uf; whether one is narrower than u
+    bool end_controls, bounds_end_controls;     // whether the endpoint reads u0 and uf; whether one is narrower than u
     const char **x_names, **u_names, **c_names; // NULL where the user named nothing
 };
 

@@ -9,6 +9,7 @@
 
 #include "ocp/examine.h"
 #include "ocp/legendre.h"
+#include "ocp/hold.h"
 #include "ocp/observe/observed.h"
 
 enum { most_pieces = 4, first_raise = 4 }; // first_raise: stages before which decay cannot be told
@@ -142,7 +143,8 @@ static void keep(struct refinement *r, double end, int stages, enum mesh_past pa
     const double merged = (error + r->spare) * ldexp(1, stages + 1);
     const bool tried = last >= 0 && past == mesh_settled && r->mesh.past[last] == mesh_settled;
     const struct phase *phase = &r->e.solution->transcription->ocp->phase[r->e.p];
-    const bool stays = last >= 0 && moray_is_observed_at(phase, r->mesh.edge[r->mesh.intervals]);
+    const double edge = last >= 0 ? r->mesh.edge[r->mesh.intervals] : 0;
+    const bool stays = moray_is_observed_at(phase, edge) || moray_holds_at(phase, edge);
     if (last >= 0 && !tried && !stays && r->mesh.stages[last] == stages && merged < aim * aim * r->tolerance) {
         merge_last(&r->mesh, end, past);
         r->spare = INFINITY;

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "ocp/hold.h"
+
 static const double noticeable = 0.01;    // of a control's range
 enum { least_turns = 8, most_apart = 4 }; // turns that are no coincidence, and the nodes from one to the next
 
@@ -65,7 +67,7 @@ int moray_find_ringing(const moray_solution *solution)
     const moray_ocp *ocp = solution->transcription->ocp;
     for (int p = 0, first = 1; p < ocp->phases; first += ocp->phase[p++].nu)
         for (int control = 0; control < ocp->phase[p].nu; control++)
-            if (rings(solution, p, control))
+            if (!moray_is_held(&ocp->phase[p], control) && rings(solution, p, control))
                 return first + control;
     return 0;
 }

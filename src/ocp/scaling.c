@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "ocp/hold.h"
 #include "ocp/solution.h"
 
 static const double least_size = 1e-15; // that is derived from others, and the inverse of the largest
@@ -120,6 +121,7 @@ static void scale_phase(struct transcription *t, int p, const double *x, double 
     for (int end = 0; end < 2; end++)
         for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
             x_scale[layout->u_end[end] + r] = g_scale[layout->u_row[end] + r] = 1 / size[phase->nx + r];
+    moray_fill_holds(layout, phase, x_scale + layout->node[1].x + phase->nx, g_scale); // collocated where any is held
     for (int m = 0; m < phase->nq; m++)
         x_scale[layout->q + m] = g_scale[layout->integral_row + m] = 1 / size_of(phase->q[m], fabs(x[layout->q + m]));
     if (layout->t0 >= 0)

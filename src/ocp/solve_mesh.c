@@ -13,7 +13,7 @@
 
 static const double worst_warm_error = 1e-2;
 static const double out_of_scale = 1e-3, nothing = 1e-9; // of what a duration was scaled by
-static const double least_seconds = 1e-3; // of a solve that is begun
+static const double least_seconds = 1e-3;                // of a solve that is begun
 
 moray_status moray_allocate_iterate(moray_solution *solution)
 {
@@ -48,12 +48,21 @@ bool moray_is_solved(const moray_solution *solution)
     return solution->info.outcome == MORAY_NLP_SOLVED || solution->info.outcome == MORAY_NLP_ACCEPTABLE;
 }
 
-// Multipliers of a solved mesh whose error is small halve the iterations or better; of a coarse one they mislead.
+static bool holds_controls(const moray_ocp *ocp)
+{
+    for (int p = 0; p < ocp->phases; p++)
+        if (ocp->phase[p].n_held > 0)
+            return true;
+    return false;
+}
+
+// Multipliers of holds do not go from mesh to mesh. Multipliers of a solved mesh whose error is small halve the
+// iterations or better; of a coarse one they mislead.
 static bool can_start_warm(const moray_solution *solution, const moray_guess *guess)
 {
     const moray_solution *from = guess ? guess->from : NULL;
     return from && from->transcription->ocp == solution->transcription->ocp && moray_is_solved(from) &&
-           from->history[from->meshes - 1].error < worst_warm_error;
+           !holds_controls(solution->transcription->ocp) && from->history[from->meshes - 1].error < worst_warm_error;
 }
 
 // Whether a duration that was found is far smaller than what it was scaled by: a guess of one unit of time, where

@@ -3,7 +3,7 @@
 // The nonlinear programme of a problem on a mesh. Decision vector: for every phase the nodes in the order of time
 // (state, then control where collocated), integrals, controls at ends without one that are asked for, free times; then
 // the parameters. Constraints: for every phase path constraints, defects, definitions of the integrals and of those
-// controls; then the events.
+// controls, holds of controls, length; then the events.
 #ifndef SRC_OCP_TRANSCRIPTION_H
 #define SRC_OCP_TRANSCRIPTION_H
 

@@ -35,6 +35,15 @@ static void set_times(struct transcription *t, const struct phase *phase, const 
         set_row(t, layout->length_row, phase->duration);
 }
 
+// Of a held control the first node has the bounds, unless the end has its own.
+static void free_held(struct transcription *t, const struct phase *phase, const struct phase_layout *layout)
+{
+    const int last = layout->nodes - (phase->bounds_end_controls ? 1 : 0);
+    for (int n = 0; n < last; n++)
+        for (int i = 0; i < phase->n_held && layout->node[n].before >= 0; i++)
+            set_column(t, layout->node[n].x + phase->nx + phase->held[i], moray_free());
+}
+
 static void set_phase_bounds(struct transcription *t, int p)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -52,6 +61,7 @@ static void set_phase_bounds(struct transcription *t, int p)
     for (int end = 0; end < 2; end++)
         for (int r = 0; r < phase->nu && layout->u_end[end] >= 0; r++)
             set_column(t, layout->u_end[end] + r, end ? phase->uf[r] : phase->u0[r]);
+    free_held(t, phase, layout);
     for (int r = 0; r < phase->nq; r++)
         set_column(t, layout->q + r, phase->q[r]); // rows of defects and integrals stay at zero
     set_times(t, phase, layout);

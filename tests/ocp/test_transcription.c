@@ -46,8 +46,9 @@ static void verdict(const moray_ends *at, moray_end_values *out, const void *dat
     }
 }
 
-static moray_status make_problem(moray_ocp **ocp, moray_bounds t0, bool end_controls)
+static moray_status make_problem(moray_ocp **ocp, moray_bounds t0, bool end_controls, bool hold)
 {
+    const bool held[] = {false, hold};
     const moray_phase_spec phases[] = {{.name = "first",
                                         .nx = 3,
                                         .nu = 1,
@@ -63,6 +64,8 @@ static moray_status make_problem(moray_ocp **ocp, moray_bounds t0, bool end_cont
                                         .nc = 2,
                                         .nq = 1,
                                         .end_controls = end_controls,
+                                        .held = held,
+                                        .intervals = hold ? 1 : 0,
                                         .continuous = second_leg,
                                         .t0 = moray_between(0.5, 2),
                                         .tf = moray_between(2, 4),
@@ -124,6 +127,23 @@ static bool strictly_sorted(const int *row, const int *col, int nnz)
     return true;
 }
 
+// Of what is there on some schemes only.
+static void check_names(const struct layout *layout, const moray_ocp *ocp, const double *x)
+{
+    const struct phase_layout *second = &layout->phase[1];
+    char name[160];
+    if (second->u_row[0] >= 0) {
+        moray_layout_column_name(layout, ocp, x, second->u_end[0] + 1, name, sizeof name);
+        CHECK(strcmp(name, "initial control u[1] of phase second") == 0, "a control at an end is named: %s", name);
+        moray_layout_row_name(layout, ocp, x, second->u_row[0] + 1, name, sizeof name);
+        CHECK(strcmp(name, "definition of initial control u[1] of phase second") == 0, "and its row: %s", name);
+    }
+    if (second->node[2].before >= 0) {
+        moray_layout_row_name(layout, ocp, x, second->hold_row, name, sizeof name);
+        CHECK(strstr(name, "hold of control u[1] of phase second at t = "), "a hold is named: %s", name);
+    }
+}
+
 static void check_programme(const moray_ocp *ocp, moray_family family, int stages, unsigned long long seed)
 {
     struct mesh mesh[2];
@@ -159,6 +179,7 @@ static void check_programme(const moray_ocp *ocp, moray_family family, int stage
     CHECK(strstr(name, "defect of state x[1] of phase second at t = "), "a defect is named: %s", name);
     moray_layout_row_name(&t->layout, ocp, x, t->layout.rows - 1, name, sizeof name);
     CHECK(strcmp(name, "event e[1]") == 0, "the last row is named: %s", name);
+    check_names(&t->layout, ocp, x);
     free(x);
     free(weight);
     moray_pattern_free(&map.jac);
@@ -170,19 +191,23 @@ static void check_programme(const moray_ocp *ocp, moray_family family, int stage
 
 int main(void)
 {
-    moray_ocp *free_start, *fixed_start, *with_controls;
-    CHECK_OK(make_problem(&free_start, moray_between(0, 0.4), false), "a problem with free times");
-    CHECK_OK(make_problem(&fixed_start, moray_fixed(0.25), false), "a problem with a fixed start");
-    CHECK_OK(make_problem(&with_controls, moray_between(0, 0.4), true), "whose endpoint reads controls");
+    moray_ocp *free_start, *fixed_start, *with_controls, *holding;
+    CHECK_OK(make_problem(&free_start, moray_between(0, 0.4), false, false), "a problem with free times");
+    CHECK_OK(make_problem(&fixed_start, moray_fixed(0.25), false, false), "a problem with a fixed start");
+    CHECK_OK(make_problem(&with_controls, moray_between(0, 0.4), true, false), "whose endpoint reads controls");
+    CHECK_OK(make_problem(&holding, moray_between(0, 0.4), true, true), "that holds one");
     for (int stages = 1; stages <= 4; stages++)
         for (int family = 0; family < 3; family++)
             if (family != MORAY_LOBATTO || stages > 1) {
                 check_programme(free_start, (moray_family)family, stages, 7u + (unsigned)stages);
                 check_programme(fixed_start, (moray_family)family, stages, 70u + (unsigned)stages);
                 check_programme(with_controls, (moray_family)family, stages, 700u + (unsigned)stages);
+                if (family != MORAY_LOBATTO)
+                    check_programme(holding, (moray_family)family, stages, 7000u + (unsigned)stages);
             }
     moray_ocp_free(free_start);
     moray_ocp_free(fixed_start);
     moray_ocp_free(with_controls);
+    moray_ocp_free(holding);
     return tap_done();
 }

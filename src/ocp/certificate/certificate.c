@@ -55,7 +55,8 @@ static moray_status question_hamiltonian(struct verdict *v, const struct witness
 {
     struct finding drift = {.value = -1};
     bool autonomous;
-    if (v->solution->transcription->ocp->phase[p].observed.n > 0) // data make it jump
+    const struct phase *phase = &v->solution->transcription->ocp->phase[p];
+    if (phase->observed.n > 0 || phase->n_held > 0) // data and held controls make it jump
         return moray_ok();
     MORAY_TRY(moray_hamiltonian_drift(w, p, &drift, &autonomous));
     if (autonomous)

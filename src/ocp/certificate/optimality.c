@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ocp/hold.h"
+
 struct measure {
     const struct witness *e;
     const struct transcription *t;
@@ -99,6 +101,7 @@ static void add_linear(struct measure *m, int p)
     for (int end = 0; end < 2; end++)
         if (layout->u_row[end] >= 0)
             add_end_controls(m, p, end);
+    moray_add_holds(m->t, p, lambda, m->gradient);
     if (layout->length_row >= 0)
         add_time(m, layout, -lambda[layout->length_row], lambda[layout->length_row]);
 }

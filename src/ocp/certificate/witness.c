@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "ocp/certificate/columns.h"
+#include "ocp/hold.h"
 #include "ocp/probe.h"
 
 static const double least_part = 1e-3; // of a magnitude, or of what would matter to the objective, that makes a size
@@ -422,6 +423,7 @@ void moray_witness_rows(const struct witness *e, double *size)
         for (int end = 0; end < 2; end++)
             if (layout->u_row[end] >= 0)
                 memcpy(size + layout->u_row[end], e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
+        moray_fill_holds(layout, phase, e->phase[p].size + phase->nx, size);
         if (layout->length_row >= 0)
             size[layout->length_row] = e->duration;
     }

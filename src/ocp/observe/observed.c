@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "ocp/hold.h"
+
 static const double same = 1e-9; // distance of edges, in the length of the phase, that are one
 static const double near = 0.25; // part of an interval by which its edge is moved rather than the interval cut
 
@@ -82,7 +84,8 @@ static int interval_of(const struct mesh *mesh, double tau)
 
 static bool may_move(const struct mesh *mesh, const struct phase *phase, int edge)
 {
-    return edge > 0 && edge < mesh->intervals && !moray_is_observed_at(phase, mesh->edge[edge]);
+    return edge > 0 && edge < mesh->intervals && !moray_is_observed_at(phase, mesh->edge[edge]) &&
+           !moray_holds_at(phase, mesh->edge[edge]);
 }
 
 static void insert(struct mesh *mesh, int k, double tau)
