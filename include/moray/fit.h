@@ -22,7 +22,9 @@ MORAY_API moray_status moray_data_read(moray_data *data, const char *const *name
                                        const char *path);
 MORAY_API void moray_data_free(moray_data *data);
 
-// One observation of a solution.
+// One observation of a solution. Where a control is observed, the one value of it at that time serves the prediction
+// nearly for nothing, since it acts on the dynamics for a moment only: it can jump there to the datum (a spike as wide
+// as an interval). Observe states, or penalise the control's square or its rate in an integral.
 typedef struct moray_residual {
     int phase, row, channel; // value[row][channel] of the phase
     double time, observed, predicted, weight;

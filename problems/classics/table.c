@@ -47,7 +47,9 @@
     X(robertson)                                                                                                       \
     X(balanced_field)                                                                                                  \
     X(electric_vehicle)                                                                                                \
-    X(pendulum)
+    X(pendulum)                                                                                                        \
+    X(cannonball)                                                                                                      \
+    X(zermelo)
 
 #define DECLARE(name) extern const struct classic classic_##name;
 CLASSICS(DECLARE)

@@ -147,6 +147,17 @@ int moray_csv_find(const moray_csv *csv, const char *name)
     return -1;
 }
 
+moray_status moray_csv_find_quantity(const moray_csv *csv, const char *name, int *column)
+{
+    const size_t length = strlen(name);
+    for (*column = 0; *column < csv->columns; ++*column) {
+        const char *has = csv->name[*column];
+        if (strncmp(has, name, length) == 0 && (has[length] == 0 || strncmp(has + length, " [", 2) == 0))
+            return moray_ok();
+    }
+    return moray_csv_error(csv, -1, moray_error(MORAY_INPUT, "no column %.60s", name));
+}
+
 static void list_names(const char *const *names, int n, char *text, size_t size)
 {
     size_t used = 0;

@@ -25,6 +25,10 @@ void moray_csv_free(moray_csv *csv);
 // The column of that name; -1 where there is none.
 int moray_csv_find(const moray_csv *csv, const char *name);
 
+// The column of that name, behind which a unit in brackets may stand, as in "v [m/s]". Error: MORAY_INPUT where there
+// is none.
+moray_status moray_csv_find_quantity(const moray_csv *csv, const char *name, int *column);
+
 // Error: MORAY_INPUT where a name is empty or stands twice.
 moray_status moray_csv_check_names(const moray_csv *csv);
 

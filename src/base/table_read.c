@@ -12,17 +12,6 @@ struct columns {
     double *number;
 };
 
-static moray_status find(const moray_csv *csv, const char *name, int *column)
-{
-    const size_t length = strlen(name);
-    for (*column = 0; *column < csv->columns; ++*column) {
-        const char *has = csv->name[*column];
-        if (strncmp(has, name, length) == 0 && (has[length] == 0 || strncmp(has + length, " [", 2) == 0))
-            return moray_ok();
-    }
-    return moray_csv_error(csv, -1, moray_error(MORAY_INPUT, "no column %.60s", name));
-}
-
 static moray_status take(const moray_csv *csv, const char *const *names, int n, struct columns *c)
 {
     c->rows = csv->rows;
@@ -31,7 +20,7 @@ static moray_status take(const moray_csv *csv, const char *const *names, int n, 
         return moray_error(MORAY_MEMORY, "no memory for a table of %d lines", csv->rows);
     for (int j = 0; j < n; j++) {
         int column;
-        MORAY_TRY(find(csv, names[j], &column));
+        MORAY_TRY(moray_csv_find_quantity(csv, names[j], &column));
         for (int row = 0; row < csv->rows; row++)
             MORAY_TRY(moray_csv_number(csv, row, column, &c->number[j * csv->rows + row]));
     }

@@ -1,30 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 #include "base/csv.h"
 #include "moray/fit.h"
-
-// A name in the first line may have its unit behind it.
-static int find_column(const moray_csv *csv, const char *name)
-{
-    const size_t length = strlen(name);
-    for (int j = 0; j < csv->columns; j++)
-        if (strncmp(csv->name[j], name, length) == 0 &&
-            (csv->name[j][length] == 0 || strncmp(csv->name[j] + length, " [", 2) == 0))
-            return j;
-    return -1;
-}
-
-static moray_status find(const moray_csv *csv, const char *name, int *column)
-{
-    *column = find_column(csv, name);
-    if (*column >= 0)
-        return moray_ok();
-    return moray_csv_error(csv, -1, moray_error(MORAY_INPUT, "no column %.60s", name));
-}
 
 static moray_status read_value(const moray_csv *csv, int row, int column, double *value)
 {
@@ -51,9 +31,9 @@ static moray_status take(const moray_csv *csv, moray_data *data, const char *con
                          int *column)
 {
     int time;
-    MORAY_TRY(find(csv, "t", &time));
+    MORAY_TRY(moray_csv_find_quantity(csv, "t", &time));
     for (int j = 0; j < data->ny; j++)
-        MORAY_TRY(find(csv, names[j], &column[j]));
+        MORAY_TRY(moray_csv_find_quantity(csv, names[j], &column[j]));
     for (int row = 0; row < data->n; row++) {
         MORAY_TRY(moray_csv_number(csv, row, time, &data->time[row]));
         MORAY_TRY(check_time(csv, data, row, t0, tf));
