@@ -22,6 +22,7 @@ typedef void moray_delay_fn(const moray_delay_node *at, moray_rates *out, const 
 typedef void moray_past_fn(moray_num t, moray_num *x, moray_num *u, const void *data);
 
 // Minimised is the integral of g, and `final` of x(n h), which may be NULL.
+// There are no observations.
 typedef struct moray_delay_spec {
     const char *name;
     int nx, nu, nc;

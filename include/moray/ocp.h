@@ -135,10 +135,11 @@ typedef enum moray_loss {
     MORAY_HUBER // squares up to a threshold, straight beyond
 } moray_loss;
 
-// Data of a phase whose times are fixed: y_k = h(x, u, s, t_k) at any times within it, in any order, the same more than
-// once too. Meshes have an edge at each time, where the state is a variable, so nothing is interpolated. With z =
-// sqrt(weight) (h - value), the sum of z^2 is added to the objective; with Huber's loss of threshold d, that of
-// 2 d |z| - d^2 where |z| > d. Costates jump at the times. See fit.h for what the data say of the parameters.
+// Data of a phase whose times are fixed (by t0 and tf, or one of them and the duration): y_k = h(x, u, s, t_k) at any
+// times within it, in any order, the same more than once too. Meshes have an edge at each time, beside those of `mesh`,
+// where the state is a variable: nothing is interpolated. With z = sqrt(weight) (h - value), the sum of z^2 is added to
+// the objective; with Huber's loss of threshold d, that of 2 d |z| - d^2 where |z| > d. Costates jump at the times. See
+// fit.h for what the data say of the parameters.
 typedef struct moray_observations {
     int n, ny;                 // times; channels
     const double *time;        // [n]

@@ -139,6 +139,51 @@ static void test_line(const char *scheme, bool gauss_newton)
     moray_ocp_free(ocp);
 }
 
+// ---- With a duration, with a mesh of the user's
+// --------------------------------------------------------------------------
+
+static bool has_node(const moray_solution *solution, double t)
+{
+    double time[100];
+    const int nodes = moray_solution_nodes(solution, 0, NULL, NULL);
+    if (nodes > 100)
+        return false;
+    moray_solution_nodes(solution, 0, time, NULL);
+    for (int n = 0; n < nodes; n++)
+        if (fabs(time[n] - t) < 1e-12)
+            return true;
+    return false;
+}
+
+// The line, whose end comes of the duration; an observation stands near an edge, which it moves unless that is given.
+static void test_given_mesh(bool given)
+{
+    static const double mesh[] = {0, 1.4 / 3, 1};
+    double slope, error, sum;
+    moray_ocp *ocp;
+    const moray_settings settings = moray_settings_default();
+    const moray_phase_spec phase = {
+        .nx = 1,
+        .continuous = grow,
+        .tf = moray_between(1, 10),
+        .duration = moray_fixed(3),
+        .intervals = 2,
+        .mesh = given ? mesh : NULL,
+        .observed = {.n = times, .ny = 1, .time = line_time, .value = line_value, .observe = see_state}};
+    regress(&slope, &error, &sum);
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .ns = 1, .endpoint = nothing}),
+             "an end by its duration");
+    moray_solution *solution = solve(ocp, &settings, NULL);
+    if (!solution)
+        return;
+    CHECK_NEAR(moray_solution_parameters(solution)[0], slope, 1e-9, "slope as by regression");
+    CHECK_NEAR(moray_solution_objective(solution), sum, 1e-9, "sum of squares");
+    CHECK(has_node(solution, 1.3) && has_node(solution, 2.2), "edges at the times");
+    CHECK(has_node(solution, given ? 1.4 : 1.5) == given, "%s", given ? "and the user's stays" : "another one moves");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // Outliers pull with the threshold only: sum over the others of (x - y) = threshold.
 static void test_huber(void)
 {
@@ -420,6 +465,10 @@ static void test_refusals(void)
     const moray_phase_spec free_end = {.nx = 1, .continuous = decay, .tf = moray_between(1, 2), .observed = good};
     refused(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &free_end, .ns = 1, .endpoint = nothing}),
             MORAY_INPUT, "observations in a phase of free time");
+    const moray_phase_spec free_length = {
+        .nx = 1, .continuous = decay, .tf = moray_between(1, 4), .duration = moray_between(2, 3), .observed = good};
+    refused(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &free_length, .ns = 1, .endpoint = nothing}),
+            MORAY_INPUT, "observations in a phase of free duration");
     moray_settings settings = moray_settings_default();
     moray_solution *solution;
     settings.scheme = "gauss3";
@@ -448,6 +497,8 @@ int main(void)
     test_line("gauss3", false);
     test_line("radau3", false);
     test_line("hermite-simpson", true);
+    test_given_mesh(true);
+    test_given_mesh(false);
     test_huber();
     test_undetermined();
     test_noise();

@@ -82,10 +82,19 @@ static int interval_of(const struct mesh *mesh, double tau)
     return k;
 }
 
+// An edge that the user put where it is stays, for it may stand on a kink.
+static bool is_given(const struct phase *phase, double tau)
+{
+    for (int k = 0; phase->mesh && k <= phase->intervals; k++)
+        if (fabs(phase->mesh[k] - tau) <= same)
+            return true;
+    return false;
+}
+
 static bool may_move(const struct mesh *mesh, const struct phase *phase, int edge)
 {
     return edge > 0 && edge < mesh->intervals && !moray_is_observed_at(phase, mesh->edge[edge]) &&
-           !moray_holds_at(phase, mesh->edge[edge]);
+           !moray_holds_at(phase, mesh->edge[edge]) && !is_given(phase, mesh->edge[edge]);
 }
 
 static void insert(struct mesh *mesh, int k, double tau)
