@@ -3,8 +3,9 @@
 // Zermelo's problem (Bryson and Ho 1975, sec. 2.7): the fastest way of a boat of speed V to the origin through a
 // current that is given by a table. Lengths in h, times in h / V, speeds in V.
 //
-//   minimise tf,  x' = cos theta + u(y),  y' = sin theta,  from (3.66, -1.86) to (0, 0)
-//   u = -y at the points of a table, through which a spline goes: of a linear current, that current itself, so that
+//   minimise tf,  x' = cos theta + u(x, y),  y' = sin theta,  from (3.66, -1.86) to (0, 0)
+//   u = -y at the points of a table, through which a surface of splines goes: of a linear current, that current itself,
+//   in which x has a part by rounding alone, so that
 //   tf = tan theta_f - tan theta_0, where with a = theta_0, b = theta_f
 //     -1.86 = sec a - sec b,  3.66 = (sec b (tan b - tan a) - tan a (sec b - sec a)
 //                                     + ln((tan b + sec b) / (tan a + sec a))) / 2
@@ -16,15 +17,16 @@
 #include "degree.h"
 #include "moray/table.h"
 
-enum { n = 5 };
-static const double y_of_table[n] = {-4, -2, 0, 1, 3}, u_of_table[n] = {4, 2, 0, -1, -3};
-static moray_spline *current; // made once, for the life of the program
+enum { nx = 4, ny = 5 };
+static const double x_of_table[nx] = {-4, 0, 3, 7}, y_of_table[ny] = {-4, -2, 0, 1, 3};
+static const double u_of_table[nx][ny] = {{4, 2, 0, -1, -3}, {4, 2, 0, -1, -3}, {4, 2, 0, -1, -3}, {4, 2, 0, -1, -3}};
+static moray_surface *current; // made once, for the life of the program
 
 static void sail(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num theta = at->u[0];
-    out->f[0] = cos(theta) + moray_spline_at(current, at->x[1]);
+    out->f[0] = cos(theta) + moray_surface_at(current, at->x[0], at->x[1]);
     out->f[1] = sin(theta);
 }
 
@@ -38,7 +40,8 @@ static moray_status build(moray_ocp **ocp, const void *data)
                                     .x0 = MORAY_BOUNDS(moray_fixed(3.66), moray_fixed(-1.86)),
                                     .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0))};
     if (!current)
-        MORAY_TRY(moray_spline_new(&current, n, y_of_table, u_of_table, MORAY_NOT_A_KNOT, MORAY_LINEAR));
+        MORAY_TRY(
+            moray_surface_new(&current, nx, x_of_table, ny, y_of_table, u_of_table[0], MORAY_NOT_A_KNOT, MORAY_LINEAR));
     return classic_new(ocp, "zermelo", &phase, classic_final_time, data);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ocp/certificate/witness.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -122,44 +123,67 @@ static void take_ranges(struct witness *e, int p)
 
 // ---- Derivatives ----
 
-static void note_slope(double *slope, double value)
+// A slope that moves an output by no more than its last digits over all that the input does (a table that an argument
+// has no part in, say) drives nothing.
+static void note_slope(double *slope, double value, double size, double out)
 {
-    *slope = fmax(*slope, fabs(value));
+    if (size <= 0 || fabs(value) * size > 16 * DBL_EPSILON * fabs(out))
+        *slope = fmax(*slope, fabs(value));
+}
+
+// |output| at most, over all nodes.
+static double largest_output(const struct phase_cache *cache, int nodes, int out)
+{
+    double most = 0;
+    for (int n = 0; n < nodes; n++)
+        most = fmax(most, fabs(cache->out[n * cache->map->n_out + out]));
+    return most;
 }
 
 // Without differences, those in use.
 static void take_in_use(struct witness *e, int p)
 {
-    const moray_map *map = cache_of(e, p)->map;
-    for (int n = 0; n < layout_of(e, p)->nodes; n++)
-        for (int k = 0; k < map->jac.nnz && layout_of(e, p)->node[n].collocated; k++)
-            note_slope(&e->phase[p].slope[map->jac.col[k] * map->n_out + map->jac.row[k]],
-                       cache_of(e, p)->jac[n * map->jac.nnz + k]);
+    const struct phase_cache *cache = cache_of(e, p);
+    const moray_map *map = cache->map;
+    const int nodes = layout_of(e, p)->nodes;
+    for (int k = 0; k < map->jac.nnz; k++) {
+        const int in = map->jac.col[k], out = map->jac.row[k];
+        const double most = largest_output(cache, nodes, out);
+        for (int n = 0; n < nodes; n++)
+            if (layout_of(e, p)->node[n].collocated)
+                note_slope(&e->phase[p].slope[in * map->n_out + out], cache->jac[n * map->jac.nnz + k],
+                           e->phase[p].size[in], most);
+    }
 }
 
-static moray_status difference_node(struct phase_witness *w, const double *in, const double *step)
+// most[n_out]: |output| at most.
+static moray_status difference_node(struct phase_witness *w, const double *in, const double *step, const double *most)
 {
     struct kept *k = &w->kept;
-    const size_t block = (size_t)k->map->n_in * (size_t)k->map->n_out;
+    const size_t n_out = (size_t)k->map->n_out, block = (size_t)k->map->n_in * n_out;
     MORAY_TRY(moray_difference_columns(k->map, in, step, k->jac, k->doubt, k->kink));
     for (size_t i = 0; i < block; i++)
-        note_slope(&w->slope[i], k->jac[i]);
+        if (fabs(k->jac[i]) > k->doubt[i])
+            note_slope(&w->slope[i], k->jac[i], w->size[i / n_out], most[i % n_out]);
     return moray_kept_add(k);
 }
 
 static moray_status difference_phase(struct witness *e, int p)
 {
     const struct phase_cache *cache = cache_of(e, p);
-    const size_t n_in = (size_t)cache->map->n_in;
-    double *step = calloc(n_in, sizeof *step);
+    const size_t n_in = (size_t)cache->map->n_in, n_out = (size_t)cache->map->n_out;
+    const int nodes = layout_of(e, p)->nodes;
+    double *step = calloc(n_in + n_out, sizeof *step), *most = step ? step + n_in : NULL;
     moray_status status = step ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for the certificate");
     for (size_t i = 0; i < n_in && step; i++) {
         step[i] = fmax(e->phase[p].size[i], 0.1 * least_part * width_of(bounds_of(e, p, (int)i)));
         step[i] = step[i] > 0 ? step[i] : 1;
     }
-    for (size_t n = 0; n < (size_t)layout_of(e, p)->nodes && !moray_failed(status); n++)
+    for (size_t i = 0; i < n_out && step; i++)
+        most[i] = largest_output(cache, nodes, (int)i);
+    for (int n = 0; n < nodes && !moray_failed(status); n++)
         if (layout_of(e, p)->node[n].collocated)
-            status = difference_node(&e->phase[p], cache->in + n * n_in, step);
+            status = difference_node(&e->phase[p], cache->in + (size_t)n * n_in, step, most);
         else
             moray_kept_skip(&e->phase[p].kept);
     free(step);

@@ -209,6 +209,44 @@ static void test_direction_of_time(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Zermelo's crossing (problems/classics/zermelo.c), where x has a say by rounding alone, as in a table over (x, y)
+// ----
+
+static void drift_and_noise(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = cos(at->u[0]) - at->x[1] + 1e-16 * at->x[0];
+    out->f[1] = sin(at->u[0]);
+}
+
+static void test_idle_argument(void)
+{
+    const moray_phase_spec crossing = {.name = "crossing",
+                                       .nx = 2,
+                                       .nu = 1,
+                                       .continuous = drift_and_noise,
+                                       .tf = moray_between(0.1, 100),
+                                       .x0 = MORAY_BOUNDS(moray_fixed(3.66), moray_fixed(-1.86)),
+                                       .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0))};
+    const double deg = 3.14159265358979323846 / 180, t[] = {0, 5}, x[] = {3.66, -1.86, 0, 0},
+                 u[] = {90 * deg, 250 * deg};
+    const moray_samples straight = {2, t, x, u};
+    const moray_guess guess = {.phase = &straight};
+    moray_settings settings = moray_settings_default();
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    moray_certificate certificate = {0};
+    settings.scheme = "gauss3";
+    settings.max_refinements = 20;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &crossing, .endpoint = soon}), "a crossing");
+    CHECK_OK(moray_solve(ocp, &settings, &guess, &solution), "solved");
+    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
+    CHECK_NEAR(moray_solution_objective(solution), 5.4578652636, 1e-6, "the closed form");
+    CHECK(certificate.pass, "what moves nothing but the last digit refuses no answer: %s", certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     const struct dash dashes[] = {{1, 1, 0},     {1e-6, 1e-6, 0}, {1e-9, 1e-9, 0}, {1e-9, 1, 0},
@@ -220,5 +258,6 @@ int main(void)
         test_dash(&dashes[k]);
     test_no_length();
     test_direction_of_time();
+    test_idle_argument();
     return tap_done();
 }
