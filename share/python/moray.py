@@ -42,7 +42,8 @@ class _Rates(c.Structure):
 
 
 class _PhaseEnds(c.Structure):
-    _fields_ = [("x0", _double_p), ("xf", _double_p), ("q", _double_p), ("t0", c.c_double), ("tf", c.c_double)]
+    _fields_ = [("x0", _double_p), ("xf", _double_p), ("q", _double_p), ("t0", c.c_double), ("tf", c.c_double),
+                ("u0", _double_p), ("uf", _double_p)]
 
 
 class _Ends(c.Structure):
@@ -69,7 +70,8 @@ class _PhaseSpec(c.Structure):
                 ("duration", _Bounds), ("mesh", _double_p), ("intervals", c.c_int), ("x", _List), ("x0", _List),
                 ("xf", _List), ("u", _List), ("c", _List), ("q", _List), ("x_names", c.POINTER(c.c_char_p)),
                 ("u_names", c.POINTER(c.c_char_p)), ("c_names", c.POINTER(c.c_char_p)),
-                ("continuous_real", _continuous), ("observed", _Observations)]
+                ("continuous_real", _continuous), ("observed", _Observations), ("u0", _List), ("uf", _List),
+                ("end_controls", c.c_bool), ("held", c.POINTER(c.c_bool))]
 
 
 class _OcpSpec(c.Structure):
