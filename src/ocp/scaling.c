@@ -5,7 +5,7 @@
 #include "ocp/hold.h"
 #include "ocp/solution.h"
 
-static const double least_size = 1e-15; // that is derived from others, and the inverse of the largest
+static const double least_size = 1e-15; // that is derived from others
 static const double noise = 1e-8;       // a guess as small as this may be rounding
 static const double endless = 1e15;     // bounds from here on are no sizes
 
@@ -67,20 +67,30 @@ static double derived_size(const struct transcription *t, int p, const double *s
     return by_causes > 0 ? by_causes : isfinite(by_effects) ? by_effects : 0;
 }
 
-static bool is_size(double size)
+static double largest_of(const double *size, int n)
 {
-    return size > least_size && size < 1 / least_size;
+    double largest = 1;
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, size[i]);
+    return largest;
+}
+
+// A size far above all others comes from a slope that is rounding: where the guess is at rest or straight, say.
+static bool is_size(double derived, double largest_known)
+{
+    return derived > least_size && derived < largest_known / noise;
 }
 
 static void derive_sizes(const struct transcription *t, int p, double *size)
 {
     const int n = t->ocp->phase[p].nx + t->ocp->phase[p].nu;
+    const double largest_known = largest_of(size, n);
     bool found = true;
     while (found) {
         found = false;
         for (int i = 0; i < n; i++) {
             const double derived = size[i] > 0 ? 0 : derived_size(t, p, size, i);
-            if (is_size(derived)) {
+            if (is_size(derived, largest_known)) {
                 size[i] = derived;
                 found = true;
             }
