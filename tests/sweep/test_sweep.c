@@ -219,8 +219,11 @@ static void test_misbehaviour(void)
     spec.warm = false;
     spec.point_seconds = 2;
     spec.point_megabytes = tap_thorough() ? 500 : 0;
-    if (!tap_thorough()) // sanitizers need all of the address space
-        spec.axis = &(const moray_sweep_axis){.key = "x", .value = (const double[]){-2, -1, 0, 1, -3, 3, 4}, .n = 7};
+    // Sanitizers need all of the address space.
+    const double modest[] = {-2, -1, 0, 1, -3, 3, 4};
+    const moray_sweep_axis brief = {.key = "x", .value = modest, .n = 7};
+    if (!tap_thorough())
+        spec.axis = &brief;
     const double begun = (double)time(NULL);
     CHECK_OK(moray_sweep(&spec, &result), "points that misbehave");
     CHECK((double)time(NULL) - begun < 30, "cost the time that a point may take");
