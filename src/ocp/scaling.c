@@ -53,17 +53,27 @@ static double reach(const struct transcription *t, int p, int state, int input)
     return largest * fabs(cache->tf - cache->t0);
 }
 
+// How far what is known moves a state over the phase, one cause alone.
+static double known_reach(const struct transcription *t, int p, const double *size, int state)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    double furthest = 0;
+    for (int j = 0; j < phase->nx + phase->nu; j++)
+        furthest = fmax(furthest, reach(t, p, state, j) * size[j]);
+    return furthest;
+}
+
 // The size of an input that nothing else tells: for a state what those of known size move it by, else what it takes to
-// move a state of known size. 0: nothing is known.
+// move a state of known size by that, or by as much as another cause does where they hold each other in check. 0:
+// nothing is known.
 static double derived_size(const struct transcription *t, int p, const double *size, int i)
 {
     const struct phase *phase = &t->ocp->phase[p];
-    double by_causes = 0, by_effects = INFINITY;
-    for (int j = 0; j < phase->nx + phase->nu && i < phase->nx; j++)
-        by_causes = fmax(by_causes, reach(t, p, i, j) * size[j]);
+    const double by_causes = i < phase->nx ? known_reach(t, p, size, i) : 0;
+    double by_effects = INFINITY;
     for (int r = 0; r < phase->nx; r++)
         if (size[r] > 0 && reach(t, p, r, i) > 0)
-            by_effects = fmin(by_effects, size[r] / reach(t, p, r, i));
+            by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / reach(t, p, r, i));
     return by_causes > 0 ? by_causes : isfinite(by_effects) ? by_effects : 0;
 }
 
