@@ -14,7 +14,7 @@ check "a run with a report: $(cat err)" eval '[ $code -eq 0 ] && [ -s results/re
 browse() {
     timeout 100 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
         --disable-background-networking --disable-component-update --disable-sync --user-data-dir="$work/profile" \
-        --allow-file-access-from-files --enable-logging=stderr --virtual-time-budget=6000 --window-size="$2",900 \
+        --allow-file-access-from-files --enable-logging=stderr --virtual-time-budget=15000 --window-size="$2",900 \
         --dump-dom "file://$work/$1" >dom 2>log </dev/null
     grep 'CONSOLE' log >console || :
 }
@@ -35,7 +35,7 @@ const phone = document.getElementById("phone");
 const channel = c => { c /= 255; return c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; };
 const light = rgb => 0.2126 * channel(rgb[0]) + 0.7152 * channel(rgb[1]) + 0.0722 * channel(rgb[2]);
 const parts = text => (text.match(/[\d.]+/g) || []).map(Number);
-phone.onload = () => setTimeout(() => {
+const examine = () => {
   const view = phone.contentWindow, page = phone.contentDocument, said = [];
   const stage = page.getElementById("stage"), key = k => page.body.dispatchEvent(new view.KeyboardEvent("keydown", { key: k, bubbles: true, cancelable: true }));
   const time = () => Number(stage.dataset.time), head = () => stage.querySelector("line").getAttribute("x1");
@@ -61,7 +61,13 @@ phone.onload = () => setTimeout(() => {
   said.push("unnamed=" + page.querySelectorAll("svg:not([aria-label]):not([aria-hidden])").length);
   said.push("elsewhere=" + page.querySelectorAll("[src],link[rel=stylesheet]").length);
   document.getElementById("examined").textContent = said.join(";");
-}, 1500);
+};
+// As soon as it plays, however slow the machine; at the latest after ten seconds.
+const wait = tries => {
+  const stage = phone.contentDocument.getElementById("stage");
+  if (tries === 0 || (stage && Number(stage.dataset.time) > 0)) examine(); else setTimeout(() => wait(tries - 1), 100);
+};
+phone.onload = () => wait(100);
 </script>
 END
 } >examine.html
