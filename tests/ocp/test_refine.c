@@ -133,7 +133,7 @@ static void test_against_uniform(const char *scheme, double tf)
     moray_mesh_record uniform = {.nodes = 0};
     while (uniform.nodes < 3 * found.nodes) {
         moray_solution *solution = solve(ocp, scheme, intervals, 0, NULL);
-        // A control that is sized by the horizon instead of by what it holds in check costs a thousand.
+        // A control that is sized by the horizon instead of by what it holds in check costs hundreds.
         CHECK(last_mesh(solution).iterations < 50, "%s, %d intervals: in %d iterations", scheme, intervals,
               last_mesh(solution).iterations);
         uniform = last_mesh(solution);
