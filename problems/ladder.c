@@ -62,6 +62,7 @@ static void add_gait(ladder *run, const char *name, const moray_gait *gait)
 static moray_status climb(ladder *run)
 {
     const moray_robot *robot = &run->snake.robot;
+    MORAY_TRY(moray_robot_check_swims(robot));
     const moray_gait as_printed = moray_gait_paper(robot);
     const moray_gait paper = moray_gait_map(robot, &as_printed, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
     add_gait(run, "paper's", &paper);

@@ -128,14 +128,18 @@ static moray_status work(gait_job *job)
     return moray_ok();
 }
 
-static bool certified(const gait_job *job)
+static moray_status certified(const gait_job *job)
 {
     const pareto *run = (const pareto *)job;
-    bool pass = true;
     for (int f = 0; f < run->fronts; f++)
-        for (int k = 0; k < run->front[f].n; k++)
-            pass = pass && run->front[f].at[k].certificate.pass;
-    return pass;
+        for (int k = 0; k < run->front[f].n; k++) {
+            const pareto_front *front = &run->front[f];
+            char what[100];
+            snprintf(what, sizeof what, "%s gait at %.4g W on the %s model", pareto_kinds[front->kind],
+                     front->at[k].prediction.power, moray_model_name(front->model));
+            MORAY_TRY(gait_job_certified(job, what, &front->at[k]));
+        }
+    return moray_ok();
 }
 
 static void release(gait_job *job)

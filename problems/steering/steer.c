@@ -32,14 +32,19 @@ static moray_status work(steer_job *job)
 {
     moray_family family;
     int stages;
+    MORAY_TRY(moray_robot_check_swims(&job->snake.robot));
     MORAY_TRY(moray_snake_turning(&job->snake));
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     return job->program->work(job);
 }
 
-static bool certified(const steer_job *job)
+static moray_status certified(const steer_job *job)
 {
-    return job->certificate[MORAY_CONTROL_ORIENTED].pass && job->certificate[job->snake.model].pass;
+    for (int model = 0; model <= (int)job->snake.model; model += job->snake.model == MORAY_FIRST_PRINCIPLES ? 1 : 2)
+        if (!job->certificate[model].pass)
+            return moray_error(MORAY_NOT_SOLVED, "certificate of the plan on the %s model failed: %.200s",
+                               moray_model_name((moray_model)model), job->certificate[model].why);
+    return moray_ok();
 }
 
 int steer_main(const moray_program *own, const steer_program *program, int argc, char **argv, steer_job *job)
@@ -62,8 +67,8 @@ int steer_main(const moray_program *own, const steer_program *program, int argc,
     if (!moray_failed(status))
         status = steer_report(job);
     exit_code = moray_app_end(&app, job, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !certified(job))
-        exit_code = MORAY_EXIT_CERTIFICATE;
+    if (exit_code == MORAY_EXIT_SOLVED)
+        exit_code = moray_app_certified(&app, certified(job));
     for (int k = 0; k < 3; k++)
         moray_steering_plan_free(&job->plan[k]);
     if (program->release)

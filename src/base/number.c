@@ -2,6 +2,7 @@
 #define _GNU_SOURCE // strtod_l
 #include "base/number.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +23,11 @@ bool moray_number_read(const char *text, double *number)
         return false;
     *number = strtod_l(text, &end, c_locale());
     return end == text + length && isfinite(*number);
+}
+
+int moray_count_up(double count)
+{
+    return (int)fmin(fmax(ceil(count), 0), INT_MAX);
 }
 
 locale_t moray_c_locale_begin(void)

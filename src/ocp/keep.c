@@ -164,10 +164,10 @@ static moray_status read_mesh(struct reader *r, const struct phase *phase, struc
     for (int k = 0; k < intervals; k++) {
         double numbers[2];
         MORAY_TRY(read_numbers(r, 2, numbers));
-        mesh->stages[k] = numbers[0] <= MORAY_MAX_STAGES ? (int)numbers[0] : 0;
+        const bool allowed = numbers[0] >= 1 && numbers[0] <= MORAY_MAX_STAGES && numbers[0] == floor(numbers[0]);
+        mesh->stages[k] = allowed ? (int)numbers[0] : 0;
         mesh->edge[k + 1] = numbers[1];
-        if (!(numbers[0] >= 1 && numbers[0] <= MORAY_MAX_STAGES && numbers[0] == mesh->stages[k]) ||
-            !(mesh->edge[k + 1] > mesh->edge[k]))
+        if (!allowed || !(mesh->edge[k + 1] > mesh->edge[k]))
             return damaged(r, "stages and a later end of the interval");
     }
     return mesh->edge[intervals] == 1 ? moray_ok() : damaged(r, "1 as the end of the last interval");

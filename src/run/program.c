@@ -104,6 +104,22 @@ static moray_status leave_reason(const moray_program *program, const moray_commo
     return moray_failed(written) ? written : moray_output_commit(common->output);
 }
 
+static void complain(const moray_program *program, moray_status status)
+{
+    for (char *c = status.text; *c; c++)
+        if (iscntrl((unsigned char)*c))
+            *c = isspace((unsigned char)*c) ? ' ' : '?';
+    fprintf(stderr, "%s: %s\n", program->name, status.text);
+}
+
+int moray_app_certified(const moray_program *program, moray_status certified)
+{
+    if (!moray_failed(certified))
+        return MORAY_EXIT_SOLVED;
+    complain(program, certified);
+    return MORAY_EXIT_CERTIFICATE;
+}
+
 int moray_app_end(const moray_program *program, void *settings, moray_status status)
 {
     moray_common *common = settings;
@@ -119,11 +135,7 @@ int moray_app_end(const moray_program *program, void *settings, moray_status sta
         status = printed;
     uselocale(before_start);
     before_start = (locale_t)0;
-    if (moray_failed(status)) {
-        for (char *c = status.text; *c; c++)
-            if (iscntrl((unsigned char)*c))
-                *c = '?';
-        fprintf(stderr, "%s: %s\n", program->name, status.text);
-    }
+    if (moray_failed(status))
+        complain(program, status);
     return moray_exit_of(status.code);
 }

@@ -33,6 +33,10 @@ MORAY_API bool moray_app_start(const moray_program *program, int argc, char **ar
 // says so.
 MORAY_API int moray_app_end(const moray_program *program, void *settings, moray_status status);
 
+// The exit code of a run that has solved: where what it found is not certified, `certified` says why not, which becomes
+// a line on standard error, with --quiet too.
+MORAY_API int moray_app_certified(const moray_program *program, moray_status certified);
+
 // ---- What a program found ------------------------------------------------------------------------------------------
 
 // All but found may be left out; the functions get `found`.

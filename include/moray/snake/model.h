@@ -64,6 +64,10 @@ MORAY_API void moray_robot_from_geometry(moray_robot *robot, const moray_link_ge
 // Error: MORAY_INPUT naming the first field that is not usable, its value and what is allowed.
 MORAY_API moray_status moray_robot_check(const moray_robot *robot);
 
+// Whether any gait of it makes way. Two links do not: turned about the joint's axis of symmetry they are the same robot
+// with the same motion of the joint, swimming the other way. Error: MORAY_NOT_SOLVED, saying so.
+MORAY_API moray_status moray_robot_check_swims(const moray_robot *robot);
+
 typedef enum { MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES } moray_model;
 
 MORAY_API const char *moray_model_name(moray_model model); // "control-oriented", "first-principles"

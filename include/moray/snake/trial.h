@@ -61,7 +61,7 @@ MORAY_API moray_bounds moray_gait_usual_delta(const moray_robot *robot);
 // and how much less power it needs at the baseline's speed. NaN where no omega does it, with the reason.
 typedef struct moray_gait_gain {
     double speed_percent_at_equal_power, power_percent_at_equal_speed;
-    double omega_at_equal_power; // [rad/s]
+    double omega_at_equal_power, omega_at_equal_speed; // [rad/s]
     moray_status why_no_speed, why_no_power;
 } moray_gait_gain;
 MORAY_API moray_gait_gain moray_gait_gain_over(const moray_test_rig *rig, const moray_gait_trial *trial,

@@ -6,13 +6,6 @@
 
 // ---- Summary -------------------------------------------------------------------------------------------------------
 
-static void json_gain(moray_json *json, const char *key, const moray_gait_gain *gain)
-{
-    moray_json_object(json, key,
-                      MORAY_MEMBERS({"speed_percent_at_equal_power", gain->speed_percent_at_equal_power},
-                                    {"power_percent_at_equal_speed", gain->power_percent_at_equal_speed}));
-}
-
 static void json_swum(moray_json *json, const free_gait *run, const stage *at)
 {
     if (at->model == MORAY_CONTROL_ORIENTED)
@@ -34,10 +27,10 @@ static void json_motion(moray_json *json, const free_gait *run, const motion *m)
     gait_job_json_prediction(json, &m->at.prediction);
     json_swum(json, run, &m->at);
     moray_json_number(json, "prediction_off_by", free_gait_disagreement(m));
-    json_gain(json, "gain", &m->at.gain);
-    gait_job_json_ladder(json, &m->at);
-    json_gain(json, "gain_over_best_gait", &m->over_best);
-    json_gain(json, "gain_over_gait_alike", &m->over_alike);
+    gait_job_json_gain(json, "gain", &m->at.gain);
+    gait_job_json_ladder(json, &run->job, &m->at);
+    gait_job_json_gain(json, "gain_over_best_gait", &m->over_best);
+    gait_job_json_gain(json, "gain_over_gait_alike", &m->over_alike);
     moray_solver_to_json(json, m->at.solution);
     moray_json_close(json);
     moray_certificate_to_json(json, &m->at.certificate);

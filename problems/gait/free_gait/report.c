@@ -132,7 +132,7 @@ static moray_table ladder_table(const free_gait *run, moray_table_row rows[MORAY
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
-static void say_gain(const moray_gait_gain *gain, const char *whom, char *text)
+static void say_gain(const free_gait *run, const moray_gait_gain *gain, const char *whom, char *text)
 {
     const double faster = gain->speed_percent_at_equal_power, more = gain->power_percent_at_equal_speed;
     if (isnan(faster))
@@ -140,8 +140,11 @@ static void say_gain(const moray_gait_gain *gain, const char *whom, char *text)
     else
         moray_text_add(text, TEXT, "%.2f %% %s than %s at its power", fabs(faster), faster < 0 ? "SLOWER" : "faster",
                        whom);
-    if (!isnan(more))
-        moray_text_add(text, TEXT, ", %.2f %% %s power at its speed", fabs(more), more < 0 ? "less" : "MORE");
+    gait_job_say_beyond(&run->job, gain->omega_at_equal_power, text, TEXT);
+    if (isnan(more))
+        return;
+    moray_text_add(text, TEXT, ", %.2f %% %s power at its speed", fabs(more), more < 0 ? "less" : "MORE");
+    gait_job_say_beyond(&run->job, gain->omega_at_equal_speed, text, TEXT);
 }
 
 // Where a freer motion is no faster than the one before it, that one stands for it.
@@ -172,13 +175,13 @@ static void find_words(const free_gait *run, char *text)
     if (isfinite(best->power))
         moray_text_add(text, TEXT, "; mean joint power at most %.4g W there", best->power);
     moray_text_add(text, TEXT, ".\nThe free motion, %s, on the first-principles model: ", m->name);
-    say_gain(&m->at.gain, "the paper's gait", text);
+    say_gain(run, &m->at.gain, "the paper's gait", text);
     moray_text_add(text, TEXT, "; ");
-    say_gain(&m->over_best, "the best gait (25)", text);
+    say_gain(run, &m->over_best, "the best gait (25)", text);
     moray_text_add(text, TEXT, "; ");
-    say_gain(&m->over_alike, "the gait (25) within the same limits", text);
+    say_gain(run, &m->over_alike, "the gait (25) within the same limits", text);
     moray_text_add(text, TEXT, ".\nIn speed at the power of the paper's gait the free motion ");
-    moray_ladder_verdict(m->at.ladder, m->at.found_on, text, TEXT);
+    gait_job_verdict(&run->job, &m->at, text, TEXT);
     moray_text_add(
         text, TEXT, ".\nThe %s model itself predicted %+.2f %% speed on the gait (25) within the same limits.\n",
         moray_model_name(best->model), 100 * (m->at.prediction.speed / run->motion[0].at.prediction.speed - 1));

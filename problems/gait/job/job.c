@@ -36,8 +36,7 @@ static const moray_option shared[] = {
      .help = "processes for what can be done at the same time; 0: one a processor"},
 };
 
-static const moray_option continuation[2] = {MORAY_CONTINUE(gait_job, from_file),
-                                             MORAY_LEAVE(gait_job, solution_file)};
+static const moray_option continuation[2] = {MORAY_CONTINUE(gait_job, from_file), MORAY_LEAVE(gait_job, solution_file)};
 
 // A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
 enum { usual_intervals = 12, effort_intervals = 80 };
@@ -162,6 +161,7 @@ moray_status gait_job_prepare(gait_job *job)
     const moray_gait paper = moray_gait_paper(&job->snake.robot);
     moray_family family;
     int stages;
+    MORAY_TRY(moray_robot_check_swims(&job->snake.robot));
     if (isfinite(job->joint_effort) && job->common.intervals == usual_intervals)
         job->common.intervals = effort_intervals;
     delta_range(job->delta, &job->snake.robot);
@@ -226,14 +226,17 @@ moray_status gait_job_work(gait_job *job)
     return gait_job_climb(job, (stage *const[]){control, revolute, &job->ladder}, GAIT_STAGES);
 }
 
-bool gait_job_certified(const gait_job *job)
+moray_status gait_job_certified(const gait_job *job, const char *what, const stage *at)
 {
-    const stage *at[GAIT_STAGES];
-    const int n = gait_job_stages(job, at);
-    bool pass = true;
-    for (int k = 0; k < n; k++)
-        pass = pass && at[k]->certificate.pass;
-    return pass;
+    if (at->certificate.pass)
+        return moray_ok();
+    return moray_error(MORAY_NOT_SOLVED, "certificate of the %s failed: %.200s", what ? what : gait_job_kind(job, at),
+                       at->certificate.why);
+}
+
+static moray_status certified(const gait_job *job)
+{
+    return gait_job_certified(job, NULL, recommended(job));
 }
 
 int gait_job_stages(const gait_job *job, const stage *at[GAIT_STAGES])
@@ -287,8 +290,8 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
     if (!moray_failed(status))
         status = program->report ? program->report(job) : gait_job_report(job);
     exit_code = moray_app_end(&app, job, status);
-    if (exit_code == MORAY_EXIT_SOLVED && !(program->certified ? program->certified(job) : gait_job_certified(job)))
-        exit_code = MORAY_EXIT_CERTIFICATE;
+    if (exit_code == MORAY_EXIT_SOLVED)
+        exit_code = moray_app_certified(&app, program->certified ? program->certified(job) : certified(job));
     if (program->release)
         program->release(job);
     gait_job_free(job);

@@ -56,10 +56,10 @@ struct gait_job {
     double power, speed; // NaN: what the paper's gait uses and makes
     double joint_rate, joint_effort;
     moray_joints joints;
-    int random_starts, refinements;  // refinements: finer meshes tried where the first does not pass the certificate
-    char over[MORAY_PATH_SIZE];      // names of rungs, with @VX,VY behind those in another current; empty: none
-    int over_goal;                   // a moray_over_goal
-    int jobs;                        // processes; 0: one a processor
+    int random_starts, refinements; // refinements: finer meshes tried where the first does not pass the certificate
+    char over[MORAY_PATH_SIZE];     // names of rungs, with @VX,VY behind those in another current; empty: none
+    int over_goal;                  // a moray_over_goal
+    int jobs;                       // processes; 0: one a processor
     char from_file[MORAY_PATH_SIZE], solution_file[MORAY_PATH_SIZE]; // of --continue, --solution; empty: none
     moray_test_rig rig;
     moray_gait_trial paper;
@@ -103,7 +103,7 @@ typedef struct gait_program {
     double power, speed; // defaults
     moray_status (*work)(gait_job *job);
     moray_status (*report)(gait_job *job);
-    bool (*certified)(const gait_job *job);
+    moray_status (*certified)(const gait_job *job);
     void (*release)(gait_job *job);
 } gait_program;
 
@@ -117,9 +117,12 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
 
 // What a program without its own does: both stages, or one, optimised and proved. Error: those of the below.
 moray_status gait_job_work(gait_job *job);
-bool gait_job_certified(const gait_job *job);
 
-// Swims the paper's gait. Error: that of moray_scheme_parse, moray_test_rig_new or moray_gait_trial_run.
+// Whether a stage, named `what` (NULL: gait_job_kind), passed its certificate. Error: MORAY_NOT_SOLVED, saying why not.
+moray_status gait_job_certified(const gait_job *job, const char *what, const stage *at);
+
+// Swims the paper's gait. Error: that of moray_robot_check_swims, moray_scheme_parse, moray_test_rig_new or
+// moray_gait_trial_run.
 moray_status gait_job_prepare(gait_job *job);
 
 // What a program without own work does: swims the paper's gait, then optimises, certifies and proves the
@@ -172,8 +175,12 @@ moray_status gait_job_continue(gait_job *job, stage *at, const stage *from);
 
 moray_gait gait_job_random(const gait_job *job, const stage *at); // by drand48, within the limits of the gait
 
-// Certificate of a stage's solution. Error: those of moray_certify.
+// Certificate of a stage's solution; fails it where the motion cannot be integrated again. Error: those of
+// moray_certify but for MORAY_NUMERIC.
 moray_status gait_job_certify(const gait_job *job, stage *at);
+
+// Swims the gait of the trial for a model. Where it cannot be swum the numbers are NaN, the reason in trial->why.
+void gait_job_swim(const gait_job *job, moray_model model, moray_gait_trial *trial);
 
 // Swims the gait of a model on both. Where it cannot be swum the numbers are NaN, the reason in trial->why. Error: that
 // of moray_parallel.
@@ -215,7 +222,14 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
 
 // "ladder" and "verdict" of a stage that has climbed.
 enum { GAIT_TEXT = 1500 };
-void gait_job_json_ladder(moray_json *json, const stage *at);
+void gait_job_json_ladder(moray_json *json, const gait_job *job, const stage *at);
+void gait_job_json_gain(moray_json *json, const char *key, const moray_gait_gain *gain);
+
+// Adds to text[size] what the ladder says of a stage, and on how many rungs at an omega beyond the limits of the job.
+void gait_job_verdict(const gait_job *job, const stage *at, char *text, size_t size);
+
+// Adds " (at omega = 94.3 deg/s, beyond the 30 to 60 allowed)" to text[size] where it is beyond them.
+void gait_job_say_beyond(const gait_job *job, double omega, char *text, size_t size);
 
 // Adds to text[GAIT_TEXT] which gait is recommended, and what the ladder says of it.
 void gait_job_headline(const gait_job *job, char *text);

@@ -18,11 +18,13 @@ void gait_job_json_prediction(moray_json *json, const moray_gait_prediction *pre
                                     {"course_cost_J_m", prediction->power / prediction->course_speed}));
 }
 
-static void json_gain(moray_json *json, const moray_gait_gain *gain)
+void gait_job_json_gain(moray_json *json, const char *key, const moray_gait_gain *gain)
 {
-    moray_json_object(json, "gain",
+    moray_json_object(json, key,
                       MORAY_MEMBERS({"speed_percent_at_equal_power", gain->speed_percent_at_equal_power},
-                                    {"power_percent_at_equal_speed", gain->power_percent_at_equal_speed}));
+                                    {"power_percent_at_equal_speed", gain->power_percent_at_equal_speed},
+                                    {"omega_deg_s_at_equal_power", gain->omega_at_equal_power / DEG},
+                                    {"omega_deg_s_at_equal_speed", gain->omega_at_equal_speed / DEG}));
 }
 
 static void json_solver(moray_json *json, const stage *at)
@@ -34,10 +36,10 @@ static void json_solver(moray_json *json, const stage *at)
     moray_certificate_to_json(json, &at->certificate);
 }
 
-void gait_job_json_ladder(moray_json *json, const stage *at)
+void gait_job_json_ladder(moray_json *json, const gait_job *job, const stage *at)
 {
     char verdict[GAIT_TEXT] = "";
-    moray_ladder_verdict(at->ladder, at->found_on, verdict, sizeof verdict);
+    gait_job_verdict(job, at, verdict, sizeof verdict);
     moray_ladder_to_json(json, at->ladder);
     moray_json_text(json, "verdict", verdict);
 }
@@ -50,9 +52,9 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
     gait_job_json_prediction(json, &at->prediction);
     moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, job->snake.course);
     moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, job->snake.course);
-    json_gain(json, &at->gain);
+    gait_job_json_gain(json, "gain", &at->gain);
     if (at->ladder[0].model)
-        gait_job_json_ladder(json, at);
+        gait_job_json_ladder(json, job, at);
     json_solver(json, at);
 }
 

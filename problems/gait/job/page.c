@@ -62,7 +62,7 @@ static void certify(const gait_job *job, gait_job_page *page)
         moray_certificate_line(c, text, sizeof text);
         moray_text_add(page->certificates, sizeof page->certificates, "The %s. %s\n", gait_job_kind(job, at[k]), text);
     }
-    page->pass = failed == 0;
+    page->pass = recommended(job)->certificate.pass;
     if (failed)
         snprintf(page->judged, sizeof page->judged, "Certificate failed for %d of %d gaits", failed, n);
     else

@@ -28,15 +28,18 @@ typedef struct {
 moray_status gait_job_certify(const gait_job *job, stage *at)
 {
     const moray_integrator integrator = moray_sim_integrator(&job->rig.settings.sim);
-    return moray_certify(at->solution, &integrator, &at->certificate);
+    const moray_status status = moray_certify(at->solution, &integrator, &at->certificate);
+    if (status.code != MORAY_NUMERIC)
+        return status;
+    at->certificate.resimulation = INFINITY;
+    at->certificate.pass = false;
+    snprintf(at->certificate.why, sizeof at->certificate.why, "%.*s", (int)sizeof at->certificate.why - 1, status.text);
+    return moray_ok();
 }
 
-// Where the gait cannot be swum the numbers are NaN, the reason in trial->why.
-static void swim(const gait_job *job, const moray_gait *gait, moray_model from, moray_model model,
-                 moray_gait_trial *trial)
+void gait_job_swim(const gait_job *job, moray_model model, moray_gait_trial *trial)
 {
     const moray_steady none = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, false, NAN, 0};
-    trial->gait[model] = moray_gait_map(&job->snake.robot, gait, from, model);
     moray_status status = gait_job_turning(job, model);
     if (!moray_failed(status))
         status = moray_gait_trial_swim(&job->rig, model, trial);
@@ -47,11 +50,18 @@ static void swim(const gait_job *job, const moray_gait *gait, moray_model from, 
     trial->why[model] = status;
 }
 
+static void swim(const gait_job *job, const moray_gait *gait, moray_model from, moray_model model,
+                 moray_gait_trial *trial)
+{
+    trial->gait[model] = moray_gait_map(&job->snake.robot, gait, from, model);
+    gait_job_swim(job, model, trial);
+}
+
 static void compare(const gait_job *job, proof *of)
 {
     const moray_status no_paper = job->no_paper[MORAY_FIRST_PRINCIPLES];
     if (moray_failed(no_paper))
-        of->gain = (moray_gait_gain){NAN, NAN, NAN, no_paper, no_paper};
+        of->gain = (moray_gait_gain){NAN, NAN, NAN, NAN, no_paper, no_paper};
     else
         of->gain = moray_gait_gain_over(&job->rig, &of->trial, &job->paper);
 }

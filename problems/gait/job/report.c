@@ -22,6 +22,30 @@ const char *gait_job_kind(const gait_job *job, const stage *at)
     return at->model == MORAY_CONTROL_ORIENTED ? "control-oriented optimum" : "first-principles optimum";
 }
 
+static bool beyond(const gait_job *job, double omega)
+{
+    const double rounding = 1e-3;
+    return omega > job->omega[1] * (1 + rounding) || omega < job->omega[0] * (1 - rounding);
+}
+
+void gait_job_say_beyond(const gait_job *job, double omega, char *text, size_t size)
+{
+    if (beyond(job, omega))
+        moray_text_add(text, size, " (at omega = %.4g deg/s, beyond the %.4g to %.4g allowed)", omega / DEG,
+                       job->omega[0] / DEG, job->omega[1] / DEG);
+}
+
+void gait_job_verdict(const gait_job *job, const stage *at, char *text, size_t size)
+{
+    int further = 0;
+    moray_ladder_verdict(at->ladder, at->found_on, text, size);
+    for (int k = 0; k < MORAY_RUNGS; k++)
+        further += beyond(job, at->ladder[k].omega);
+    if (further > 0)
+        moray_text_add(text, size, "; equal power takes an omega beyond the %.4g to %.4g deg/s allowed on %d of them",
+                       job->omega[0] / DEG, job->omega[1] / DEG, further);
+}
+
 // "at the paper gait's power there (0.2646 W) it is 4.03 % faster" and "at its speed ... it needs 7.65 % less power",
 // the first with "than the paper's gait" behind it.
 static void say_gain(const gait_job *job, const moray_gait_gain *gain, bool speed, bool first, char *text)
@@ -35,6 +59,7 @@ static void say_gain(const gait_job *job, const moray_gait_gain *gain, bool spee
     else
         moray_text_add(text, text_size, "at %s speed%s (%.4f m/s) it needs %.2f %% %s power%s", whose,
                        first ? " there" : "", there->speed, fabs(more), more < 0 ? "less" : "more", than);
+    gait_job_say_beyond(job, speed ? gain->omega_at_equal_power : gain->omega_at_equal_speed, text, text_size);
 }
 
 // The gain on the first-principles model, first that which the goal is about, and beside it what the model of the stage
@@ -78,7 +103,7 @@ void gait_job_headline(const gait_job *job, char *text)
         "%s it ",
         gait_job_kind(job, at), theta_max / DEG, gait->delta / DEG, gait->omega / DEG,
         gait_job_baseline(job, baseline));
-    moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
+    gait_job_verdict(job, at, text, text_size);
     moray_text_add(text, text_size, ".");
     if (at == &job->ladder && moray_gait_over_gain(at->solution) < nothing)
         moray_text_add(text, text_size, " No gait was found that gains on all of %.100s.", job->over);
@@ -88,7 +113,7 @@ void gait_job_say_stage(const gait_job *job, const stage *at, char *text)
 {
     text[0] = 0;
     moray_text_add(text, text_size, "The %s ", gait_job_kind(job, at));
-    moray_ladder_verdict(at->ladder, at->found_on, text, text_size);
+    gait_job_verdict(job, at, text, text_size);
     moray_text_add(text, text_size, "; ");
     judge(job, at, text);
     moray_text_add(text, text_size, ".");

@@ -272,6 +272,11 @@ static moray_status explain_no_way(gait_job *job, const stage *at)
                            "current = %g,%g: the robot cannot stem it: %.4f m/s of it run against the course, and "
                            "within the limits the robot makes %.4f m/s along it at most",
                            V[0], V[1], -along, sqrt(U * U - across * across));
+    if (solved(at->solution))
+        return moray_error(MORAY_NOT_SOLVED,
+                           "within the limits no gait was found that makes way along the course: the best of %d starts "
+                           "makes %.2g m/s",
+                           at->starts, at->prediction.course_speed);
     return moray_solution_failure(at->solution);
 }
 

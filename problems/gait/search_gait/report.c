@@ -135,7 +135,7 @@ static void say_ladders(const search_gait *run, char *text)
     for (int k = 0; k < run->shown; k++) {
         const stage *at = &run->optimum[k].at;
         moray_text_add(text, TEXT, "Optimum %d ", k + 1);
-        moray_ladder_verdict(at->ladder, at->found_on, text, TEXT);
+        gait_job_verdict(&run->job, at, text, TEXT);
         moray_text_add(text, TEXT, ".\n");
     }
 }

@@ -73,6 +73,16 @@ static moray_status check_hydrodynamics(const moray_hydrodynamics *hydro)
     return moray_ok();
 }
 
+moray_status moray_robot_check_swims(const moray_robot *robot)
+{
+    if (robot->links > 2)
+        return moray_ok();
+    return moray_error(MORAY_NOT_SOLVED,
+                       "links = %d: two links cannot swim: exchanged and mirrored they are the same robot in the same "
+                       "motion, which would swim the other way; give 3 or more",
+                       robot->links);
+}
+
 moray_status moray_robot_check(const moray_robot *robot)
 {
     if (robot->links < 2 || robot->links > MORAY_MOST_LINKS)

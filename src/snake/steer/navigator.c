@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "moray/control/kalman.h"
 #include "moray/snake/plant.h"
 
@@ -62,7 +63,7 @@ static void ahead(const double *x, double h, const double *slope, double *at)
 static bool move(void *self, double time, double *x)
 {
     const averaged *plant = self;
-    const int n = time > 0 ? (int)ceil(time / longest_step) : 0;
+    const int n = moray_count_up(time / longest_step);
     const double h = n ? time / n : 0;
     for (int i = 0; i < n; i++) {
         double k[4][states], at[states];

@@ -23,6 +23,8 @@ static moray_status crab_direction(const moray_swim_setup *setup, double course,
     const double W = -V[0] * sin(course) + V[1] * cos(course), U = steady->speed;
     if (steady->turning)
         return moray_error(MORAY_NOT_SOLVED, "the gait turns at %.4g rad/s: it holds no course", steady->heading_drift);
+    if (!(U > 0))
+        return moray_error(MORAY_NOT_SOLVED, "the gait makes no way through the water");
     if (fabs(W) >= U)
         return moray_error(MORAY_NOT_SOLVED,
                            "the gait's speed through the water U = %.4g m/s cannot hold the course of %.4g deg against "

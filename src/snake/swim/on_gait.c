@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+
 enum { body = MORAY_BODY_STATES, ENERGY = body, states };
 
 static const double no_wait = 1e-9; // of a step: what is left by rounding
@@ -114,7 +116,7 @@ static moray_status advance(on_gait *r, double t)
 {
     const double longest = 2 * M_PI / r->gait.omega / r->how->steps;
     const double way = t - r->t;
-    const int n = way > no_wait * longest ? (int)ceil(way / longest - no_wait) : 0;
+    const int n = moray_count_up(way / longest - no_wait);
     for (int k = 0; k < n; k++)
         if (!step(r, way / n))
             return moray_error(MORAY_NUMERIC, "the swimmer cannot be integrated at t = %.6g s", r->t);

@@ -119,15 +119,17 @@ moray_gait_gain moray_gait_gain_over(const moray_test_rig *rig, const moray_gait
     moray_gait faster = trial->gait[model], thriftier = trial->gait[model];
     moray_orbit *orbit = proved_orbit(rig, trial, model);
     moray_steady steady;
-    moray_gait_gain gain = {NAN, NAN, NAN, {0}, {0}};
+    moray_gait_gain gain = {NAN, NAN, NAN, NAN, {0}, {0}};
     gain.why_no_speed = match(rig, orbit, model, true, base->power, &faster, &steady);
     if (!moray_failed(gain.why_no_speed)) {
         gain.speed_percent_at_equal_power = 100 * (steady.speed / base->speed - 1);
         gain.omega_at_equal_power = faster.omega;
     }
     gain.why_no_power = match(rig, orbit, model, false, base->speed, &thriftier, &steady);
-    if (!moray_failed(gain.why_no_power))
+    if (!moray_failed(gain.why_no_power)) {
+        gain.omega_at_equal_speed = thriftier.omega;
         gain.power_percent_at_equal_speed = 100 * (steady.power / base->power - 1);
+    }
     moray_orbit_free(orbit);
     return gain;
 }
