@@ -40,7 +40,7 @@ draw() {
         }'
     paper=$(swim 20 120 "$(awk -v n="$(links)" 'BEGIN { print 360 / (n - 1) }')" | cut -d ' ' -f 2)
     power=$(awk -v paper="$paper" '{ printf "%.5g", $3 * paper }' share)
-    grep -q ' 1.000' share || echo "power_W = $power" >>place.ini
+    awk '$3 == 1' share | grep -q . || [ "$power" = 0 ] || echo "power_W = $power" >>place.ini # two links have none
 }
 
 links() {
