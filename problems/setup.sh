@@ -92,7 +92,12 @@ configure_now() {
     say "Configuring $1"
     directory=$1
     shift
-    quietly meson setup "$directory" "$root" "$@"
+    # Some two hundred programs are linked: gold, which comes with Debian's binutils, takes a third of the time of ld.bfd.
+    if command -v ld.gold >/dev/null; then
+        CC_LD=${CC_LD-gold} quietly meson setup "$directory" "$root" "$@"
+    else
+        quietly meson setup "$directory" "$root" "$@"
+    fi
 }
 
 # build DIRECTORY TARGET...: a terminal sees Ninja count; elsewhere a line a minute says how far it is.
