@@ -29,10 +29,12 @@ for file in summary.json growth_intervals.svg; do
 done
 check "the summary is the output" cmp out results/summary.json
 
+if thorough; then
 run --part classics --set repeats=1 --set most_intervals=20
 check "textbook problems as a table: $(cat err)" [ $code -eq 0 ]
 check "those of 20 intervals" eval 'grep -q "^brachistochrone " out && ! grep -q "^bryson-denham " out'
 check "all of them solved" eval '! grep -q "NOT SOLVED" out'
+fi
 
 run --part states --json --set repeats=1 --set most_states=20
 check "growth over states: $(cat err)" [ $code -eq 0 ]
