@@ -73,6 +73,7 @@ refuse 'paper stands there twice' --over paper,paper
 refuse 'paper@0,0.0 stands there twice' --over paper,paper@0,0.0
 refuse 'over = strip@0.1,: must be none' --over strip@0.1
 refuse 'over = strip@0.1,paper: must be none' --over strip@0.1,paper
+if thorough; then
 run --json --over paper,consistent@0.1,0.1
 check "a gait for two models in two currents" [ $code -eq 0 ]
 gain_on() {
@@ -81,6 +82,7 @@ gain_on() {
 }
 check "the invariant model's gain is that in still water: $(gain_on consistent@0.1,0.1), $(gain_on consistent)" \
     near "$(gain_on consistent@0.1,0.1)" "$(gain_on consistent)" 1e-3
+fi
 
 # ---- Other robots: their paper's gait, and what is left out
 run --json --links 5 --over none
@@ -91,11 +93,13 @@ run --links 3 --set power_W=0.02
 check "no baseline that makes way: $code $(cat err)" eval '[ $code -eq 0 ] && grep -q "^Left out as a baseline on the first-principles model: the paper.s gait for 3 links" out'
 check "and so no ladder" grep -q 'is compared on none of 15' out
 
+if thorough; then
 fit='paper fit --set write_ini=FILE'
 run --links 6 --over none --current 0,0.05
 check "constants tuned for another robot leave the control-oriented optimum out: $(grep '^Left out: the control' out)" \
     eval '[ $code -eq 0 ] && grep "^Left out: the control-oriented optimum: rot_damping" out | grep -q "$fit"'
 refuse "$fit" --links 6 --current 0,0.05 --model control
+fi
 
 run --quiet --model control --set taper=-0.8
 check "the table shows the tapered ends" eval 'grep -q "^theta_max of the tail, by (27) .* 20.* deg" out && grep -q "^taper" out'
