@@ -21,7 +21,11 @@ tell() {
 }
 
 # ---- What is exported
-nm -D --defined-only "$library" | awk '{ print $3 }' | sort -u >exported
+# exports LIBRARY: but for where the sections end, which gold exports too.
+exports() {
+    nm -D --defined-only "$1" | awk '{ print $3 }' | grep -vx -e __bss_start -e _edata -e _end | sort -u
+}
+exports "$library" >exported
 grep -v '^moray_' exported >foreign
 check "every symbol of the shared library is named moray_...: $(wc -l <foreign) foreign" none foreign
 tell foreign
@@ -33,7 +37,7 @@ check "they are what the library exports: $(wc -l <differ) differ" none differ
 tell differ
 
 # ---- The library of sweeps, which is one of its own
-nm -D --defined-only "$build/src/sweep/libmoray-sweep.so" | awk '{ print $3 }' | sort -u >exported_sweep
+exports "$build/src/sweep/libmoray-sweep.so" >exported_sweep
 sed 's|//.*||' "$source/include/moray/app/sweep.h" | tr '\n' ' ' | tr ';' '\n' | sed -n 's/.*MORAY_API \([^(]*\)(.*/\1/p' |
     sed 's/.*[ *]//' | sort >declared_sweep
 comm -3 declared_sweep exported_sweep >differ
