@@ -369,8 +369,9 @@ typedef struct moray_mesh_record {
     double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved
     double objective;
     int seen;               // 0; 1 + the control, counted through the phases, that goes to and fro within a few nodes
+    double swing;           // how far it does from turn to turn, of its range, as a mean over its phase
     int ringing;            // 0; that control where the mesh before showed it, too, and the scheme was changed
-    const char *changed_to; // NULL; the scheme of later meshes, because of ringing
+    const char *changed_to; // NULL; the scheme of later meshes, because of ringing or, back, because this did no better
     int dependences; // 0; of the functions on their inputs, found at this solution and new: solved again with them
 } moray_mesh_record;
 

@@ -9,12 +9,21 @@
 enum { most_escapes = 2 };   // from saddles
 enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
 
+// The family that was left.
+struct left_family {
+    moray_family family;
+    int stages;
+    const char *scheme;
+    int nodes; // of its last mesh; 0: none was left, or it is back
+};
+
 struct campaign {
     const moray_ocp *ocp;
     const moray_settings *settings;
     const moray_guess *guess; // of the user; NULL: from the bounds
     moray_family family;
     bool left[MORAY_GAUSS + 1]; // families that showed themselves wrong for the problem
+    struct left_family before;  // the last of them
     int stages;                 // of new intervals
     struct mesh *meshes;
     moray_mesh_record *history; // becomes the solution's
@@ -34,5 +43,9 @@ void moray_campaign_record(struct campaign *c, moray_solution *solution, double 
 
 // Frees a solution but for the history.
 void moray_campaign_drop(moray_solution *solution);
+
+// The first mesh of phase p: what the phase asks for itself, or of equal intervals. Error: MORAY_MEMORY.
+moray_status moray_campaign_first_mesh(const struct campaign *c, int p, int intervals);
+void moray_campaign_free_meshes(struct campaign *c);
 
 #endif

@@ -4,15 +4,12 @@
 #include <string.h>
 
 #include "ocp/campaign.h"
+#include "ocp/family.h"
 #include "ocp/refine.h"
-#include "ocp/ringing.h"
 
 static const double falls = 0.9;  // of the least error before: what counts as less
-static const double rings = 0.05; // of the error before: what finer meshes at least leave where a control rings
-static const double nearly = 100; // of the mesh tolerance: an error that refinement will soon have down
 static const double nonsense = 1; // error of a mesh whose solution is no start for the next
 enum { patience = 8 };            // meshes in a row whose error is no less
-enum { smooth_stages = 3 };       // of the family that takes over where another fails
 
 moray_settings moray_settings_default(void)
 {
@@ -45,14 +42,13 @@ static moray_status check_settings(const moray_settings *settings, const moray_g
     return moray_ok();
 }
 
-static void free_meshes(struct campaign *c)
+void moray_campaign_free_meshes(struct campaign *c)
 {
     for (int p = 0; c->meshes && p < c->ocp->phases; p++)
         moray_mesh_free(&c->meshes[p]);
 }
 
-// The mesh that a phase asks for itself, or of equal intervals.
-static moray_status first_mesh(const struct campaign *c, int p, int intervals)
+moray_status moray_campaign_first_mesh(const struct campaign *c, int p, int intervals)
 {
     const struct phase *phase = &c->ocp->phase[p];
     return moray_mesh_of(&c->meshes[p], phase->mesh, phase->intervals > 0 ? phase->intervals : intervals, c->stages);
@@ -70,7 +66,7 @@ static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
         c->family = other->family;
     for (int p = 0; p < c->ocp->phases; p++)
         if (c->settings->intervals > 0)
-            MORAY_TRY(first_mesh(c, p, c->settings->intervals));
+            MORAY_TRY(moray_campaign_first_mesh(c, p, c->settings->intervals));
         else if (p < other->phases)
             MORAY_TRY(moray_mesh_copy(&c->meshes[p], &other->phase[p].mesh));
         else
@@ -91,62 +87,23 @@ static bool within_limits(const struct campaign *c)
            (settings->max_cpu_seconds <= 0 || c->spent < settings->max_cpu_seconds);
 }
 
-static int intervals_at_first(const struct campaign *c)
+static bool may_refine(const struct campaign *c)
 {
-    const int intervals =
-        c->settings->intervals > 0 ? c->settings->intervals : c->history[0].intervals / c->ocp->phases;
-    return intervals > 1 ? intervals : 1;
-}
-
-// Radau damps what stiff equations or index-3 constraints do to others; on some singular arcs it is Radau that rings,
-// and Gauss that does not.
-static bool find_other_family(struct campaign *c, moray_family *other)
-{
-    c->left[c->family] = true;
-    *other = c->left[MORAY_RADAU] ? MORAY_GAUSS : MORAY_RADAU;
-    return !c->left[*other];
-}
-
-// The meshes in c become those of the start, with another family.
-static moray_status change_family(struct campaign *c, moray_family family)
-{
-    c->history[c->tried - 1].changed_to = family == MORAY_RADAU ? "radau3" : "gauss3";
-    c->family = family;
-    c->stages = smooth_stages;
-    c->vain = 0;
-    free_meshes(c);
-    for (int p = 0; p < c->ocp->phases; p++)
-        MORAY_TRY(first_mesh(c, p, intervals_at_first(c)));
-    return moray_ok();
-}
-
-// Where a control goes to and fro on this mesh as on the one before, and that is no better for being finer.
-static moray_status leave_ringing(struct campaign *c, const moray_solution *solution)
-{
-    moray_mesh_record *here = &c->history[c->tried - 1], *before = here - 1;
-    moray_family other;
-    here->seen = moray_is_solved(solution) ? moray_find_ringing(solution) : 0;
-    const bool again = here->seen > 0 && c->tried > 1 && before->seen > 0 && !before->changed_to &&
-                       here->error > rings * before->error &&
-                       fmin(here->error, before->error) > nearly * c->settings->mesh_tolerance;
-    if (!again || !find_other_family(c, &other))
-        return moray_ok();
-    here->ringing = here->seen;
-    return change_family(c, other);
+    return c->tried - c->widenings - c->escapes < c->settings->max_refinements;
 }
 
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
 static moray_status record_and_refine(struct campaign *c, moray_solution *solution, bool *again)
 {
     double error = NAN;
-    const bool more = c->tried - c->widenings - c->escapes < c->settings->max_refinements;
-    free_meshes(c);
+    const bool more = may_refine(c);
+    moray_campaign_free_meshes(c);
     if (moray_is_solved(solution))
         MORAY_TRY(moray_refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
     moray_campaign_record(c, solution, error, 0);
     *again = more && error > c->settings->mesh_tolerance;
     if (*again)
-        MORAY_TRY(leave_ringing(c, solution));
+        MORAY_TRY(moray_leave_ringing(c, solution));
     *again = *again && within_limits(c);
     return moray_ok();
 }
@@ -192,8 +149,13 @@ static moray_status refine_until_good(struct campaign *c, moray_solution **solut
     bool again;
     MORAY_TRY(record_and_refine(c, *solution, &again));
     take(c, *solution, NULL);
-    while (again)
+    while (again) {
         MORAY_TRY(solve_finer(c, solution, &again));
+        if (may_refine(c) && moray_is_no_better(c, again)) {
+            MORAY_TRY(moray_go_back(c, solution));
+            again = within_limits(c);
+        }
+    }
     return moray_ok();
 }
 
@@ -232,7 +194,7 @@ moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, c
     moray_status status = first_meshes(&c, guess);
     if (!moray_failed(status))
         status = run_campaign(&c, guess, solution);
-    free_meshes(&c);
+    moray_campaign_free_meshes(&c);
     free(c.meshes);
     if (moray_failed(status)) {
         if (*solution)

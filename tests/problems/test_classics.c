@@ -149,6 +149,19 @@ static void test_changes_of_family(void)
     }
 }
 
+// A swimmer's strokes go to and fro within a few nodes, too, but by less on finer meshes.
+static void test_strokes_are_no_ringing(void)
+{
+    struct classic_result result;
+    const struct classic *classic = classic_find("swimmer");
+    moray_settings settings = classic_settings(classic);
+    settings.max_refinements = 3;
+    CHECK_OK(classic_solve(classic, &settings, &rk4, &result, NULL, 0), classic->name);
+    for (int k = 0; k < result.meshes; k++)
+        CHECK(!result.mesh[k].changed_to, "swimmer on %d intervals: swing %.3f", result.mesh[k].intervals,
+              result.mesh[k].swing);
+}
+
 static void test_unsolved(void)
 {
     struct classic_result result;
@@ -192,6 +205,8 @@ int main(void)
     test_ringing();
     test_changes_of_family();
     test_pendulum_in_polar_coordinates();
+    if (tap_thorough())
+        test_strokes_are_no_ringing();
     test_unsolved();
     test_judgement();
     return tap_done();

@@ -178,6 +178,9 @@ static void say_meshes(moray_solution *solution, const moray_mesh_record *tried)
     for (int k = 0; k < solution->meshes; k++)
         if (solution->history[k].ringing > 0)
             say_ringing(solution, &solution->history[k]);
+        else if (solution->history[k].changed_to)
+            moray_diagnosis_say(solution, "On %d intervals that did no better; back to %.40s.\n",
+                                solution->history[k].intervals, solution->history[k].changed_to);
     if (tried->objective == solution->iterate.objective)
         return;
     if (solved)

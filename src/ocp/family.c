@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+//
+// The family of the scheme changes where a control rings, and back where the other does no better.
+#include "ocp/family.h"
+
+#include <math.h>
+
+#include "ocp/refine.h"
+#include "ocp/ringing.h"
+
+static const double least_swing = 0.01, falls = 0.5; // of a control's range; of the swing on the mesh before
+static const double nearly = 100; // of the mesh tolerance: an error that refinement will soon have down
+enum { smooth_stages = 3 };       // of the family that takes over
+
+static int intervals_at_first(const struct campaign *c)
+{
+    const int intervals =
+        c->settings->intervals > 0 ? c->settings->intervals : c->history[0].intervals / c->ocp->phases;
+    return intervals > 1 ? intervals : 1;
+}
+
+// Radau damps what stiff equations or index-3 constraints do to others; on some singular arcs it is Radau that rings,
+// and Gauss that does not.
+static bool find_other_family(struct campaign *c, moray_family *other)
+{
+    c->left[c->family] = true;
+    *other = c->left[MORAY_RADAU] ? MORAY_GAUSS : MORAY_RADAU;
+    return !c->left[*other];
+}
+
+static const char *scheme_of(const struct campaign *c)
+{
+    for (int k = c->tried - 2; k >= 0; k--)
+        if (c->history[k].changed_to)
+            return c->history[k].changed_to;
+    return c->settings->intervals > 0 ? c->settings->scheme : c->guess->from->settings.scheme;
+}
+
+// The meshes in c become those of the start, with another family.
+static moray_status change_family(struct campaign *c, moray_family family)
+{
+    moray_mesh_record *here = &c->history[c->tried - 1];
+    here->changed_to = family == MORAY_RADAU ? "radau3" : "gauss3";
+    c->before = (struct left_family){c->family, c->stages, scheme_of(c), here->nodes};
+    c->family = family;
+    c->stages = smooth_stages;
+    c->vain = 0;
+    moray_campaign_free_meshes(c);
+    for (int p = 0; p < c->ocp->phases; p++)
+        MORAY_TRY(moray_campaign_first_mesh(c, p, intervals_at_first(c)));
+    return moray_ok();
+}
+
+moray_status moray_leave_ringing(struct campaign *c, const moray_solution *solution)
+{
+    moray_mesh_record *here = &c->history[c->tried - 1], *before = here - 1;
+    moray_family other;
+    here->seen = moray_is_solved(solution) ? moray_find_ringing(solution, &here->swing) : 0;
+    const bool again = c->tried > 1 && !before->changed_to && here->seen > 0 && here->seen == before->seen &&
+                       here->swing > fmax(least_swing, falls * before->swing) &&
+                       fmin(here->error, before->error) > nearly * c->settings->mesh_tolerance;
+    if (!again || !find_other_family(c, &other))
+        return moray_ok();
+    here->ringing = here->seen;
+    return change_family(c, other);
+}
+
+bool moray_is_no_better(const struct campaign *c, bool again)
+{
+    const moray_mesh_record *here = &c->history[c->tried - 1];
+    return c->before.nodes > 0 && c->best->transcription->layout.family == c->before.family &&
+           c->best->info.outcome != MORAY_NLP_INTERRUPTED && (!again || here->nodes > c->before.nodes);
+}
+
+moray_status moray_go_back(struct campaign *c, moray_solution **solution)
+{
+    double error;
+    c->history[c->tried - 1].changed_to = c->before.scheme;
+    c->left[c->family] = true;
+    c->family = c->before.family;
+    c->stages = c->before.stages;
+    c->before.nodes = 0;
+    c->vain = 0;
+    if (*solution != c->best)
+        moray_campaign_drop(*solution);
+    *solution = c->best;
+    moray_campaign_free_meshes(c);
+    return moray_refine(c->best, c->settings->mesh_tolerance, c->stages, c->meshes, &error);
+}
