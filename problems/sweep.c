@@ -59,6 +59,7 @@ static moray_status run(sweep_arguments *a, int argc, char **argv)
                                    .jobs = a->jobs,
                                    .point_seconds = a->point_seconds,
                                    .point_megabytes = a->point_megabytes,
+                                   .silent_seconds = a->silent_seconds,
                                    .quiet = a->quiet,
                                    .stop = moray_interrupted};
     moray_sweep_result result;

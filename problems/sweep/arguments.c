@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#define _GNU_SOURCE // strdup
+#define _GNU_SOURCE // open_memstream
 #include "sweep/arguments.h"
 
 #include <argp.h>
 #include <errno.h>
-#include <glob.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +22,7 @@ enum {
     KEY_JOBS,
     KEY_TIME,
     KEY_MEMORY,
+    KEY_SILENT,
     KEY_OBJECTIVE,
     KEY_SHOW,
     KEY_COLD,
@@ -46,6 +46,8 @@ static const struct argp_option options[] = {
     {"jobs", KEY_JOBS, "N", 0, "processes [one a processor]; with mpirun or srun, one a rank instead", 3},
     {"time", KEY_TIME, "SECONDS", 0, "most for one point [no limit]", 3},
     {"memory", KEY_MEMORY, "MB", 0, "most for one point [no limit]", 3},
+    {"silent", KEY_SILENT, "SECONDS", 0,
+     "silence after which a rank is taken for dead, where mpirun --enable-recovery lets the others live [30]", 3},
     {"objective", KEY_OBJECTIVE, "NUMBER", 0,
      "number that tells the better of two solutions, the lower one [the solver's objective]", 3},
     {"cold", KEY_COLD, NULL, 0, "every point from its own start, not from a solved neighbour", 3},
@@ -53,110 +55,6 @@ static const struct argp_option options[] = {
     {"json", KEY_JSON, NULL, 0, "what came of it as one JSON object", 4},
     {"version", KEY_VERSION, NULL, 0, "print the version", 4},
     {0}};
-
-// A copy that lasts as long as the arguments.
-static moray_status copy_of(sweep_arguments *a, const char *text, char **copy)
-{
-    char **owned = realloc(a->owned, (size_t)(a->n_owned + 1) * sizeof *owned);
-    if (owned)
-        a->owned = owned;
-    *copy = owned ? strdup(text) : NULL;
-    if (!*copy)
-        return moray_error(MORAY_MEMORY, "no memory for an argument");
-    owned[a->n_owned++] = *copy;
-    return moray_ok();
-}
-
-// KEY=REST, or REST for a key given: both point into text.
-static moray_status split(char *text, const char *flag, char *default_key, char **key, char **rest)
-{
-    char *equals = strchr(text, '=');
-    if (equals == text || (!equals && !default_key) || (equals && !equals[1]))
-        return moray_error(MORAY_INPUT, "--%s %.60s: must be KEY=%s", flag, text, "VALUES");
-    *key = equals ? text : default_key;
-    *rest = equals ? equals + 1 : text;
-    if (equals)
-        *equals = 0;
-    return moray_ok();
-}
-
-static moray_status next_axis(sweep_arguments *a, moray_sweep_axis **axis)
-{
-    if (a->axes == MORAY_SWEEP_AXES)
-        return moray_error(MORAY_INPUT, "more than %d axes", MORAY_SWEEP_AXES);
-    *axis = &a->axis[a->axes];
-    return moray_ok();
-}
-
-static moray_status add_grid(sweep_arguments *a, const char *argument)
-{
-    moray_sweep_axis *axis = NULL;
-    char *text, *key, *rest;
-    double *value;
-    const char **word;
-    MORAY_TRY(next_axis(a, &axis));
-    MORAY_TRY(copy_of(a, argument, &text));
-    MORAY_TRY(split(text, "grid", NULL, &key, &rest));
-    MORAY_TRY(moray_sweep_values(rest, &value, &word, &axis->n));
-    axis->key = key;
-    axis->value = value;
-    axis->word = word;
-    a->axes++;
-    return moray_ok();
-}
-
-static moray_status add_word(sweep_arguments *a, moray_sweep_axis *axis, const char *name)
-{
-    char *copy;
-    const char **word = realloc((void *)(uintptr_t)axis->word, (size_t)(axis->n + 1) * sizeof *word);
-    if (!word)
-        return moray_error(MORAY_MEMORY, "no memory for %d names", axis->n + 1);
-    axis->word = word;
-    MORAY_TRY(copy_of(a, name, &copy));
-    word[axis->n++] = copy;
-    return moray_ok();
-}
-
-static moray_status add_files(sweep_arguments *a, moray_sweep_axis *axis, const char *pattern)
-{
-    glob_t found = {0};
-    moray_status status = moray_ok();
-    if (glob(pattern, GLOB_NOCHECK, NULL, &found) != 0)
-        status = moray_error(MORAY_IO, "%.200s cannot be looked up", pattern);
-    for (size_t k = 0; !moray_failed(status) && k < found.gl_pathc; k++)
-        status = add_word(a, axis, found.gl_pathv[k]);
-    globfree(&found);
-    return status;
-}
-
-static moray_status add_list(sweep_arguments *a, const char *argument)
-{
-    static char robot[] = "robot";
-    moray_sweep_axis *axis = NULL;
-    char *text, *key, *rest;
-    MORAY_TRY(next_axis(a, &axis));
-    MORAY_TRY(copy_of(a, argument, &text));
-    MORAY_TRY(split(text, "list", robot, &key, &rest));
-    *axis = (moray_sweep_axis){.key = key};
-    a->axes++;
-    return add_files(a, axis, rest);
-}
-
-static moray_status add_range(sweep_arguments *a, const char *argument)
-{
-    char *text, *key, *rest;
-    int used = 0;
-    if (a->ranges == MORAY_SWEEP_RANGES)
-        return moray_error(MORAY_INPUT, "more than %d keys to draw", MORAY_SWEEP_RANGES);
-    moray_sweep_range *range = &a->range[a->ranges];
-    MORAY_TRY(copy_of(a, argument, &text));
-    MORAY_TRY(split(text, "range", NULL, &key, &rest));
-    if (sscanf(rest, "%lf:%lf%n", &range->low, &range->high, &used) < 2 || rest[used])
-        return moray_error(MORAY_INPUT, "--range %s=%.60s: must be LOW:HIGH", key, rest);
-    range->key = key;
-    a->ranges++;
-    return moray_ok();
-}
 
 static moray_status number(const char *flag, const char *text, double low, double high, double *value)
 {
@@ -193,7 +91,7 @@ typedef struct reading {
 static moray_status take_name(reading *r, const char *name)
 {
     if (r->listing)
-        return add_files(r->a, &r->a->axis[r->a->axes - 1], name);
+        return sweep_add_files(r->a, name);
     if (r->a->program)
         return moray_error(MORAY_INPUT,
                            "unexpected argument %.60s; what the program itself is to be given stands "
@@ -214,11 +112,11 @@ static moray_status take(reading *r, int key, char *value)
     case ARGP_KEY_ARG:
         return take_name(r, value);
     case KEY_GRID:
-        return add_grid(a, value);
+        return sweep_add_grid(a, value);
     case KEY_LIST:
-        return add_list(a, value);
+        return sweep_add_list(a, value);
     case KEY_RANGE:
-        return add_range(a, value);
+        return sweep_add_range(a, value);
     case KEY_SHOW:
         return add_show(a, value);
     case KEY_RANDOM:
@@ -237,6 +135,8 @@ static moray_status take(reading *r, int key, char *value)
         return number("time", value, 1e-3, 1e9, &a->point_seconds);
     case KEY_MEMORY:
         return number("memory", value, 1, 1e9, &a->point_megabytes);
+    case KEY_SILENT:
+        return number("silent", value, 0.5, 1e6, &a->silent_seconds);
     case KEY_FILE:
         a->file = value;
         return status;
@@ -301,7 +201,7 @@ static moray_status complete(sweep_arguments *a)
         return moray_ok();
     char name[80], *copy;
     snprintf(name, sizeof name, "%s.nc", a->program->name);
-    MORAY_TRY(copy_of(a, name, &copy));
+    MORAY_TRY(sweep_copy_of(a, name, &copy));
     a->file = copy;
     return moray_ok();
 }
@@ -325,7 +225,7 @@ bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *ex
     found->rest = argv + own + 1;
     found->rest_n = own < argc ? argc - own - 1 : 0;
     argp_err_exit_status = MORAY_EXIT_USAGE; // what argp itself does not understand ends the program there
-    const error_t error = argp_parse(&parser, own, argv, 0, NULL, &r);
+    const error_t error = argp_parse(&parser, own, argv, ARGP_IN_ORDER, NULL, &r);
     if (!moray_failed(r.status))
         r.status = error ? moray_error(MORAY_MEMORY, "the command line: %s", strerror(error)) : complete(found);
     if (!moray_failed(r.status))
@@ -334,16 +234,4 @@ bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *ex
     *exit_code = moray_exit_of(r.status.code);
     sweep_arguments_free(found);
     return false;
-}
-
-void sweep_arguments_free(sweep_arguments *a)
-{
-    for (int k = 0; k < a->axes; k++) {
-        free((void *)(uintptr_t)a->axis[k].value);
-        free((void *)(uintptr_t)a->axis[k].word);
-    }
-    for (int k = 0; k < a->n_owned; k++)
-        free(a->owned[k]);
-    free(a->owned);
-    *a = (sweep_arguments){0};
 }

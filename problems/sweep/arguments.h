@@ -19,10 +19,10 @@ typedef struct sweep_arguments {
     const char *file, *out; // out: NULL for none
     char **owned;           // [n_owned]: texts to be freed
     int n_owned;
-    const char *objective;  // NULL: the program's
-    const char *show[8];    // numbers to draw
+    const char *objective; // NULL: the program's
+    const char *show[8];   // numbers to draw
     int shown, jobs;
-    double point_seconds, point_megabytes;
+    double point_seconds, point_megabytes, silent_seconds;
     bool cold, quiet, json;
 } sweep_arguments;
 
@@ -30,5 +30,13 @@ typedef struct sweep_arguments {
 // has been said. Everything in *found is freed by sweep_arguments_free.
 bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *exit_code);
 void sweep_arguments_free(sweep_arguments *arguments);
+
+// Parts of it, of "KEY=VALUES" each; files: to the last axis, which is a list. A copy is freed with the arguments.
+// Error: MORAY_INPUT, MORAY_MEMORY.
+moray_status sweep_add_grid(sweep_arguments *a, const char *argument);
+moray_status sweep_add_list(sweep_arguments *a, const char *argument);
+moray_status sweep_add_files(sweep_arguments *a, const char *pattern);
+moray_status sweep_add_range(sweep_arguments *a, const char *argument);
+moray_status sweep_copy_of(sweep_arguments *a, const char *text, char **copy);
 
 #endif

@@ -12,8 +12,8 @@ typedef struct sweepable {
     const char *name;
     program_main *main;
     const char *objective; // number of its summary that is the lower the better, of two solutions of one problem
-    const char *guess; // option that starts from a solution which --solution left; NULL: it has none
-    bool jobs; // has --jobs, which a sweep sets to 1: its points are the jobs
+    const char *guess;     // option that starts from a solution which --solution left; NULL: it has none
+    bool jobs;             // has --jobs, which a sweep sets to 1: its points are the jobs
 } sweepable;
 
 extern const sweepable sweepables[]; // ends with a NULL name

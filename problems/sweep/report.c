@@ -38,7 +38,8 @@ static void summarise(const sweep_arguments *a, const moray_sweep_result *r, mor
                                            {"failed", (double)r->failed}, {"made_before", (double)r->before},
                                            {"warm", (double)r->warm}, {"held", (double)r->held},
                                            {"improved", (double)r->improved}, {"ranks", r->ranks}, {"jobs", r->jobs},
-                                           {"time_s", r->seconds}, {"busy_s", r->busy}, {"saving_s", r->saving}));
+                                           {"lost_ranks", r->lost}, {"time_s", r->seconds}, {"busy_s", r->busy},
+                                           {"saving_s", r->saving}));
 }
 
 // Axes that are numbers: at most two, the others stay at their first values.

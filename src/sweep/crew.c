@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Without mpirun, one process a job, each for one point. With it, every rank has one such process, the first one too,
-// and ranks speak in texts: "task POINT START ROUND START_ROUND", the line of a record, "home".
+// and ranks speak in texts: "task POINT START ROUND START_ROUND", the line of a record, "alive", "home", and "leave",
+// which is "home" where a rank is lost, for whom nobody is to wait at the end.
 #include "sweep/sweep.h"
 
 #include <errno.h>
@@ -19,9 +20,12 @@ moray_status moray_crew_new(struct crew *crew, const struct grid *grid)
     *crew =
         (struct crew){.grid = grid, .ranks = ranks.size, .rank = ranks.rank, .n_workers = ranks.size > 1 ? 1 : jobs};
     crew->worker = calloc((size_t)crew->n_workers, sizeof *crew->worker);
-    crew->poll = calloc(2 * (size_t)crew->n_workers, sizeof *crew->poll);
-    crew->busy = calloc((size_t)crew->ranks, sizeof *crew->busy);
-    if (crew->worker && crew->poll && crew->busy)
+    crew->poll = calloc(3 * (size_t)crew->n_workers, sizeof *crew->poll);
+    crew->other = calloc((size_t)crew->ranks, sizeof *crew->other);
+    crew->orphan = calloc((size_t)crew->ranks, sizeof *crew->orphan);
+    for (int k = 0; crew->other && k < crew->ranks; k++)
+        crew->other[k].heard = moray_clock();
+    if (crew->worker && crew->poll && crew->other && crew->orphan)
         return moray_ok();
     moray_crew_free(crew);
     return moray_error(MORAY_MEMORY, "no memory for %d processes", jobs);
@@ -31,11 +35,15 @@ void moray_crew_free(struct crew *crew)
 {
     for (int k = 0; crew->worker && k < crew->n_workers; k++)
         moray_worker_kill(&crew->worker[k]);
-    for (int k = 1; crew->rank == 0 && k < crew->ranks; k++)
-        moray_ranks_send(k, "home");
+    for (int k = 1; crew->other && crew->rank == 0 && k < crew->ranks; k++)
+        if (!crew->other[k].lost)
+            moray_ranks_send(k, crew->lost ? "leave" : "home");
+    if (crew->lost)
+        moray_ranks_leave();
     free(crew->worker);
     free(crew->poll);
-    free(crew->busy);
+    free(crew->other);
+    free(crew->orphan);
     *crew = (struct crew){0};
 }
 
@@ -50,7 +58,7 @@ static struct worker *idle_worker(const struct crew *crew)
 static int idle_rank(const struct crew *crew)
 {
     for (int k = 1; k < crew->ranks; k++)
-        if (!crew->busy[k])
+        if (!crew->other[k].busy && !crew->other[k].lost)
             return k;
     return 0;
 }
@@ -68,31 +76,82 @@ moray_status moray_crew_begin(struct crew *crew, const struct task *task)
     char text[120];
     snprintf(text, sizeof text, "task %ld %ld %d %d", task->point, task->start, task->round, task->start_round);
     moray_ranks_send(rank, text);
-    crew->busy[rank] = true;
+    crew->other[rank].busy = true;
+    crew->other[rank].task = *task;
     return moray_ok();
+}
+
+// One who is silent for too long has died with its machine, and what it had in hand is for another.
+static void miss_ranks(struct crew *crew)
+{
+    const double now = moray_clock(), asked = crew->grid->spec->silent_seconds, most = asked > 0 ? asked : 30;
+    for (int k = 1; k < crew->ranks; k++) {
+        struct other *other = &crew->other[k];
+        if (other->lost || now - other->heard < most)
+            continue;
+        other->lost = true;
+        crew->lost++;
+        if (other->busy)
+            crew->orphan[crew->orphans++] = other->task;
+    }
+}
+
+// A lost one may have been slow only: it is heard again, but its point has been given away.
+static moray_status hear(struct crew *crew, int from, const char *text, struct record *record, bool *found)
+{
+    struct other *other = &crew->other[from];
+    other->heard = moray_clock();
+    if (strcmp(text, "alive") == 0)
+        return moray_ok();
+    const bool given_away = other->lost;
+    crew->lost -= given_away;
+    other->lost = other->busy = false;
+    if (given_away)
+        return moray_ok();
+    const moray_status status = moray_record_read(text, record);
+    *found = !moray_failed(status);
+    return status;
 }
 
 static moray_status answer_of_rank(struct crew *crew, struct record *record, bool *found)
 {
     int from;
-    char *text = crew->ranks > 1 ? moray_ranks_receive(&from) : NULL;
-    if (!text)
-        return moray_ok();
-    crew->busy[from] = false;
-    const moray_status status = moray_record_read(text, record);
-    free(text);
-    *found = !moray_failed(status);
+    char *text = NULL;
+    moray_status status = moray_ok();
+    while (crew->ranks > 1 && !*found && !moray_failed(status) && (text = moray_ranks_receive(&from))) {
+        status = hear(crew, from, text, record, found);
+        free(text);
+    }
+    if (crew->ranks > 1 && !text) // nothing more to be heard
+        miss_ranks(crew);
     return status;
 }
 
+static moray_status begin_orphans(struct crew *crew)
+{
+    while (crew->orphans > 0 && moray_crew_idle(crew)) {
+        crew->orphans--;
+        MORAY_TRY(moray_crew_begin(crew, &crew->orphan[crew->orphans]));
+    }
+    return moray_ok();
+}
+
+// A process that somebody killed says nothing of its point, which is tried again; one that is killed each time, as by a
+// system out of memory, does.
 static moray_status answer_of_worker(struct crew *crew, struct record *record, bool *found)
 {
+    enum { most_killed = 2 };
     for (int k = 0; k < crew->n_workers && !*found; k++) {
-        if (crew->worker[k].pid == 0)
+        struct worker *worker = &crew->worker[k];
+        if (worker->pid == 0)
             continue;
-        MORAY_TRY(moray_worker_read(&crew->worker[k], found));
-        if (*found)
-            return moray_worker_record(&crew->worker[k], crew->grid, record);
+        MORAY_TRY(moray_worker_read(worker, found));
+        const bool again = *found && moray_worker_was_killed(worker) && worker->killed < most_killed;
+        *found = *found && !again;
+        if (again)
+            MORAY_TRY(moray_worker_again(worker, crew->grid));
+        else if (*found)
+            return moray_worker_record(worker, crew->grid, record);
     }
     return moray_ok();
 }
@@ -105,9 +164,12 @@ static void sleep_until_heard(struct crew *crew, double seconds)
         const struct worker *worker = &crew->worker[k];
         if (worker->pid == 0)
             continue;
+        crew->poll[n++] = (struct pollfd){worker->ends, POLLIN, 0};
         for (int i = 0; i < 2; i++)
             crew->poll[n++] = (struct pollfd){worker->pipe[i], POLLIN, 0};
         seconds = fmin(seconds, worker->deadline - moray_clock());
+        if (worker->ends < 0)
+            seconds = fmin(seconds, 1e-3); // the end of a process wakes nobody then
     }
     // Messages of ranks wake nobody: they are asked for often, and at little cost.
     const double most = crew->ranks > 1 ? 1e-3 : seconds;
@@ -121,6 +183,7 @@ moray_status moray_crew_wait(struct crew *crew, double seconds, struct record *r
         MORAY_TRY(answer_of_worker(crew, record, found));
         if (!*found)
             MORAY_TRY(answer_of_rank(crew, record, found));
+        MORAY_TRY(begin_orphans(crew)); // before whoever is free gets something new
         const double left = until - moray_clock();
         if (*found || left <= 0)
             return moray_ok();
@@ -128,9 +191,20 @@ moray_status moray_crew_wait(struct crew *crew, double seconds, struct record *r
     }
 }
 
+// To the first rank, now and then.
+static void show_life(struct crew *crew)
+{
+    const double now = moray_clock(), asked = crew->grid->spec->silent_seconds;
+    if (now - crew->other[0].heard < fmin(2, asked > 0 ? asked / 5 : 2))
+        return;
+    crew->other[0].heard = now;
+    moray_ranks_send(0, "alive");
+}
+
 static moray_status wait_for_worker(struct crew *crew, struct record *record, bool *found)
 {
     sleep_until_heard(crew, 1);
+    show_life(crew);
     return answer_of_worker(crew, record, found);
 }
 
@@ -155,11 +229,13 @@ moray_status moray_crew_serve(struct crew *crew)
         int from;
         struct task task;
         char *text = moray_ranks_receive(&from);
+        show_life(crew);
         if (!text) {
             poll(NULL, 0, 1);
             continue;
         }
-        const bool home = strcmp(text, "home") == 0;
+        const bool leave = strcmp(text, "leave") == 0, home = leave || strcmp(text, "home") == 0;
+        crew->lost += leave;
         const int read = sscanf(text, "task %ld %ld %d %d", &task.point, &task.start, &task.round, &task.start_round);
         free(text);
         if (home)

@@ -16,10 +16,52 @@ static moray_status check_ranges(const moray_sweep_spec *spec)
         return moray_error(MORAY_INPUT, "%ld random draws of %d keys: either needs the other", spec->draws,
                            spec->ranges);
     for (int r = 0; r < spec->ranges; r++)
-        if (!(isfinite(spec->range[r].low) && isfinite(spec->range[r].high) &&
-              spec->range[r].low <= spec->range[r].high))
+        if (!spec->range[r].key || !*spec->range[r].key)
+            return moray_error(MORAY_INPUT, "random key %d has no name", r + 1);
+        else if (!(isfinite(spec->range[r].low) && isfinite(spec->range[r].high) &&
+                   spec->range[r].low <= spec->range[r].high))
             return moray_error(MORAY_INPUT, "%s = %g:%g: must be finite and rising", spec->range[r].key,
                                spec->range[r].low, spec->range[r].high);
+    return moray_ok();
+}
+
+// Coordinates of a file rise or fall throughout, by which a point's neighbours are its nearest, too.
+static moray_status check_numbers(const moray_sweep_axis *axis)
+{
+    for (int i = 0; i < axis->n; i++) {
+        if (!isfinite(axis->value[i]))
+            return moray_error(MORAY_INPUT, "%.60s = %g: must be finite", axis->key, axis->value[i]);
+        if (i > 0 && !((axis->value[i] - axis->value[i - 1]) * (axis->value[1] - axis->value[0]) > 0))
+            return moray_error(MORAY_INPUT, "%.60s: values must rise or fall throughout, and %g follows %g", axis->key,
+                               axis->value[i], axis->value[i - 1]);
+    }
+    return moray_ok();
+}
+
+static moray_status check_words(const moray_sweep_axis *axis)
+{
+    for (int i = 0; i < axis->n; i++) {
+        if (!axis->word[i] || !axis->word[i][0])
+            return moray_error(MORAY_INPUT, "%.60s: word %d is empty", axis->key, i + 1);
+        for (int other = 0; other < i; other++)
+            if (strcmp(axis->word[i], axis->word[other]) == 0)
+                return moray_error(MORAY_INPUT, "%.60s: %.100s is there twice", axis->key, axis->word[i]);
+    }
+    return moray_ok();
+}
+
+static moray_status check_axes(const moray_sweep_spec *spec)
+{
+    if (spec->axes < 0 || spec->axes > MORAY_SWEEP_AXES)
+        return moray_error(MORAY_INPUT, "%d axes: at most %d", spec->axes, MORAY_SWEEP_AXES);
+    for (int k = 0; k < spec->axes; k++) {
+        const moray_sweep_axis *axis = &spec->axis[k];
+        if (!axis->key || !*axis->key)
+            return moray_error(MORAY_INPUT, "axis %d has no key", k + 1);
+        if (axis->n < 1 || (!axis->value && !axis->word))
+            return moray_error(MORAY_INPUT, "%.60s has no values", axis->key);
+        MORAY_TRY(axis->value ? check_numbers(axis) : check_words(axis));
+    }
     return moray_ok();
 }
 
@@ -40,8 +82,9 @@ static moray_status check_keys(const moray_sweep_spec *spec)
 
 moray_status moray_grid_new(const moray_sweep_spec *spec, struct grid *grid)
 {
-    if (spec->axes < 0 || spec->axes > MORAY_SWEEP_AXES)
-        return moray_error(MORAY_INPUT, "%d axes: at most %d", spec->axes, MORAY_SWEEP_AXES);
+    if (!spec->solve)
+        return moray_error(MORAY_INPUT, "a sweep without a function that solves a point");
+    MORAY_TRY(check_axes(spec));
     MORAY_TRY(check_ranges(spec));
     MORAY_TRY(check_keys(spec));
     *grid = (struct grid){.spec = spec, .points = 1};
@@ -51,8 +94,6 @@ moray_status moray_grid_new(const moray_sweep_spec *spec, struct grid *grid)
     for (int k = 0; k < spec->axes; k++)
         grid->shape[grid->axes++] = spec->axis[k].n;
     for (int k = 0; k < grid->axes; k++) {
-        if (grid->shape[k] < 1)
-            return moray_error(MORAY_INPUT, "%s has no values", key_of(spec, k - grid->first));
         if (grid->points > INT_MAX / grid->shape[k])
             return moray_error(MORAY_INPUT, "more than %d points", INT_MAX);
         grid->points *= grid->shape[k];
@@ -76,6 +117,13 @@ static long point_at(const struct grid *grid, const long at[GRID_AXES])
     for (int k = 0; k < grid->axes; k++)
         point = point * grid->shape[k] + at[k];
     return point;
+}
+
+double moray_grid_coordinate(const struct grid *grid, long point, int axis)
+{
+    long at[GRID_AXES];
+    moray_grid_place(grid, point, at);
+    return grid->spec->axis[axis - grid->first].value[at[axis]];
 }
 
 bool moray_grid_numeric(const struct grid *grid, int axis)

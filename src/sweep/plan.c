@@ -77,6 +77,13 @@ static void add_children(struct plan *plan, long point)
         add(plan, (struct task){.point = k, .start = solved_above(plan, k)});
 }
 
+// The step from the neighbour to the point, over the one from behind it to the neighbour.
+static double further(const struct grid *grid, long point, long near, long behind, int axis)
+{
+    const double at_near = moray_grid_coordinate(grid, near, axis);
+    return (moray_grid_coordinate(grid, point, axis) - at_near) / (at_near - moray_grid_coordinate(grid, behind, axis));
+}
+
 // What the line through the neighbour and the point behind it promises, and how sure that is.
 static bool promises(const struct plan *plan, long point, int axis, int side, long *neighbour, double *lead)
 {
@@ -87,8 +94,9 @@ static bool promises(const struct plan *plan, long point, int axis, int side, lo
         return false;
     const double at_near = store->objective[near];
     const bool line = behind >= 0 && store->state[behind] == POINT_SOLVED && isfinite(store->objective[behind]);
-    const double slope = line ? at_near - store->objective[behind] : 0;
-    const double promised = at_near + slope, margin = fabs(slope) / 2 + 1e-4 * fabs(at_near);
+    const double rise =
+        line ? (at_near - store->objective[behind]) * further(plan->grid, point, near, behind, axis) : 0;
+    const double promised = at_near + rise, margin = fabs(rise) / 2 + 1e-4 * fabs(at_near);
     *neighbour = near;
     *lead = store->state[point] == POINT_SOLVED ? store->objective[point] - promised - margin : INFINITY;
     return *lead > 0 && store->start[point] != near;

@@ -17,11 +17,18 @@ static bool started_by_many(void)
     return false;
 }
 
+static bool leaving;
+
+void moray_ranks_leave(void)
+{
+    leaving = true;
+}
+
 static void end(void)
 {
     int ended = 0;
     MPI_Finalized(&ended);
-    if (!ended)
+    if (!ended && !leaving)
         MPI_Finalize();
 }
 
@@ -37,6 +44,7 @@ struct ranks moray_ranks_begin(void)
     MPI_Initialized(&begun);
     if (!begun && MPI_Init(NULL, NULL) == MPI_SUCCESS)
         atexit(end);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN); // a rank that is gone is no end of the others
     MPI_Comm_size(MPI_COMM_WORLD, &known.size);
     MPI_Comm_rank(MPI_COMM_WORLD, &known.rank);
     return known;

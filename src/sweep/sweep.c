@@ -23,41 +23,8 @@ typedef struct run {
     moray_sweep_result *result;
     double begun, saved, saving; // clock; of the last saving; what that took
     long fresh, refused;         // attempts of this run; of all, those that were bad input
+    bool all_refused;
 } run;
-
-// What has to be the same for a file to be gone on with, on one line.
-static char *identity_of(const struct grid *grid)
-{
-    const moray_sweep_spec *spec = grid->spec;
-    moray_json *json = moray_json_new();
-    moray_json_text(json, "sweep of moray", moray_version());
-    moray_json_text(json, "configuration", spec->configuration);
-    moray_json_text(json, "objective", spec->objective);
-    moray_json_bool(json, "warm", spec->warm);
-    for (int k = 0; k < spec->axes; k++) {
-        const moray_sweep_axis *axis = &spec->axis[k];
-        if (axis->value)
-            moray_json_numbers(json, axis->key, axis->value, axis->n);
-        moray_json_open_list(json, axis->key);
-        for (int i = 0; !axis->value && i < axis->n; i++)
-            moray_json_text(json, NULL, axis->word[i]);
-        moray_json_close(json);
-    }
-    for (int r = 0; r < spec->ranges; r++)
-        moray_json_numbers(json, spec->range[r].key, (const double[]){spec->range[r].low, spec->range[r].high}, 2);
-    moray_json_numbers(json, "draws, seed", (const double[]){(double)spec->draws, (double)spec->seed}, 2);
-    char *text = NULL, *line = NULL;
-    size_t size;
-    FILE *file = open_memstream(&text, &size);
-    const bool written = file && !moray_failed(moray_json_write(json, file));
-    if (file)
-        fclose(file);
-    if (written && moray_failed(moray_json_on_one_line(text, &line)))
-        line = NULL;
-    free(text);
-    moray_json_free(json);
-    return line;
-}
 
 static void path_of(const moray_sweep_spec *spec, const char *end, char path[4200])
 {
@@ -114,8 +81,8 @@ static void tell(const run *r)
                           r->plan.expected, r->result->failed, rate, (double)left / rate);
 }
 
-// A key that the program has not is no matter of a point.
-enum { enough_refused = 4 };
+// A key that the program has not is no matter of a point, and refusals are quick.
+enum { enough_refused = 1000 };
 
 static moray_status take(run *r, const struct record *record)
 {
@@ -126,9 +93,9 @@ static moray_status take(run *r, const struct record *record)
     r->result->failed += (now == POINT_FAILED) - (before == POINT_FAILED);
     r->result->solved += (now == POINT_SOLVED) - (before == POINT_SOLVED);
     r->refused += record->code == MORAY_INPUT;
-    return r->refused == r->plan.answered && (r->refused == enough_refused || r->refused == r->grid.points)
-               ? moray_error(MORAY_INPUT, "every point so far is refused: %.250s", record->reason)
-               : moray_ok();
+    r->all_refused = r->refused == r->plan.answered && (r->refused >= enough_refused || r->refused >= r->grid.points);
+    return r->all_refused ? moray_error(MORAY_INPUT, "every point so far is refused: %.250s", record->reason)
+                          : moray_ok();
 }
 
 static moray_status wait_for_one(run *r)
@@ -153,11 +120,15 @@ static moray_status wait_for_one(run *r)
 
 static moray_status begin_or_recall(run *r, const struct task *task)
 {
-    const struct record *old = moray_journal_find(&r->journal, task);
-    if (!old)
+    struct record old;
+    bool found;
+    MORAY_TRY(moray_journal_find(&r->journal, task, &old, &found));
+    if (!found)
         return moray_crew_begin(&r->crew, task);
     r->result->before++;
-    return take(r, old);
+    const moray_status status = take(r, &old);
+    moray_record_free(&old);
+    return status;
 }
 
 static moray_status solve_all(run *r)
@@ -187,7 +158,7 @@ static void remove_all(const moray_sweep_spec *spec)
 
 static moray_status finish(run *r, moray_status status)
 {
-    if (status.code == MORAY_INPUT) {
+    if (r->all_refused && r->journal.made) {
         remove_all(r->spec);
         return status;
     }
@@ -202,9 +173,27 @@ static moray_status finish(run *r, moray_status status)
     return status;
 }
 
+// A file that is there and is not this sweep's is not written over.
+static moray_status check_file(const moray_sweep_spec *spec)
+{
+    char journal[4200];
+    struct stat about;
+    path_of(spec, "journal", journal);
+    if (stat(spec->file, &about) != 0)
+        return moray_ok();
+    if (!S_ISREG(about.st_mode))
+        return moray_error(MORAY_INPUT, "%.200s is not a regular file", spec->file);
+    return access(journal, F_OK) == 0 ? moray_ok()
+                                      : moray_error(MORAY_INPUT,
+                                                    "%.90s is there and %.90s, from which it would be gone on with, is "
+                                                    "not: give another file, or remove it",
+                                                    spec->file, journal);
+}
+
 static moray_status lead(run *r)
 {
-    char path[4200], *identity = identity_of(&r->grid);
+    MORAY_TRY(check_file(r->spec));
+    char path[4200], *identity = moray_identity_line(&r->grid);
     path_of(r->spec, "journal", path);
     moray_status status = identity ? moray_journal_open(&r->journal, path, identity)
                                    : moray_error(MORAY_MEMORY, "no memory for a journal");
@@ -215,6 +204,7 @@ static moray_status lead(run *r)
         status = save(r, false); // before hours of work: whether it can be written at all
     if (!moray_failed(status))
         status = finish(r, solve_all(r));
+    r->result->lost = r->crew.lost;
     r->result->warm = r->plan.warm;
     r->result->held = r->plan.held;
     r->result->improved = r->plan.improved;

@@ -24,6 +24,7 @@ struct grid {
 moray_status moray_grid_new(const moray_sweep_spec *spec, struct grid *grid); // Error: MORAY_INPUT
 void moray_grid_place(const struct grid *grid, long point, long at[GRID_AXES]);
 bool moray_grid_numeric(const struct grid *grid, int axis); // its values are numbers, so that its neighbours are near
+double moray_grid_coordinate(const struct grid *grid, long point, int axis); // of a numeric axis
 
 // Where a point begins unless it is the first of its kind: a point nearer to the middle of the numeric axes, or an
 // earlier draw near it. -1: nowhere.
@@ -58,6 +59,7 @@ struct record {
 void moray_record_free(struct record *record);
 char *moray_record_line(const struct record *record);                    // to be freed; NULL: no memory
 moray_status moray_record_read(const char *line, struct record *record); // Error: MORAY_INPUT, MORAY_MEMORY
+bool moray_record_task(const char *line, struct task *task);             // no more than what it was an attempt at
 // The object that a text holds, on one line, to be freed; NULL where it holds none. Error: MORAY_MEMORY.
 moray_status moray_json_on_one_line(const char *text, char **line);
 
@@ -82,31 +84,48 @@ void moray_store_free(struct store *store);
 // whether the attempt is now what the point has. Error: MORAY_MEMORY.
 moray_status moray_store_add(struct store *store, const struct record *record, bool *better);
 
+// ---- Identity ------------------------------------------------------------------------------------------------------
+
+// What has to be the same for a file to be gone on with, a JSON object on one line, to be freed; NULL: no memory.
+char *moray_identity_line(const struct grid *grid);
+// MORAY_INPUT, with the first thing in which two of them differ. path: for the text.
+moray_status moray_identity_refuse(const char *path, const char *there, const char *asked);
+
 // ---- Journal -------------------------------------------------------------------------------------------------------
 
 // Lines of records behind a first line that says of which sweep they are; every line with its checksum. A line that is
-// torn ends it.
+// damaged is as if it were not there, and a torn end is cut off. What was there is kept as places in the file, since
+// the texts of a million points have no room in memory.
+struct entry {
+    struct task task;
+    long at, length; // of its text
+};
 struct journal {
     int fd;
-    FILE *file;         // of fd, to read it; closing it would end the lock
-    double synced;      // clock of the last one
-    struct record *old; // what was there when it was opened, by (point, round, start)
-    long n_old;
-    bool finished; // when it was opened
+    FILE *file;        // of fd, to read it; closing it would end the lock
+    double synced;     // clock of the last one
+    struct entry *old; // what was there when it was opened, by (point, round, start)
+    long n_old, room;
+    bool finished, made; // when it was opened: by the line at its end; it was not there
 };
 
-// Opens or makes it, locks it, reads what is there. Error: MORAY_INPUT (another sweep's; another process has it),
-// MORAY_IO, MORAY_MEMORY.
+// Opens or makes it, locks it, reads what is there. Error: MORAY_INPUT (another sweep's, or no journal; another process
+// has it), MORAY_IO, MORAY_MEMORY.
 moray_status moray_journal_open(struct journal *journal, const char *path, const char *identity);
 void moray_journal_close(struct journal *journal);
-const struct record *moray_journal_find(const struct journal *journal,
-                                        const struct task *task);                     // of the old ones; or NULL
+// Of the old ones, to be freed; *found: whether there is one. Error: MORAY_IO, MORAY_MEMORY.
+moray_status moray_journal_find(const struct journal *journal, const struct task *task, struct record *record,
+                                bool *found);
 moray_status moray_journal_add(struct journal *journal, const struct record *record); // Error: MORAY_IO, MORAY_MEMORY
 
 // ---- NetCDF --------------------------------------------------------------------------------------------------------
 
 // Writes all that is known to spec->file, at once. Error: MORAY_IO.
 moray_status moray_store_write(const struct store *store, bool finished);
+
+enum { NETCDF_NAME = 257 };                                                   // of the longest name and its end
+void moray_netcdf_name(const char *path, char name[NETCDF_NAME]);             // of a number, in the file
+int moray_netcdf_content(int file, const struct store *store, bool finished); // all of it; an error of NetCDF, or 0
 
 // ---- Plan ----------------------------------------------------------------------------------------------------------
 
@@ -135,8 +154,10 @@ double moray_clock(void); // seconds
 // A point being solved in a process of its own.
 struct worker {
     pid_t pid; // 0: idle
+    int ends;  // readable once it has ended; -1: the system has no such thing
     struct task task;
-    int pipe[2]; // to read from: the summary; what it says besides
+    int killed;  // how often it was from outside, and begun again
+    int pipe[2]; // to read from: the summary; what it says besides; -1: at its end
     char *text[2];
     size_t length[2];
     double begun, deadline;
@@ -147,6 +168,9 @@ struct worker {
 moray_status moray_worker_begin(struct worker *worker, const struct grid *grid,
                                 const struct task *task);           // Error: MORAY_IO
 moray_status moray_worker_read(struct worker *worker, bool *ended); // Error: MORAY_MEMORY
+// Once ended: neither by itself nor for being late, so that it may well be solved by another attempt.
+bool moray_worker_was_killed(const struct worker *worker);
+moray_status moray_worker_again(struct worker *worker, const struct grid *grid); // Error: MORAY_IO
 moray_status moray_worker_record(struct worker *worker, const struct grid *grid,
                                  struct record *record); // once ended; then idle
 void moray_worker_kill(struct worker *worker);
@@ -154,14 +178,24 @@ void moray_worker_kill(struct worker *worker);
 // Where a point leaves its solution, into path[size].
 void moray_solution_path(const moray_sweep_spec *spec, long point, int round, char *path, size_t size);
 
+// A rank other than this one, as this one knows it.
+struct other {
+    bool busy, lost; // has a task; was silent for too long
+    double heard;    // clock; of the first rank, as others have it: when it last heard of this one
+    struct task task;
+};
+
 // Everybody who solves points: processes of this machine or ranks.
 struct crew {
     const struct grid *grid;
     int n_workers;
     struct worker *worker;
-    struct pollfd *poll; // [2 n_workers]
+    struct pollfd *poll; // [3 n_workers]
     int ranks, rank;
-    bool *busy; // [ranks]: a rank other than this one
+    int lost;            // ranks
+    struct other *other; // [ranks]
+    struct task *orphan; // [ranks], orphans of them: tasks of those who are lost
+    int orphans;
 };
 
 moray_status moray_crew_new(struct crew *crew, const struct grid *grid);
@@ -177,6 +211,7 @@ struct ranks {
     int size, rank;
 };
 struct ranks moray_ranks_begin(void); // {1, 0} where nobody started several; ends with the process
+void moray_ranks_leave(void);         // at the end of the process nobody waits for the others
 void moray_ranks_send(int to, const char *text);
 char *moray_ranks_receive(int *from); // a text that has come, to be freed, or NULL
 

@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -113,6 +114,7 @@ moray_status moray_worker_begin(struct worker *worker, const struct grid *grid, 
     setpgid(pid, pid); // whoever is first
     const double now = moray_clock(), limit = grid->spec->point_seconds;
     *worker = (struct worker){.pid = pid,
+                              .ends = pidfd_open(pid, 0),
                               .task = *task,
                               .pipe = {summary[0], errors[0]},
                               .begun = now,
@@ -122,53 +124,96 @@ moray_status moray_worker_begin(struct worker *worker, const struct grid *grid, 
     return moray_ok();
 }
 
-// Keeps the first megabyte of the summary and the last kilobytes of the rest.
-static moray_status drain(struct worker *worker, int which, bool *at_end)
+// Keeps the first megabytes of the summary and the last kilobytes of the rest.
+static moray_status keep(struct worker *worker, int which, const char *piece, size_t n)
 {
     enum { most_summary = 1 << 24, most_errors = 1 << 12 };
-    char piece[1 << 14];
-    ssize_t n;
-    while ((n = read(worker->pipe[which], piece, sizeof piece)) > 0 || (n < 0 && errno == EINTR)) {
-        if (n < 0)
-            continue;
-        size_t kept = worker->length[which];
-        if (which == 0 && kept + (size_t)n > most_summary)
-            continue;
-        char *text = realloc(worker->text[which], kept + (size_t)n + 1);
-        if (!text)
-            return moray_error(MORAY_MEMORY, "no memory for what a point says");
-        worker->text[which] = text;
-        memcpy(text + kept, piece, (size_t)n);
-        kept += (size_t)n;
-        if (which == 1 && kept > most_errors) {
-            memmove(text, text + kept - most_errors, most_errors);
-            kept = most_errors;
-        }
-        text[kept] = 0;
-        worker->length[which] = kept;
+    size_t kept = worker->length[which];
+    if (which == 0 && kept + n > most_summary)
+        return moray_ok();
+    char *text = realloc(worker->text[which], kept + n + 1);
+    if (!text)
+        return moray_error(MORAY_MEMORY, "no memory for what a point says");
+    worker->text[which] = text;
+    memcpy(text + kept, piece, n);
+    kept += n;
+    if (which == 1 && kept > most_errors) {
+        memmove(text, text + kept - most_errors, most_errors);
+        kept = most_errors;
     }
-    *at_end = n == 0;
+    text[kept] = 0;
+    worker->length[which] = kept;
     return moray_ok();
+}
+
+// Reads what is there, but no more than a piece of it at a time: a point that never stops talking is late all the same.
+// A pipe at its end is closed, so that nobody waits for it.
+static moray_status drain(struct worker *worker, int which)
+{
+    enum { most_reads = 64 };
+    char piece[1 << 14];
+    for (int k = 0; worker->pipe[which] >= 0 && k < most_reads; k++) {
+        const ssize_t n = read(worker->pipe[which], piece, sizeof piece);
+        if (n == 0) {
+            close(worker->pipe[which]);
+            worker->pipe[which] = -1;
+        } else if (n > 0) {
+            MORAY_TRY(keep(worker, which, piece, (size_t)n));
+        } else if (errno != EINTR) {
+            return moray_ok();
+        }
+    }
+    return moray_ok();
+}
+
+static moray_status drain_both(struct worker *worker)
+{
+    MORAY_TRY(drain(worker, 0));
+    return drain(worker, 1);
 }
 
 moray_status moray_worker_read(struct worker *worker, bool *ended)
 {
-    bool at_end[2];
-    for (int k = 0; k < 2; k++)
-        MORAY_TRY(drain(worker, k, &at_end[k]));
+    MORAY_TRY(drain_both(worker));
     if (moray_clock() > worker->deadline) {
         worker->late = true;
         kill(-worker->pid, SIGKILL);
     }
     int wait_status;
-    const pid_t pid = waitpid(worker->pid, &wait_status, at_end[0] || worker->late ? 0 : WNOHANG);
-    *ended = pid == worker->pid;
+    *ended = waitpid(worker->pid, &wait_status, worker->late ? 0 : WNOHANG) == worker->pid;
     if (!*ended)
         return moray_ok();
     worker->wait_status = wait_status;
     kill(-worker->pid, SIGKILL); // what it started and left
-    for (int k = 0; k < 2; k++)
-        MORAY_TRY(drain(worker, k, &at_end[k]));
+    return drain_both(worker);
+}
+
+bool moray_worker_was_killed(const struct worker *worker)
+{
+    return !worker->late && WIFSIGNALED(worker->wait_status) &&
+           (WTERMSIG(worker->wait_status) == SIGKILL || WTERMSIG(worker->wait_status) == SIGTERM);
+}
+
+// Back to idle.
+static void clear(struct worker *worker)
+{
+    if (worker->ends >= 0)
+        close(worker->ends);
+    for (int k = 0; k < 2; k++) {
+        if (worker->pipe[k] >= 0)
+            close(worker->pipe[k]);
+        free(worker->text[k]);
+    }
+    *worker = (struct worker){0};
+}
+
+moray_status moray_worker_again(struct worker *worker, const struct grid *grid)
+{
+    const struct task task = worker->task;
+    const int killed = worker->killed + 1;
+    clear(worker);
+    MORAY_TRY(moray_worker_begin(worker, grid, &task));
+    worker->killed = killed;
     return moray_ok();
 }
 
@@ -192,8 +237,8 @@ static void judge(struct worker *worker, const struct grid *grid, struct record 
     if (worker->late)
         snprintf(reason, size, "took longer than %g s", grid->spec->point_seconds);
     else if (WIFSIGNALED(wait_status))
-        snprintf(reason, size, "its process was ended by signal %d (%s)%s%.200s", WTERMSIG(wait_status),
-                 strsignal(WTERMSIG(wait_status)), *text ? ": " : "", text);
+        snprintf(reason, size, "its process was ended by signal %d (%s)%s%s%.200s", WTERMSIG(wait_status),
+                 strsignal(WTERMSIG(wait_status)), worker->killed ? ", time and again" : "", *text ? ": " : "", text);
     else if (WEXITSTATUS(wait_status) <= MORAY_INTERRUPTED)
         record->code = (moray_code)WEXITSTATUS(wait_status);
     if (!*reason && record->code != MORAY_OK)
@@ -213,11 +258,7 @@ moray_status moray_worker_record(struct worker *worker, const struct grid *grid,
         free(record->reason);
         record->reason = strdup("it left no summary");
     }
-    for (int k = 0; k < 2; k++) {
-        close(worker->pipe[k]);
-        free(worker->text[k]);
-    }
-    *worker = (struct worker){0};
+    clear(worker);
     return status;
 }
 
@@ -227,9 +268,5 @@ void moray_worker_kill(struct worker *worker)
         return;
     kill(-worker->pid, SIGKILL);
     waitpid(worker->pid, NULL, 0);
-    for (int k = 0; k < 2; k++) {
-        close(worker->pipe[k]);
-        free(worker->text[k]);
-    }
-    *worker = (struct worker){0};
+    clear(worker);
 }

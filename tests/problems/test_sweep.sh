@@ -29,6 +29,9 @@ run simulate --grid links=4,6 --grid current_x=-0.1:0.1:3 --file cold.nc --quiet
 check "a figure of a number: $(cat err)" eval '[ $code -eq 0 ] && [ -s drawn/robot_links.svg ] && [ -s drawn/report.html ]'
 run simulate --list "$2/problems/robots/*.ini" --file robots.nc --json
 check "a list of robots: $(number points)" eval '[ $code -eq 0 ] && [ "$(number points)" -ge 1 ] && [ "$(number failed)" = 0 ]'
+cp "$2/problems/robots/paper.ini" "my robot.ini"
+run simulate --list "my robot.ini" "$2/problems/robots/paper.ini" --quiet --file names.nc --json
+check "names of files behind --list, with spaces: $(number solved) $(cat err)" eval '[ $code -eq 0 ] && [ "$(number solved)" = 2 ]'
 run simulate --random 3 --range links=4:4 --range omega_deg_s=60:120 --seed 3 --file draws.nc --json
 check "random draws: $(number solved) $(cat err)" eval '[ $code -eq 0 ] && [ "$(number solved)" = 3 ]'
 check "within their range: $(values omega_deg_s draws.nc | tr '\n' ' ')" awk 'BEGIN { ok = 1 } { ok = ok && $1 >= 60 && $1 <= 120; n++ } END { exit !(ok && n == 3) }' <<END
@@ -58,14 +61,38 @@ if command -v mpirun >/dev/null; then
         ncdump "$file.nc" | sed '/:command/d; /^netcdf/d; /sweep_time_s =/,/;/d' >$file.txt
     done
     check "find the same" cmp a.txt mpi.txt
+
+    # Under --enable-recovery the others outlive a rank that dies, and do what it had in hand.
+    # shellcheck disable=SC2086
+    timeout 60 mpirun $root --oversubscribe --enable-recovery -n 3 "$program" simulate --grid links=4,6 --grid current_x=-0.1:0.1:20 \
+        --file lost.nc --silent 1 --json --quiet -- --duration 100 >out 2>err &
+    until [ "$(grep -c point lost.nc.journal 2>/dev/null)" -ge 2 ] 2>/dev/null || ! kill -0 $!; do sleep 0.05; done
+    # shellcheck disable=SC2046
+    kill -KILL $(ps -o pid= --ppid $(ps -o pid= --ppid $!) | tail -n 1)
+    wait $!
+    check "a rank that dies is missed: $(number lost_ranks)" [ "$(number lost_ranks)" = 1 ]
+    check "and all points are solved: $(number solved)" [ "$(number solved)" = 40 ]
 else
     echo "ok $((tap_run += 1)) - two ranks # SKIP mpirun is not installed"
 fi
+
+if thorough; then
+    sh "$2/tests/studies/kills.sh" "$program" 3 5 >kills 2>&1
+    check "killed at random times: $(tail -n 1 kills)" grep -q ' 0 of the files differ' kills
+fi
+ln -s /dev/zero zero.nc.journal
+refuse 'not a regular file' simulate --grid links=4,6 --file zero.nc
 
 refuse 'no program nothing' nothing --grid links=4,5
 refuse 'which program' --grid links=4,5
 refuse 'nothing is varied' simulate
 refuse 'must be LOW:HIGH:COUNT' simulate --grid links=4:6
+refuse 'must rise or fall' simulate --grid links=4,6,6
+refuse 'must rise or fall' simulate --grid links=4,8,6
+refuse 'must be LOW:HIGH:COUNT' simulate --grid current_x=nan:1:3
+refuse 'must be LOW:HIGH:COUNT' simulate --grid current_x=0:1:0
+refuse 'more than' simulate --grid current_x=0:1:1000000 --grid current_y=0:1:1000000
+refuse 'is there twice' simulate --list same.ini same.ini
 refuse 'varied twice' simulate --grid links=4,5 --grid links=6,7
 refuse 'unknown key link' simulate --grid link=4,5 --file wrong.nc
 check "of which no file is left" [ ! -e wrong.nc ]

@@ -63,6 +63,7 @@ typedef struct moray_sweep_spec {
     int jobs;               // processes without mpirun; < 1: one a processor
     double point_seconds;   // of the clock, for one point; 0: no limit
     double point_megabytes; // of address space, for one point; 0: no limit
+    double silent_seconds;  // with mpirun --enable-recovery: silence by which a rank is lost; 0: 30
     double save_seconds;    // at least so long between two savings of the file; 0: 30
     bool quiet;
     bool (*stop)(void); // asked between points; true: ends early, and can be gone on with. NULL: never
@@ -76,7 +77,7 @@ typedef struct moray_sweep_result {
     long improved;               // points that a neighbour's branch made better
     double seconds, busy;        // on the clock; in the points' processes, on theirs
     double saving;               // spent on the file and the journal
-    int ranks, jobs;
+    int ranks, jobs, lost;       // lost: ranks that died on the way; what they had in hand others did
 } moray_sweep_result;
 
 // Goes on where the file and its journal end, so that what is done is not done again; returns when all points have been
