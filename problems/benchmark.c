@@ -6,7 +6,7 @@
 
 static const char *const parts[] = {"all",       "s1",    "problems", "classics",   "states",
                                     "intervals", "links", "horizon",  "simulation", NULL};
-static const char *const unused[] = {"scheme", "intervals", "tol", NULL};
+static const char *const unused[] = {"scheme", "intervals", "tol", "ipopt.KEY", NULL};
 
 static const moray_option options[] = {
     MORAY_ROW(

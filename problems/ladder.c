@@ -45,13 +45,15 @@ static const moray_option options[] = {
      .help = "processes; 0: one a processor"},
 };
 static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(ladder, snake)}};
+static const char *const without[] = {"model", "scheme", "intervals", "tol", "linear_solver", "ipopt.KEY", NULL};
 static const moray_program program = {
     .name = "ladder",
     .summary = "Compares gaits of an underwater snake robot with the paper's on a ladder of models, at equal power.",
     .options = options,
     .n_options = sizeof options / sizeof *options,
     .groups = groups,
-    .n_groups = 1};
+    .n_groups = 1,
+    .without = without};
 
 static void add_gait(ladder *run, const char *name, const moray_gait *gait)
 {

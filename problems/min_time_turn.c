@@ -35,7 +35,6 @@ int main(int argc, char **argv)
     const double theta_max = 20 * DEG, omega = 120 * DEG, delta = 40 * DEG;
     job.steer.weight_steering = 0.001;
     job.steer.intervals_per_period = 6;
-    job.steer.snake.current[0] = job.steer.snake.current[1] = 0.1;
     job.steer.input.theta_max[0] = job.steer.input.theta_max[1] = theta_max;
     job.steer.input.omega[0] = job.steer.input.omega[1] = omega;
     job.steer.input.delta[0] = job.steer.input.delta[1] = delta;

@@ -153,7 +153,8 @@ int main(int argc, char **argv)
     const moray_words words = {
         .noun = "study", .word = word, .n = N_STUDIES, .all = "all", .offset = offsetof(paper_settings, chosen)};
     static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(paper_settings, snake)}};
-    static const char *const without[] = {"model", "course", "scheme", "intervals", "tol", NULL};
+    static const char *const without[] = {"model", "course",        "scheme",    "intervals",
+                                          "tol",   "linear_solver", "ipopt.KEY", NULL};
     const moray_program program = {
         .name = "paper",
         .summary = "Runs studies of the paper on both of its models and shows them beside what it claims.",

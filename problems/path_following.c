@@ -50,7 +50,5 @@ int main(int argc, char **argv)
                     .reach = 3,
                     .find_gait = true};
     job.steer.weight_steering = 0.3;
-    job.steer.snake.current[0] = -0.05;
-    job.steer.snake.current[1] = 0.1;
     return steer_main(&program, &path_steering, argc, argv, &job.steer);
 }

@@ -66,7 +66,8 @@ static const moray_option options[] = {
                "of the mean square of phi_0'' in units of its limit per s^2"),
 };
 
-static const char *const without[] = {"current", "course", NULL};
+static const char *const without[] = {"current", "course",        "scheme",    "intervals",
+                                      "tol",     "linear_solver", "ipopt.KEY", NULL};
 static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(sea_job, snake)}};
 
 static const moray_program program = {

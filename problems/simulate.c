@@ -38,7 +38,7 @@ static const moray_option options[] = {
     MORAY_GAIT_OPTIONS(simulate, gait),
 };
 
-static const char *const without[] = {"scheme", "intervals", "tol", NULL};
+static const char *const without[] = {"scheme", "intervals", "tol", "linear_solver", "ipopt.KEY", NULL};
 static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(simulate, snake)}};
 static const moray_program program = {
     .name = "simulate",

@@ -88,8 +88,8 @@ show sensitivity sensitivity
 show sensitivity_control sensitivity --model control
 show heading_tracking heading_tracking --current 0.1,0.1
 show heading_fig8 heading_tracking --set reference=fig8 --current 0.1,0.1
-show path_following path_following
-show min_time_turn min_time_turn
+show path_following path_following --current=-0.05,0.1
+show min_time_turn min_time_turn --current 0.1,0.1
 show sea_trials sea_trials --seeds 20 --set training=6 --set starts=3 --set evaluations=6
 show sea_trials_path sea_trials --task path --set current_max_m_s=0.1 --set duration_s=150 --seeds 12 --set training=5 --set starts=4 --set evaluations=8
 show paper paper all

@@ -427,6 +427,7 @@ typedef struct moray_certificate {
                           // MORAY_LIMIT_CURVATURE
     double composed;      // as resimulation, each phase in one go from its start: for information, as unstable
                           // equations make it as large as they like
+    double mesh_limit;    // mesh_tolerance of the solve
     char why[400];        // one sentence on the first number that fails, with its limit and where; empty if none does
 } moray_certificate;
 

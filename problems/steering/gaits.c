@@ -48,11 +48,11 @@ moray_steering_limits steer_limits(const steer_job *job, moray_model model)
     return moray_steering_limits_map(&job->snake.robot, &limits, &gait, MORAY_CONTROL_ORIENTED, model);
 }
 
-moray_status steer_fastest_gait(const steer_job *job, double power, moray_gait *gait)
+moray_status steer_fastest_gait(steer_job *job, moray_model model, double power, moray_gait *gait)
 {
     const steer_input *input = &job->input;
     const moray_gait_problem_spec spec = {.robot = job->snake.robot,
-                                          .model = MORAY_FIRST_PRINCIPLES,
+                                          .model = model,
                                           .goal = MORAY_GAIT_FASTEST,
                                           .joints = MORAY_JOINTS_ON_GAIT,
                                           .limits = {.theta_max = {input->theta_max[0], input->theta_max[1]},
@@ -63,14 +63,18 @@ moray_status steer_fastest_gait(const steer_job *job, double power, moray_gait *
                                                      .power = power,
                                                      .joint_rate = MORAY_INFINITY,
                                                      .joint_effort = MORAY_INFINITY}};
-    const moray_search_settings settings = moray_search_settings_default();
+    moray_search_settings settings = moray_search_settings_default();
     moray_gait_search *search;
     moray_orbit_result orbit;
     moray_search_info info;
+    settings.progress = steer_go_on;
+    settings.observer = job;
     MORAY_TRY(moray_gait_search_new(&search, &spec, "lobatto5", 12));
     moray_status status = moray_gait_search_run(search, &settings, gait, &orbit, &info);
     if (!moray_failed(status) && info.violation > 1e-6)
         status = moray_error(MORAY_NOT_SOLVED, "power_W = %g: no gait within the limits gets by with it", power);
+    if (steer_clock_up(&job->clock))
+        status = moray_error(MORAY_NOT_SOLVED, "the fastest gait is not found in the time given (--time)");
     moray_gait_search_free(search);
     return status;
 }

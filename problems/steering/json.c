@@ -36,7 +36,9 @@ static void json_trial(const steer_job *job, moray_json *json, const steer_trial
         moray_json_number(json, job->number[k].key, trial->number[k]);
     json_scores(job, json, "predicted", trial->score[MORAY_CONTROL_ORIENTED]);
     json_scores(job, json, "validated", trial->score[MORAY_FIRST_PRINCIPLES]);
-    if (trial->law->kind == STEER_RECEDING)
+    if (!trial->run || trial->cut)
+        moray_json_text(json, "cut_short", trial->run ? "tuning" : "not swum");
+    if (trial->law->kind == STEER_RECEDING && trial->run)
         json_receding(job, json, trial);
     moray_json_close(json);
 }
@@ -69,6 +71,8 @@ void steer_summary(const void *found, moray_json *json)
     const steer_job *job = found;
     moray_snake_to_json(json, &job->snake);
     job->program->json_head(job, json);
+    if (moray_failed(job->without))
+        moray_json_text(json, "not_solved", job->without.text);
     json_plan(job, json, "control_oriented_plan", MORAY_CONTROL_ORIENTED);
     if (job->snake.model == MORAY_FIRST_PRINCIPLES)
         json_plan(job, json, "first_principles_plan", MORAY_FIRST_PRINCIPLES);

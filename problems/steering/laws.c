@@ -103,6 +103,8 @@ steer_trial *steer_add(steer_job *job, const char *name, const steer_law *law, i
     *trial = (steer_trial){.name = name, .law = law, .gait = gait, .plan = plan};
     for (int k = 0; k < STEER_NUMBERS; k++)
         trial->number[k] = law->start[k];
+    for (int k = 0; k < STEER_SCORES; k++)
+        trial->score[0][k] = trial->score[1][k] = NAN;
     return trial;
 }
 

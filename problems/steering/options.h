@@ -33,7 +33,8 @@
     STEER_NUMBER(INT, settings, steer.intervals_per_period, "solver", "intervals_per_period", 1, 100, NULL,            \
                  "of the mesh, an undulation"),                                                                        \
         STEER_NUMBER(INT, settings, steer.refinements, "solver", "refinements", 0, 20, NULL,                           \
-                     "finer meshes tried where the first is too coarse")
+                     "finer meshes tried where the first is too coarse"),                                              \
+        STEER_TIME_OPTION(settings, steer.clock)
 
 #define STEER_RECEDING_OPTIONS(settings)                                                                               \
     MORAY_ROW(BOOL, settings, steer.receding, "receding", "receding", .help = "try receding horizon too"),             \

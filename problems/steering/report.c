@@ -105,7 +105,7 @@ const steer_trial *steer_best(const steer_job *job, unsigned laws, int score)
     const steer_trial *best = NULL;
     for (int k = 0; k < job->n_trials; k++) {
         const steer_trial *trial = &job->trial[k];
-        const bool wanted = laws & 1u << (trial->law - job->program->laws) && !trial->barred;
+        const bool wanted = laws & 1u << (trial->law - job->program->laws) && trial->run && !trial->barred;
         if (wanted && (!best || trial->score[1][score] < best->score[1][score]))
             best = trial;
     }
@@ -140,6 +140,8 @@ static void print_solver(const steer_job *job, int number)
         return;
     moray_certificate_line(&job->certificate[number], line, sizeof line);
     printf("    %s\n", line);
+    if (!job->certificate[number].pass)
+        printf("    %s\n", job->certificate[number].why);
 }
 
 static void print(const void *found, const moray_report *report)
@@ -156,7 +158,7 @@ static void print(const void *found, const moray_report *report)
     if (program->notes)
         program->notes(job, stdout);
     for (int k = 0; k < job->n_trials; k++)
-        if (job->trial[k].law->kind == STEER_RECEDING)
+        if (job->trial[k].law->kind == STEER_RECEDING && job->trial[k].run)
             print_receding(job, &job->trial[k]);
     print_solver(job, STEER_AVERAGED);
     for (int model = 0; model <= (int)job->snake.model; model++)
@@ -178,6 +180,27 @@ static bool certify(const steer_job *job, char *text, size_t size)
     return pass;
 }
 
+// What the time given cut short, and the plan that there is none of.
+static void say_missing(const steer_job *job, char *text, size_t size)
+{
+    const char *before = " Not swum in the time given (--time):";
+    if (moray_failed(job->without))
+        moray_text_add(text, size, " %s.", job->without.text);
+    for (int k = 0; k < job->n_trials; k++)
+        if (!job->trial[k].run) {
+            moray_text_add(text, size, "%s %s", before, job->trial[k].name);
+            before = ",";
+        }
+    moray_text_add(text, size, *before == ',' ? "." : "");
+    before = " Tuned for less long than asked for, as the time given ended it:";
+    for (int k = 0; k < job->n_trials; k++)
+        if (job->trial[k].cut) {
+            moray_text_add(text, size, "%s %s", before, job->trial[k].name);
+            before = ",";
+        }
+    moray_text_add(text, size, *before == ',' ? "." : "");
+}
+
 moray_status steer_report(steer_job *job)
 {
     steer_tables tables = {0};
@@ -185,6 +208,7 @@ moray_status steer_report(steer_job *job)
     moray_swim_scene scene = {0};
     job->program->tables(job, &tables);
     job->program->conclude(job, text, sizeof text);
+    say_missing(job, text, sizeof text);
     job->program->explain(job, why, sizeof why);
     const bool pass = certify(job, certificates, sizeof certificates);
     snprintf(asked, sizeof asked, "A robot of %d links in a current of (%g, %g) m/s.", job->snake.robot.links,
@@ -194,9 +218,12 @@ moray_status steer_report(steer_job *job)
     job->scene = &scene;
     const moray_section sections[] = {{.title = "What keeps the robot from doing better", .text = why},
                                       {.title = "Certificate", .text = certificates}};
+    const bool all = !moray_failed(job->without);
     const moray_report report = {.title = job->name,
-                                 .judged = pass ? "Plans solved and certified" : "A plan's certificate failed",
-                                 .judgement = pass ? MORAY_JUDGED_PASS : MORAY_JUDGED_FAIL,
+                                 .judged = !all   ? "No first-principles plan"
+                                           : pass ? "Plans solved and certified"
+                                                  : "A plan's certificate failed",
+                                 .judgement = pass && all ? MORAY_JUDGED_PASS : MORAY_JUDGED_FAIL,
                                  .text = text,
                                  .asked = asked,
                                  .scene = &scene.scene,

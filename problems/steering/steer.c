@@ -19,7 +19,8 @@ steer_job steer_defaults(void)
                      .look_ahead_periods = 6,
                      .starts = 12,
                      .evaluations = 20,
-                     .receding = true};
+                     .receding = true,
+                     .clock = {.limit = 1800}};
     job.snake.model = MORAY_FIRST_PRINCIPLES;
     strcpy(job.common.scheme, "radau5");
     job.common.intervals = 0; // by the period
@@ -49,23 +50,28 @@ static moray_status certified(const steer_job *job)
 
 int steer_main(const moray_program *own, const steer_program *program, int argc, char **argv, steer_job *job)
 {
+    static const char *const without[] = {"course", NULL}; // the task says where to
     const moray_option_group snake = {&moray_snake_option_table, offsetof(steer_job, snake)};
     moray_program app = *own;
     int exit_code;
     app.groups = &snake;
     app.n_groups = 1;
+    app.without = without;
     job->name = app.name;
     job->program = program;
     memcpy(job->number, program->numbers, (size_t)program->n_numbers * sizeof *job->number);
     if (!moray_app_start(&app, argc, argv, job, &exit_code))
         return exit_code;
     job->ticker = moray_ticker_start(stderr, job->common.quiet);
+    steer_clock_start(&job->clock);
     moray_interrupt_begin();
     moray_status status = work(job);
     moray_interrupt_end();
     moray_ticker_end(&job->ticker);
     if (!moray_failed(status))
         status = steer_report(job);
+    if (!moray_failed(status))
+        status = job->without;
     exit_code = moray_app_end(&app, job, status);
     if (exit_code == MORAY_EXIT_SOLVED)
         exit_code = moray_app_certified(&app, certified(job));
@@ -83,7 +89,7 @@ static bool show_iteration(void *observer, const moray_progress *at)
     const steer_job *job = observer;
     moray_ticker_show(&job->ticker, "%s: iteration %d, objective %.6g, violation %.1e", job->name, at->iteration,
                       at->objective, at->infeasibility);
-    return !moray_interrupted();
+    return !moray_interrupted() && !steer_clock_up(&job->clock);
 }
 
 moray_settings steer_settings(steer_job *job, bool averaged, int intervals, double mesh_tolerance, double barrier)
@@ -112,12 +118,38 @@ moray_status steer_take_plan(steer_job *job, int number)
     return moray_certify(job->plan[number].solution, &integrator, &job->certificate[number]);
 }
 
+bool steer_solved(const moray_solution *solution)
+{
+    const moray_nlp_outcome outcome = moray_solution_info(solution)->outcome;
+    bool solved = outcome == MORAY_NLP_SOLVED;
+    int meshes;
+    const moray_mesh_record *record = moray_solution_history(solution, &meshes);
+    for (int k = 0; outcome == MORAY_NLP_INTERRUPTED && !moray_interrupted() && k < meshes; k++)
+        solved = solved || record[k].outcome == MORAY_NLP_SOLVED;
+    return solved;
+}
+
 moray_status steer_not_solved(const moray_solution *solution)
 {
     const moray_nlp_info *info = moray_solution_info(solution);
-    if (info->outcome == MORAY_NLP_INTERRUPTED)
+    const moray_status failure = moray_solution_failure(solution);
+    if (info->outcome != MORAY_NLP_INTERRUPTED)
+        return failure;
+    if (moray_interrupted())
         return moray_error(MORAY_INTERRUPTED, "interrupted after %d iterations; nothing is written", info->iterations);
-    return moray_solution_failure(solution);
+    return moray_error(MORAY_NOT_SOLVED, "not solved in the time given (--time): %s", failure.text);
+}
+
+moray_status steer_do_without(steer_job *job, moray_status reason)
+{
+    if (reason.code != MORAY_NOT_SOLVED || job->snake.model == MORAY_CONTROL_ORIENTED ||
+        !job->plan[MORAY_CONTROL_ORIENTED].solution)
+        return reason;
+    job->without = moray_error(MORAY_NOT_SOLVED, "no first-principles plan: %s", reason.text);
+    job->snake.model = MORAY_CONTROL_ORIENTED;
+    moray_steering_plan_free(&job->plan[MORAY_FIRST_PRINCIPLES]);
+    job->plan[MORAY_FIRST_PRINCIPLES] = (moray_steering_plan){0};
+    return moray_ok();
 }
 
 double steer_duration(const moray_solution *solution)

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+#include "clock.h"
 #include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
@@ -137,6 +138,7 @@ struct steer_trial {
     double tuned_cost;                        // of these, as tuning had it
     int evaluations, searches, agree;         // spent on tuning; local searches, and those that came to the same
     bool run, barred;                         // barred: takes more than the power allowed
+    bool cut;                                 // its tuning was ended by the time given
     double score[2][STEER_SCORES], cost[2];   // by the model swum on
     moray_receding_horizon_record record[2];
 };
@@ -152,8 +154,10 @@ struct steer_job {
     int starts, evaluations, jobs; // of tuning, as of moray_tuning_settings
     double replan_periods, look_ahead_periods;
     bool receding;
+    steer_clock clock;
     // found along the way
-    const char *name; // of the program
+    moray_status without; // why there is no first-principles plan though it was asked for; ok: there is, or it was not
+    const char *name;     // of the program
     const steer_program *program;
     steer_number number[STEER_NUMBERS];
     moray_straight_motion straight[STEER_GAITS][2]; // of the paper's gait, those of the plans; by the model swum on
@@ -189,9 +193,9 @@ moray_gait steer_first_gait(const steer_job *job);
 // Of the model. Offsets are in the ratio of the amplitudes of the first gait; the power is that of the paper's gait.
 moray_steering_limits steer_limits(const steer_job *job, moray_model model);
 
-// From *gait to the fastest one of the first-principles model straight ahead, within the ranges and the power [W].
+// From *gait to the fastest one of the model straight ahead, within the ranges and the power [W].
 // Error: those of moray_gait_search_new and _run; MORAY_NOT_SOLVED when no gait gets by with the power.
-moray_status steer_fastest_gait(const steer_job *job, double power, moray_gait *gait);
+moray_status steer_fastest_gait(steer_job *job, moray_model model, double power, moray_gait *gait);
 
 // Of gait number `index`, on both models.
 moray_status steer_straight_motions(steer_job *job, int index, const moray_gait *gait, moray_model from);
@@ -208,6 +212,14 @@ double steer_offset_ratio(const steer_job *job, int gait, moray_model from, mora
 
 // Of a solve on the averaged plant, on one mesh, or on the full one.
 moray_settings steer_settings(steer_job *job, bool averaged, int intervals, double mesh_tolerance, double barrier);
+
+// Whether a solve found what was asked for, if only on a mesh before that which the time given cut off.
+bool steer_solved(const moray_solution *solution);
+
+// Goes on without the first-principles plan that failed for this reason, where there is a control-oriented one: the
+// model is that from then on, and trials are to be chosen anew. Error: the reason, where it is another or there is
+// none.
+moray_status steer_do_without(steer_job *job, moray_status reason);
 
 // A plan that is solved, number model or STEER_AVERAGED: certifies it unless averaged.
 moray_status steer_take_plan(steer_job *job, int number);
@@ -243,14 +255,17 @@ steer_trial *steer_add(steer_job *job, const char *name, const steer_law *law, i
 void steer_add_plans(steer_job *job, const steer_law *blind, const steer_law *both);
 void steer_add_receding(steer_job *job, const steer_law *law);
 
-// Tunes and swims every trial not yet run whose gait and plan are known. Error: those of moray_swim_closed_loop_run,
-// MORAY_INTERRUPTED.
+// Tunes and swims every trial not yet run whose gait and plan are known, in equal shares of the time that is left; one
+// that does not end in its share stays not run. Error: those of moray_swim_closed_loop_run, MORAY_INTERRUPTED.
 moray_status steer_run_trials(steer_job *job);
+
+// Takes over from n trials what was found of those that job has too.
+void steer_keep_trials(steer_job *job, const steer_trial *before, int n);
 
 // Swims one of them again, to be drawn.
 moray_status steer_swim(const steer_job *job, const steer_trial *trial, moray_swim_closed_loop *closed_loop);
 
-// Progress of a search that Ctrl-C ends, and MORAY_INTERRUPTED after it.
+// Progress of a search, its observer the job, that Ctrl-C or the time given ends; and MORAY_INTERRUPTED after Ctrl-C.
 bool steer_go_on(void *observer, const moray_search_progress *progress);
 moray_status steer_interruption(void);
 
@@ -271,8 +286,8 @@ void steer_gait_table(const steer_job *job, steer_tables *tables, int first); //
 void steer_score_table(const steer_job *job, steer_tables *tables, int n_columns);
 void steer_tuning_table(const steer_job *job, steer_tables *tables);
 
-// The best on the first-principles model by a score, of the trials whose law is one of the bits and that are not
-// barred.
+// The best on the first-principles model by a score, of the trials whose law is one of the bits, that have run and are
+// not barred; NULL: none.
 const steer_trial *steer_best(const steer_job *job, unsigned laws, int score);
 
 // Begins a text with the limit; adds to one.

@@ -3,12 +3,16 @@
 // A trial swims on both models, its numbers tuned on the first-principles one.
 #include "steer.h"
 
+#include <string.h>
+
 // How a simulation is run: with the joints' own dynamics to a tolerance, or exactly on the gait; samples a second.
 typedef struct accuracy {
     const moray_swim_on_gait *on_gait;
     double tolerance, per_second;
+    bool timed; // ended by the clock
 } accuracy;
-static const accuracy careful = {.tolerance = 1e-8, .per_second = 20};
+static const accuracy careful = {.tolerance = 1e-8, .per_second = 20, .timed = true};
+static const accuracy drawn = {.tolerance = 1e-8, .per_second = 20};
 static const moray_swim_on_gait quick = {.steps = 24};
 
 // ---- Swimming ------------------------------------------------------------------------------------------------------
@@ -25,7 +29,22 @@ static moray_status set_controller(steer_steersman *h)
     return moray_ok();
 }
 
-// The steersman's receding horizon must be freed, after an error too.
+// A program's own observer, and the clock.
+typedef struct watch {
+    moray_swim_observer *observe;
+    void *observer;
+    const steer_clock *clock;
+    bool late;
+} watch;
+
+static bool look_on(const moray_swim_sample *sample, void *self)
+{
+    watch *w = self;
+    w->late = steer_clock_up(w->clock);
+    return !w->late && !moray_interrupted() && (!w->observe || w->observe(sample, w->observer));
+}
+
+// The steersman's receding horizon must be freed, after an error too. Error: MORAY_NOT_SOLVED where the clock ended it.
 static moray_status swim(steer_steersman *h, accuracy how, moray_swim_closed_loop *closed_loop)
 {
     const steer_job *job = h->job;
@@ -38,13 +57,22 @@ static moray_status swim(steer_steersman *h, accuracy how, moray_swim_closed_loo
                                         .on_gait = how.on_gait};
     job->program->start(h, &spec);
     spec.intervals = (int)ceil(how.per_second * spec.duration);
-    return moray_swim_closed_loop_run(closed_loop, &spec);
+    watch w = {spec.observe, spec.observer, &job->clock, false};
+    if (how.timed) {
+        spec.observe = look_on;
+        spec.observer = &w;
+    }
+    MORAY_TRY(moray_swim_closed_loop_run(closed_loop, &spec));
+    if (!w.late)
+        return moray_ok();
+    moray_swim_closed_loop_free(closed_loop);
+    return moray_error(MORAY_NOT_SOLVED, "%s: not swum in the time given", h->trial->name);
 }
 
 moray_status steer_swim(const steer_job *job, const steer_trial *trial, moray_swim_closed_loop *closed_loop)
 {
     steer_steersman h = {.job = job, .trial = trial, .model = MORAY_FIRST_PRINCIPLES};
-    const moray_status status = swim(&h, careful, closed_loop);
+    const moray_status status = swim(&h, drawn, closed_loop);
     moray_swim_receding_horizon_free(h.receding);
     return status;
 }
@@ -85,7 +113,7 @@ static void set_numbers(steer_trial *trial, const double *x)
 static bool evaluate(void *self, const double *x, double *cost)
 {
     const tuning *t = self;
-    const accuracy how = {.on_gait = &quick, .per_second = t->job->program->rough_per_second};
+    const accuracy how = {.on_gait = &quick, .per_second = t->job->program->rough_per_second, .timed = true};
     steer_trial own = *t->trial;
     set_numbers(&own, x);
     const moray_status status = try(t->job, &own, MORAY_FIRST_PRINCIPLES, how);
@@ -95,8 +123,8 @@ static bool evaluate(void *self, const double *x, double *cost)
 
 static bool go_on(void *observer)
 {
-    (void)observer;
-    return !moray_interrupted();
+    const steer_job *job = observer;
+    return !moray_interrupted() && !steer_clock_up(&job->clock);
 }
 
 // Where the search starts besides: the law's own numbers, and those of the laws that leave some of them out.
@@ -115,7 +143,7 @@ static int starts_of(const steer_trial *trial, double *at)
     return rows;
 }
 
-static moray_status tune(const steer_job *job, steer_trial *trial)
+static moray_status tune(steer_job *job, steer_trial *trial)
 {
     moray_tuned_number number[STEER_NUMBERS];
     double from[(STEER_SUBSETS + 1) * STEER_NUMBERS], x[STEER_NUMBERS];
@@ -130,10 +158,15 @@ static moray_status tune(const steer_job *job, steer_trial *trial)
     settings.evaluations = job->evaluations;
     settings.jobs = job->jobs;
     settings.go_on = go_on;
+    settings.observer = job;
     const int rows = starts_of(trial, from);
     const moray_status status = moray_tune(&problem, &settings, from, rows, x, &info);
     MORAY_TRY(steer_interruption());
-    MORAY_TRY(status);
+    trial->cut = status.code == MORAY_INTERRUPTED;
+    if (trial->cut && !isfinite(info.cost))
+        return moray_error(MORAY_NOT_SOLVED, "%s: not tuned in the time given", trial->name);
+    if (!trial->cut)
+        MORAY_TRY(status);
     set_numbers(trial, x);
     trial->tuned_cost = info.cost;
     trial->evaluations = info.evaluations;
@@ -151,17 +184,30 @@ static bool can_run(const steer_job *job, const steer_trial *trial)
     return !trial->run && gait_known && plan_known;
 }
 
-static moray_status run_trial(const steer_job *job, steer_trial *trial)
+// To be run; those of plans that are still to come count three times, for the plans' sake.
+static double still_to_run(const steer_job *job)
 {
+    double n = 0;
+    for (int k = 0; k < job->n_trials; k++)
+        n += job->trial[k].run ? 0 : can_run(job, &job->trial[k]) ? 1 : 3;
+    return n;
+}
+
+static moray_status run_trial(steer_job *job, steer_trial *trial)
+{
+    const double tuning_share = 0.7;
     const steer_score *first = job->program->scores;
     moray_ticker_show(&job->ticker, "%s: %s", job->name, trial->name);
     if (trial->law->tuned) {
         moray_ticker_show(&job->ticker, "%s: tuning %s", job->name, trial->name);
+        steer_clock_give(&job->clock, tuning_share / still_to_run(job));
         MORAY_TRY(tune(job, trial));
     }
+    steer_clock_give(&job->clock, 1 / still_to_run(job));
     for (int model = 0; model < 2; model++) {
+        const moray_status status = try(job, trial, (moray_model)model, careful);
         MORAY_TRY(steer_interruption());
-        MORAY_TRY(try(job, trial, (moray_model)model, careful));
+        MORAY_TRY(status);
     }
     trial->run = true;
     moray_ticker_note(&job->ticker, "%s: %s %.4g on the control-oriented model, %.4g on the first-principles model",
@@ -171,16 +217,34 @@ static moray_status run_trial(const steer_job *job, steer_trial *trial)
 
 moray_status steer_run_trials(steer_job *job)
 {
-    for (int k = 0; k < job->n_trials; k++)
-        if (can_run(job, &job->trial[k]))
-            MORAY_TRY(run_trial(job, &job->trial[k]));
+    for (int k = 0; k < job->n_trials; k++) {
+        if (!can_run(job, &job->trial[k]))
+            continue;
+        const moray_status status = run_trial(job, &job->trial[k]);
+        if (status.code != MORAY_NOT_SOLVED) // else it is left out for want of time
+            MORAY_TRY(status);
+    }
     return moray_ok();
+}
+
+void steer_keep_trials(steer_job *job, const steer_trial *before, int n)
+{
+    for (int k = 0; k < job->n_trials; k++)
+        for (int i = 0; i < n; i++) {
+            steer_trial *trial = &job->trial[k];
+            if (!before[i].run || before[i].law != trial->law || before[i].gait != trial->gait ||
+                before[i].plan != trial->plan)
+                continue;
+            const steer_trial chosen = *trial;
+            *trial = before[i];
+            memcpy(trial->subset, chosen.subset, sizeof trial->subset);
+        }
 }
 
 bool steer_go_on(void *observer, const moray_search_progress *progress)
 {
-    (void)observer, (void)progress;
-    return !moray_interrupted();
+    (void)progress;
+    return go_on(observer);
 }
 
 moray_status steer_interruption(void)

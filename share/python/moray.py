@@ -116,7 +116,7 @@ class _Integrator(c.Structure):
 
 
 _certificate_numbers = ("kkt", "mesh_error", "between_nodes", "resimulation", "derivatives", "directions",
-                        "hamiltonian", "gap", "curvature", "composed")
+                        "hamiltonian", "gap", "curvature", "composed", "mesh_limit")
 
 
 class _Certificate(c.Structure):

@@ -3,6 +3,21 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
+
+#include "base/text.h"
+
+void moray_cut_at_word(char *text, size_t size)
+{
+    static const char ending[] = " ...";
+    size_t end = size - sizeof ending;
+    for (size_t k = end; k > size / 2; k--)
+        if (text[k] == ' ') {
+            end = k;
+            break;
+        }
+    memcpy(text + end, ending, sizeof ending);
+}
 
 moray_status moray_ok(void)
 {
@@ -14,8 +29,10 @@ moray_status moray_error(moray_code code, const char *format, ...)
     moray_status status = {.code = code};
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(status.text, sizeof status.text, format, arguments);
+    const int length = vsnprintf(status.text, sizeof status.text, format, arguments);
     va_end(arguments);
+    if (length >= (int)sizeof status.text)
+        moray_cut_at_word(status.text, sizeof status.text);
     return status;
 }
 

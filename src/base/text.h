@@ -4,6 +4,8 @@
 #ifndef SRC_BASE_TEXT_H
 #define SRC_BASE_TEXT_H
 
+#include <stddef.h>
+
 #include "moray/status.h"
 
 typedef struct moray_text {
@@ -24,6 +26,9 @@ char *moray_text_next(moray_text *text);
 
 // The end of a path that is too long for a message.
 const char *moray_path_tail(const char *path);
+
+// Ends a text that fills text[size], and had more to say, behind its last whole word, with " ...".
+void moray_cut_at_word(char *text, size_t size);
 
 // An error of the same code, its text behind "path:line: ".
 moray_status moray_text_error(const moray_text *text, int line, moray_status status);

@@ -51,7 +51,7 @@ static moray_status make(moray_periodic_orbit *orbit, const moray_periodic_orbit
     const moray_status status =
         moray_sparse_lu_new(&orbit->lu, orbit->system.unknowns, &orbit->system.jacobian.pattern);
     if (status.code == MORAY_INPUT)
-        return moray_error(MORAY_INPUT, "the closing conditions do not determine the orbit: %.200s", status.text);
+        return moray_error(MORAY_INPUT, "the closing conditions do not determine the orbit: %s", status.text);
     return status;
 }
 
@@ -170,7 +170,7 @@ static moray_status newton(moray_periodic_orbit *orbit, moray_periodic_orbit_inf
         info->slopes += !old;
         if (forward && is_there(orbit, info->residual, before, old))
             return moray_ok();
-        old = forward;
+        old = forward && info->residual <= BRISK * before; // rounding alone may not be left to old slopes
     }
     return moray_error(MORAY_NOT_SOLVED, "defects of %.2g are left after %d steps of Newton's method", info->residual,
                        info->iterations);

@@ -232,5 +232,5 @@ moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess,
         guess_defined(t, g, x);
     clamp(t, x);
     free(g);
-    return ok ? moray_ok() : moray_error(MORAY_NUMERIC, "at the guess, %.200s", t->failure.text);
+    return ok ? moray_ok() : moray_error(MORAY_NUMERIC, "at the guess, %s", t->failure.text);
 }

@@ -52,7 +52,7 @@ static moray_status run_phase(struct simulation *s, int rows, const struct sampl
             const moray_status status =
                 s->integrator->run(s->integrator, &ode, samples->time[k - 1], samples->time[k], x, NULL, 0, NULL, NULL);
             if (moray_failed(status))
-                return moray_error(status.code, "guess of phase %s: %.200s", phase->name, status.text);
+                return moray_error(status.code, "guess of phase %s: %s", phase->name, status.text);
         }
         control_at(s, samples->time[k], x, samples->u + k * phase->nu);
     }

@@ -226,7 +226,7 @@ moray_status moray_complete_solution(moray_solution *solution)
     double error = NAN;
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (!moray_transcription_jacobians(t, solution->iterate.x))
-        return moray_error(MORAY_NUMERIC, "at this solution, %.200s", t->failure.text);
+        return moray_error(MORAY_NUMERIC, "at this solution, %s", t->failure.text);
     solution->history = calloc(1, sizeof *solution->history);
     if (!solution->history)
         return moray_error(MORAY_MEMORY, "no memory for a history");

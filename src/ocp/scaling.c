@@ -182,7 +182,7 @@ moray_status moray_choose_scales(struct transcription *t, const double *x)
     t->scale = calloc((size_t)(n + m) + 1, sizeof *t->scale);
     moray_status status = work && t->scale ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d scales", n + m);
     if (!moray_failed(status) && !(t->nlp.jacobian(t, x, true, work + n) && t->nlp.gradient(t, x, false, work)))
-        status = moray_error(MORAY_NUMERIC, "at the guess, %.200s", t->failure.text);
+        status = moray_error(MORAY_NUMERIC, "at the guess, %s", t->failure.text);
     if (!moray_failed(status)) {
         double *x_scale = t->scale, *g_scale = t->scale + n;
         for (int p = 0; p < t->ocp->phases; p++)

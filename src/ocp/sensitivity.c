@@ -165,7 +165,7 @@ static moray_status add(moray_sensitivity *s, struct transcription *t, double we
     const moray_nlp *nlp = &t->nlp;
     double f, *x = s->solution->iterate.x, *g = s->here;
     if (!nlp->objective(t, x, true, &f) || !nlp->constraints(t, x, false, g))
-        return moray_error(MORAY_NUMERIC, "in a displaced problem, %.200s", t->failure.text);
+        return moray_error(MORAY_NUMERIC, "in a displaced problem, %s", t->failure.text);
     s->shift.objective += weight * f;
     for (int i = 0; i < nlp->m; i++)
         s->g[i] += weight * g[i];

@@ -124,7 +124,7 @@ static moray_status run(moray_solution *solution, const moray_guess *guess)
     if (warm && !moray_is_solved(solution) && solution->info.outcome != MORAY_NLP_INTERRUPTED)
         MORAY_TRY(run_solver(solution, guess, false));
     if (!moray_transcription_jacobians(t, solution->iterate.x)) // accessors read the caches
-        return moray_error(MORAY_NUMERIC, "at the solver's last point, %.200s", t->failure.text);
+        return moray_error(MORAY_NUMERIC, "at the solver's last point, %s", t->failure.text);
     return moray_ok();
 }
 

@@ -57,10 +57,11 @@ static int find_flags(const struct argp_option *flag, const char *name, const st
     return n;
 }
 
-static moray_status unknown_flag(const struct argp_option *flag, const char *name)
+static moray_status unknown_flag(const moray_options *options, const struct argp_option *flag, const char *argument)
 {
-    const char *nearest = NULL;
+    const char *nearest = NULL, *name = argument + strlen("--");
     int least = INT_MAX;
+    MORAY_TRY(moray_option_unused(options, argument));
     for (; flag->name; flag++) {
         const int distance = moray_edit_distance(name, flag->name);
         if (distance < least) {
@@ -88,12 +89,12 @@ static moray_status bad_option(const reading *r, const char *argument)
     const struct argp_option *match = NULL;
     if (strncmp(argument, "--", 2) != 0)
         return moray_error(MORAY_INPUT, "unknown option %.60s; --help lists the options", argument);
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(argument + 2, "="), argument + 2);
-    const int n = find_flags(r->flag, name, &match);
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(argument, "="), argument);
+    const int n = find_flags(r->flag, name + 2, &match);
     if (n == 0)
-        return unknown_flag(r->flag, name);
+        return unknown_flag(r->options, r->flag, name);
     if (n > 1)
-        return moray_error(MORAY_INPUT, "option --%s is ambiguous; --help lists the options", name);
+        return moray_error(MORAY_INPUT, "option %s is ambiguous; --help lists the options", name);
     if (match->arg)
         return missing_value(r, match);
     return moray_error(MORAY_INPUT, "--%s takes no value", match->name);

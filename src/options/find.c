@@ -5,13 +5,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_text(const char *text, const char *other)
+{
+    return text && strcmp(text, other) == 0;
+}
+
+static bool is_named(const moray_option *row, const char *name)
+{
+    return is_text(row->flag, name) || is_text(row->key, name);
+}
+
 static bool has(const moray_program *program, const moray_option *shared)
 {
-    for (const char *const *flag = program->without; flag && *flag; flag++)
-        if ((shared->flag && strcmp(shared->flag, *flag) == 0) ||
-            (shared->type == MORAY_OPTION_IPOPT && strcmp(*flag, "tol") == 0)) // a program that solves nothing
+    for (const char *const *name = program->without; name && *name; name++)
+        if (is_named(shared, *name))
             return false;
     return true;
+}
+
+moray_status moray_option_unused(const moray_options *options, const char *name)
+{
+    const char *bare = strncmp(name, "--", 2) == 0 ? name + 2 : name;
+    const size_t prefix = strlen("ipopt.");
+    for (const char *const *other = options->without; other && *other; other++)
+        if (strcmp(bare, *other) == 0 || (strncmp(bare, "ipopt.", prefix) == 0 && strncmp(*other, bare, prefix) == 0))
+            return moray_error(MORAY_INPUT, "%.60s: %s has no use for it; --help lists the options", name,
+                               options->program);
+    return moray_ok();
 }
 
 static void add_group(moray_options *options, const moray_program *program, const moray_option_group *group)
@@ -28,8 +48,10 @@ moray_status moray_options_new(moray_options *options, const moray_program *prog
     int room = program->n_options + moray_common_table.n;
     for (int i = 0; i < program->n_groups; i++)
         room += program->groups[i].table->n;
-    *options = (moray_options){
-        .own = calloc((size_t)room, sizeof *options->own), .words = program->words, .program = program->name};
+    *options = (moray_options){.own = calloc((size_t)room, sizeof *options->own),
+                               .words = program->words,
+                               .program = program->name,
+                               .without = program->without};
     options->row = options->own;
     if (!options->own)
         return moray_error(MORAY_MEMORY, "no memory for the table of options");
@@ -80,6 +102,7 @@ moray_status moray_option_unknown(const moray_options *options, const char *key)
 {
     const char *nearest = NULL;
     int least = INT_MAX;
+    MORAY_TRY(moray_option_unused(options, key));
     for (int i = 0; i < options->n; i++) {
         const int distance = options->row[i].key ? moray_edit_distance(key, options->row[i].key) : INT_MAX;
         if (distance < least) {

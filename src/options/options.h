@@ -12,6 +12,7 @@ typedef struct moray_options {
     int n;
     const moray_words *words; // NULL: none
     const char *program;      // its name
+    const char *const *without; // as of moray_program
     moray_option *own;        // the rows, where they were put together
 } moray_options;
 
@@ -23,6 +24,9 @@ extern const moray_option_table moray_common_table; // the rows of moray_common
 // The row with this key; NULL when there is none, and the error that then names the nearest key.
 const moray_option *moray_option_find(const moray_options *options, const char *key);
 moray_status moray_option_unknown(const moray_options *options, const char *key);
+
+// The error for a flag, "--" before it, or a key that other programs have and this one has no use for; else ok.
+moray_status moray_option_unused(const moray_options *options, const char *name);
 
 // The row for ipopt.KEY, where the program has one; `text` begins with the key.
 const moray_option *moray_option_find_ipopt(const moray_options *options, const char *text);

@@ -115,13 +115,17 @@ static bool show_reals(const moray_option *row, const void *at, char text[MORAY_
 bool moray_option_default(const moray_option *row, const void *settings, char text[MORAY_SHOWN_SIZE])
 {
     const char *at = (const char *)settings + row->offset;
+    double least, most;
     int whole;
     bool yes;
+    moray_option_bounds(row, &least, &most);
     switch (row->type) {
     case MORAY_OPTION_INT:
     case MORAY_OPTION_CHOICE:
         memcpy(&whole, at, sizeof whole);
-        if (row->type == MORAY_OPTION_INT)
+        if (row->type == MORAY_OPTION_INT && whole < least)
+            snprintf(text, MORAY_SHOWN_SIZE, "by the program");
+        else if (row->type == MORAY_OPTION_INT)
             snprintf(text, MORAY_SHOWN_SIZE, "%d", whole);
         else if (whole < 0)
             return false;

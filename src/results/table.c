@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "base/text.h"
 
 // A value as tables show it: whole numbers in full, others with four significant digits, NaN as "".
 static const char *table_number(double value, char text[32])
@@ -101,6 +102,8 @@ void moray_text_add(char *text, size_t size, const char *format, ...)
     const size_t used = strlen(text);
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
+    const int length = vsnprintf(text + used, size - used, format, arguments);
     va_end(arguments);
+    if (length >= (int)(size - used))
+        moray_cut_at_word(text, size);
 }

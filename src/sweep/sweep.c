@@ -94,7 +94,7 @@ static moray_status take(run *r, const struct record *record)
     r->result->solved += (now == POINT_SOLVED) - (before == POINT_SOLVED);
     r->refused += record->code == MORAY_INPUT;
     r->all_refused = r->refused == r->plan.answered && (r->refused >= enough_refused || r->refused >= r->grid.points);
-    return r->all_refused ? moray_error(MORAY_INPUT, "every point so far is refused: %.250s", record->reason)
+    return r->all_refused ? moray_error(MORAY_INPUT, "every point so far is refused: %s", record->reason)
                           : moray_ok();
 }
 

@@ -21,6 +21,11 @@ int main(void)
     memset(lengthy, 'x', sizeof lengthy - 1);
     lengthy[sizeof lengthy - 1] = 0;
     CHECK(strlen(moray_error(MORAY_INPUT, "%s", lengthy).text) == sizeof status.text - 1, "a long text is cut");
+    for (int k = 3; k < 900; k += 4)
+        lengthy[k] = ' ';
+    const char *cut = moray_error(MORAY_INPUT, "%s", lengthy).text, *end = strrchr(cut, 'x');
+    CHECK(strcmp(end + 1, " ...") == 0 && (end - cut) % 4 == 2 && strlen(cut) > sizeof status.text - 9,
+          "behind a whole word, and says so: %s", end - 6);
     CHECK(strcmp(moray_code_text(MORAY_INTERRUPTED), "interrupted") == 0, "texts follow the codes");
     CHECK(strcmp(moray_code_text((moray_code)99), "unknown code") == 0, "an unknown code has a text");
     return tap_done();

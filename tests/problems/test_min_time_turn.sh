@@ -2,7 +2,7 @@
 # The program min_time_turn as a user meets it. Arguments: the program, the source directory.
 . "$2/tests/program.sh"
 
-run --quiet --json --out results --angle 45 --set starts=1 --set evaluations=2
+run --quiet --json --out results --angle 45 --current 0.1,0.1 --set starts=1 --set evaluations=2
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
 for file in summary.json report.html trajectory.csv heading.svg offset.svg path.svg joints.svg; do
     check "--out has $file" [ -s results/$file ]

@@ -3,7 +3,7 @@
 . "$2/tests/program.sh"
 
 printf 'x_m,y_m\n0,0\n5,0\n9,2\n' >way.csv
-run --quiet --json --out results --path way.csv --set start_m=0,0.2 --set starts=1 --set evaluations=2 --set intervals_per_period=4 \
+run --quiet --json --out results --path way.csv --current=-0.05,0.1 --set start_m=0,0.2 --set starts=1 --set evaluations=2 --set intervals_per_period=4 \
     --set weight_steering=3
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
 for file in summary.json report.html trajectory.csv across.svg offset.svg path.svg joints.svg; do

@@ -114,7 +114,7 @@ typedef struct moray_program {
     const moray_option_group *groups; // further rows; those of moray_common come by themselves
     int n_groups;
     const moray_words *words;   // NULL: no arguments without a flag
-    const char *const *without; // flags of groups that it does not have, NULL-terminated; NULL: has all
+    const char *const *without; // flags, or keys, of groups that it has no use for, NULL-terminated; NULL: uses all
 } moray_program;
 
 typedef enum { MORAY_REQUEST_RUN, MORAY_REQUEST_HELP, MORAY_REQUEST_VERSION, MORAY_REQUEST_LIST } moray_request;

@@ -95,7 +95,7 @@ typedef struct moray_table {
 MORAY_API void moray_table_print(const moray_table *table, FILE *file);
 MORAY_API void moray_tables_print(const moray_table *tables, int n, FILE *file);
 
-// Adds to what stands in text[size]; what has no room is left out.
+// Adds to what stands in text[size]; what has no room is left out, from a whole word on.
 MORAY_API void moray_text_add(char *text, size_t size, const char *format, ...) MORAY_PRINTF(3, 4);
 
 // Comma-separated values: a line of names "name [unit]", then n_rows lines of full-precision numbers. Row i of a column

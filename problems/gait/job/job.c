@@ -86,7 +86,7 @@ moray_status gait_job_turning(const gait_job *job, moray_model model)
     if (model != MORAY_CONTROL_ORIENTED || !turns(job))
         return moray_ok();
     const moray_status status = moray_snake_turning(&job->snake);
-    return moray_failed(status) && job->snake.model != model ? moray_error(MORAY_NOT_SOLVED, "%.280s", status.text)
+    return moray_failed(status) && job->snake.model != model ? moray_error(MORAY_NOT_SOLVED, "%s", status.text)
                                                              : status;
 }
 

@@ -133,7 +133,7 @@ static moray_status make_scenario(gait_job *job, scenario_set *set, int k)
     MORAY_TRY(moray_orbit_new(&set->orbit[k], &spec));
     const moray_status status = moray_orbit_solve(set->orbit[k], &job->paper.gait[MORAY_FIRST_PRINCIPLES], &baseline);
     if (moray_failed(status))
-        return moray_error(status.code, "the baseline on %s: %.230s", it->name, status.text);
+        return moray_error(status.code, "the baseline on %s: %s", it->name, status.text);
     at.power = baseline.steady.power;
     memcpy(at.taper, job->taper, sizeof at.taper);
     set->scenario[k] = (moray_gait_scenario){it->name, gait_job_spec(job, &at, MORAY_GAIT_FASTEST, it->current),
@@ -258,7 +258,7 @@ moray_status gait_job_over(gait_job *job, const gait_starts *known)
     if (at->found_on & moray_rung_of(&job->snake.robot))
         at->found_on |= MORAY_RUNG_CHANGES;
     if (moray_failed(job->no_paper[MORAY_FIRST_PRINCIPLES]))
-        return moray_error(MORAY_NOT_SOLVED, "there is no baseline to gain over: %.250s",
+        return moray_error(MORAY_NOT_SOLVED, "there is no baseline to gain over: %s",
                            job->no_paper[MORAY_FIRST_PRINCIPLES].text);
     const moray_status status = optimise(job, &set, known);
     set_free(&set);

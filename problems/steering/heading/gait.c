@@ -87,8 +87,11 @@ static moray_status search(hunt *h, const moray_gait *start)
     settings.f_tolerance = 1e-3;
     settings.max_evaluations = h->job->gait_evaluations;
     settings.progress = steer_go_on;
+    settings.observer = &h->job->steer;
     const moray_status status = moray_search(&problem, &settings, x, &info);
     MORAY_TRY(steer_interruption());
+    if (status.code == MORAY_NUMERIC && steer_clock_up(&h->job->steer.clock))
+        return moray_ok(); // none in the time given
     if (status.code == MORAY_NUMERIC)
         return moray_error(MORAY_NOT_SOLVED, "power_W = %g: no gait within the limits gets by with it", limits->power);
     return status;

@@ -103,7 +103,7 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
     MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, gait, from));
     const moray_gait kept = moray_steering_gait(moray_solution_parameters(plan->solution));
     MORAY_TRY(steer_find_turn_rate(&job->steer, model, &kept));
-    if (moray_solution_info(plan->solution)->outcome != MORAY_NLP_SOLVED)
+    if (!steer_solved(plan->solution))
         return why_not(job, plan);
     MORAY_TRY(steer_take_plan(&job->steer, (int)model));
     return steer_straight_motions(&job->steer, 1 + (int)model, &plan->straight.gait, model);
@@ -113,6 +113,7 @@ moray_status heading_plan_first(heading_job *job)
 {
     steer_job *steer = &job->steer;
     const moray_gait paper = moray_gait_paper(&steer->snake.robot), first = steer_first_gait(steer);
+    steer_clock_give(&steer->clock, 0.4);
     MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
     moray_steering_plan *first_plan = &steer->plan[STEER_AVERAGED];
     const moray_heading_spec averaged = heading_spec(job, MORAY_CONTROL_ORIENTED, true);
@@ -127,12 +128,17 @@ moray_status heading_plan_last(heading_job *job)
     const moray_gait first = steer_first_gait(&job->steer);
     const moray_gait gait =
         moray_gait_map(&job->steer.snake.robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    steer_clock_give(&job->steer.clock, 0.5);
     if (job->gait_evaluations == 0 || steer_gait_given(&job->steer))
         return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->steer.plan[MORAY_CONTROL_ORIENTED]);
     moray_steering_plan best;
+    steer_clock_give(&job->steer.clock, 0.3);
     moray_status status = heading_search_gait(job, &gait, &best);
+    const bool found = best.solution != NULL; // else the time given, or no solve, was too short for one
+    steer_clock_give(&job->steer.clock, 0.5);
     if (!moray_failed(status))
-        status = make_plan(job, MORAY_FIRST_PRINCIPLES, &best.straight.gait, &best);
+        status = make_plan(job, MORAY_FIRST_PRINCIPLES, found ? &best.straight.gait : &gait,
+                           found ? &best : &job->steer.plan[MORAY_CONTROL_ORIENTED]);
     moray_steering_plan_free(&best);
     return status;
 }

@@ -179,7 +179,7 @@ static void conclude(const steer_job *job, char *text, size_t size)
     static const int ahead[] = {P_AHEAD, ALL}, now[] = {P, P_FORWARD, PID}, planner[] = {BOTH, RECEDING},
                      unknowing[] = {RECEDING_UNKNOWING};
     const steer_trial *best = steer_best(job, 1 << P_AHEAD | 1 << ALL, RMS), *plan = trial_of(job, BOTH);
-    const double ratio = plan->score[1][RMS] / best->score[1][RMS];
+    const double ratio = plan && best ? plan->score[1][RMS] / best->score[1][RMS] : NAN;
     *text = 0;
     moray_text_add(
         text, size,
@@ -188,7 +188,10 @@ static void conclude(const steer_job *job, char *text, size_t size)
     say_errors(job, "; tuned feedback:", ahead, 2, text, size);
     say_errors(job, ". Told no more than the reference and its rate now:", unknowing, job->receding, text, size);
     say_errors(job, "; tuned feedback:", now, 3, text, size);
-    moray_text_add(text, size, ". Plan with feedback against the best rival who knows as much: %.3g times its error%s.",
+    moray_text_add(text, size, ".");
+    if (isnan(ratio))
+        return;
+    moray_text_add(text, size, " Plan with feedback against the best rival who knows as much: %.3g times its error%s.",
                    ratio, ratio < 1 ? "" : ": the plan LOSES");
 }
 
@@ -286,6 +289,16 @@ static void bar_trials(steer_job *job)
         job->trial[k].barred = job->trial[k].gait == 0 && beyond;
 }
 
+// Without the first-principles plan.
+static void choose_again(steer_job *job)
+{
+    const steer_job before = *job;
+    job->n_trials = 0;
+    choose_trials(job);
+    bar_trials(job);
+    steer_keep_trials(job, before.trial, before.n_trials);
+}
+
 static moray_status work(steer_job *steer)
 {
     heading_job *job = (heading_job *)steer;
@@ -301,7 +314,11 @@ static moray_status work(steer_job *steer)
     MORAY_TRY(steer_run_trials(steer));
     if (steer->snake.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
-    MORAY_TRY(heading_plan_last(job));
+    const moray_status last = heading_plan_last(job);
+    if (moray_failed(last)) {
+        MORAY_TRY(steer_do_without(steer, last));
+        choose_again(steer);
+    }
     return steer_run_trials(steer);
 }
 

@@ -110,7 +110,7 @@ static moray_status why_not(const path_job *job, const moray_steering_plan *plan
     if (told.code != MORAY_NOT_SOLVED || !isfinite(job->tube) || !corner || path_turning(job, corner) <= turn_rate)
         return told;
     say_corner(job, corner, turn_rate, text, sizeof text);
-    return moray_error(MORAY_NOT_SOLVED, "tube_m = %g cannot be kept: %.300s", job->tube, text);
+    return moray_error(MORAY_NOT_SOLVED, "tube_m = %g cannot be kept: %s", job->tube, text);
 }
 
 // ---- Plans ---------------------------------------------------------------------------------------------------------
@@ -129,6 +129,7 @@ static moray_status solve(path_job *job, moray_model model, bool averaged, const
 {
     const moray_path_spec spec = path_spec(job, model, averaged);
     moray_straight_motion straight;
+    steer_clock_give(&job->steer.clock, averaged ? 0.2 : model < job->steer.snake.model ? 0.3 : 0.5);
     MORAY_TRY(moray_straight_motion_find(&straight, &spec.robot, model, gait));
     MORAY_TRY(moray_path_passable(spec.path, straight.speed, spec.current));
     MORAY_TRY(steer_find_turn_rate(&job->steer, model, gait));
@@ -136,7 +137,7 @@ static moray_status solve(path_job *job, moray_model model, bool averaged, const
     const moray_settings settings = settings_of(job, averaged, &straight);
     MORAY_TRY(moray_path_plan_make(plan, &spec, &settings, gait, job->start, job->heading, from));
     MORAY_TRY(steer_interruption());
-    if (moray_solution_info(plan->solution)->outcome != MORAY_NLP_SOLVED)
+    if (!steer_solved(plan->solution))
         return why_not(job, plan);
     return steer_take_plan(&job->steer, averaged ? STEER_AVERAGED : (int)model);
 }
@@ -147,21 +148,43 @@ static moray_status make_plan(path_job *job, moray_model model, const moray_gait
     return steer_straight_motions(&job->steer, 1 + (int)model, &job->steer.plan[model].straight.gait, model);
 }
 
+// The verdict before any plan: whether the gait, or else the fastest that the limits allow, which then takes its place,
+// makes way along every course of the path.
+static moray_status check_courses(path_job *job, moray_model model, moray_gait *gait)
+{
+    steer_job *steer = &job->steer;
+    moray_straight_motion straight;
+    MORAY_TRY(moray_straight_motion_find(&straight, &steer->snake.robot, model, gait));
+    const moray_status verdict = moray_path_passable(&job->path, straight.speed, steer->snake.current);
+    if (!moray_failed(verdict) || steer_gait_given(steer) || (model == MORAY_FIRST_PRINCIPLES && !job->find_gait))
+        return verdict;
+    MORAY_TRY(steer_fastest_gait(steer, model, steer_limits(steer, model).power, gait));
+    MORAY_TRY(steer_interruption());
+    MORAY_TRY(moray_straight_motion_find(&straight, &steer->snake.robot, model, gait));
+    return moray_path_passable(&job->path, straight.speed, steer->snake.current);
+}
+
 moray_status path_make_plans(path_job *job)
 {
     steer_job *steer = &job->steer;
     const moray_robot *robot = &steer->snake.robot;
-    const moray_gait paper = moray_gait_paper(robot), first = steer_first_gait(steer);
+    const moray_gait paper = moray_gait_paper(robot);
+    moray_gait first = steer_first_gait(steer),
+               gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
     if (isnan(job->heading))
         job->heading = job->path.piece->course;
     MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
+    MORAY_TRY(check_courses(job, MORAY_CONTROL_ORIENTED, &first));
+    if (steer->snake.model == MORAY_FIRST_PRINCIPLES)
+        MORAY_TRY(check_courses(job, MORAY_FIRST_PRINCIPLES, &gait));
     MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, true, &first, NULL, &steer->plan[STEER_AVERAGED]));
     MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &steer->plan[STEER_AVERAGED].straight.gait,
                         &steer->plan[STEER_AVERAGED]));
     if (steer->snake.model == MORAY_CONTROL_ORIENTED)
         return moray_ok();
-    moray_gait gait = moray_gait_map(robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    steer_clock_give(&steer->clock, 0.3);
     if (job->find_gait && !steer_gait_given(steer))
-        MORAY_TRY(steer_fastest_gait(steer, steer_limits(steer, MORAY_FIRST_PRINCIPLES).power, &gait));
+        MORAY_TRY(steer_fastest_gait(steer, MORAY_FIRST_PRINCIPLES, steer_limits(steer, MORAY_FIRST_PRINCIPLES).power,
+                                     &gait));
     return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &steer->plan[MORAY_CONTROL_ORIENTED]);
 }

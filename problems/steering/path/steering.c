@@ -168,6 +168,10 @@ static void conclude(const steer_job *job, char *text, size_t size)
 {
     const steer_trial *ours = steer_best(job, 1 << PLAN | 1 << BOTH | 1 << RECEDING, COST);
     const steer_trial *theirs = steer_best(job, 1 << LOS | 1 << ILOS, COST);
+    if (!ours || !theirs) {
+        snprintf(text, size, "The time given ended before both optimised steering and tuned guidance were swum.");
+        return;
+    }
     const double *a = ours->score[1], *b = theirs->score[1];
     snprintf(text, size,
              "First-principles model, same limits: the best optimised steering (%s) takes %.2f s with a settled RMS "
@@ -245,7 +249,9 @@ static moray_status work(steer_job *steer)
 {
     path_job *job = (path_job *)steer;
     MORAY_TRY(moray_path_read(&job->path, job->path_text, job->radius));
-    MORAY_TRY(path_make_plans(job));
+    const moray_status made = path_make_plans(job);
+    if (moray_failed(made))
+        MORAY_TRY(steer_do_without(steer, made));
     choose_trials(steer);
     return steer_run_trials(steer);
 }

@@ -17,20 +17,31 @@ static moray_turn_spec spec_of(const turn_job *job, moray_model model, bool aver
 
 static moray_status why_not(const turn_job *job, const moray_steering_plan *plan)
 {
-    const double *V = job->steer.snake.current, water = hypot(V[0], V[1]), speed = plan->straight.speed;
+    const double speed = plan->straight.speed;
     const moray_status told = steer_not_solved(plan->solution);
     if (told.code != MORAY_NOT_SOLVED || !turn_to_position(job))
         return told;
-    if (water > speed)
-        return moray_error(MORAY_NOT_SOLVED,
-                           "end_m = %g,%g is not reached: the current of %.4g m/s is stronger than the robot, which "
-                           "swims %.4g m/s",
-                           job->end[0], job->end[1], water, speed);
     return moray_error(MORAY_NOT_SOLVED,
                        "end_m = %g,%g with angle_deg = %g is not reached: the robot turns on a circle of %.3g m at "
-                       "the least (%.200s)",
+                       "the least; %s",
                        job->end[0], job->end[1], job->angle / DEG,
                        speed / fabs(job->steer.turn_rate[plan->straight.model]), told.text);
+}
+
+// The verdict before any plan: whether the robot can make way towards the end position.
+static moray_status check_reach(const turn_job *job)
+{
+    const double *V = job->steer.snake.current, water = hypot(V[0], V[1]);
+    const double speed = job->steer.straight[0][job->steer.snake.model].speed;
+    const double course = atan2(job->end[1], job->end[0]);
+    if (!turn_to_position(job) || water <= speed || moray_course_made_good(speed, V, course) > 0)
+        return moray_ok();
+    return moray_error(MORAY_NOT_SOLVED,
+                       "end_m = %g,%g is not reached: the current of %.4g m/s is stronger than the robot, which swims "
+                       "%.4g m/s, so only courses within %.3g deg of %.4g deg can be made good, and the end lies at "
+                       "%.4g deg",
+                       job->end[0], job->end[1], water, speed, asin(speed / water) / DEG, atan2(V[1], V[0]) / DEG,
+                       course / DEG);
 }
 
 // With as many intervals as the plan before took periods; steering at its limits has kinks.
@@ -43,7 +54,7 @@ static moray_settings settings_of(turn_job *job, const moray_steering_plan *from
 
 static bool solved(const moray_steering_plan *plan)
 {
-    return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED;
+    return steer_solved(plan->solution);
 }
 
 // From the plan `from` on times that end at several parts of a stroke; leaves the fastest turn.
@@ -52,14 +63,14 @@ static moray_status solve(turn_job *job, moray_model model, const moray_gait *ga
 {
     enum { starts = 2 };
     const moray_turn_spec spec = spec_of(job, model, from == NULL);
-    const double period = 2 * M_PI / gait->omega, *turn_rate = &job->steer.turn_rate[model];
+    const double period = 2 * M_PI / gait->omega, turn_rate = job->steer.turn_rate[model];
     const moray_settings settings = settings_of(job, from, period);
-    MORAY_TRY(steer_find_turn_rate(&job->steer, model, gait));
+    steer_clock_give(&job->steer.clock, !from ? 0.2 : model < job->steer.snake.model ? 0.3 : 0.5);
     for (int k = 0; k < (from ? starts : 1); k++) {
         const double seconds = from ? steer_duration(from->solution) : 1,
                      later = from ? period * (k - 0.5) / starts : 0;
         moray_steering_plan next;
-        MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, *turn_rate, from, 1 + later / seconds));
+        MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, from, 1 + later / seconds));
         const bool better =
             !plan->solution || (solved(&next) && (!solved(plan) || moray_solution_objective(next.solution) <
                                                                        moray_solution_objective(plan->solution)));
@@ -79,6 +90,9 @@ moray_status turn_make_plans(turn_job *job)
     const moray_gait first = steer_first_gait(steer);
     moray_steering_plan *averaged = &steer->plan[STEER_AVERAGED];
     MORAY_TRY(steer_straight_motions(steer, 0, &first, MORAY_CONTROL_ORIENTED));
+    for (int model = 0; model < 2; model++) // both are swum, whatever is planned on
+        MORAY_TRY(steer_find_turn_rate(steer, (moray_model)model, &steer->straight[0][model].gait));
+    MORAY_TRY(check_reach(job));
     MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, &first, NULL, averaged));
     MORAY_TRY(steer_straight_motions(steer, 0, &averaged->straight.gait, MORAY_CONTROL_ORIENTED));
     const moray_steering_plan *from = averaged;

@@ -143,6 +143,10 @@ static void conclude(const steer_job *steer, char *text, size_t size)
     const turn_job *job = (const turn_job *)steer;
     const steer_trial *ours = steer_best(steer, 1 << PLAN | 1 << BOTH, WEIGHTED);
     const steer_trial *theirs = steer_best(steer, 1 << BANG | 1 << BRAKE, WEIGHTED);
+    if (!ours || !theirs) {
+        snprintf(text, size, "The time given ended before both planned and bang-bang turns were swum.");
+        return;
+    }
     const double *a = ours->score[1], *b = theirs->score[1];
     const double plan = steer_duration(steer_last_plan(steer)->solution);
     if (turn_to_position(job))
@@ -220,7 +224,9 @@ static moray_status work(steer_job *steer)
     turn_job *job = (turn_job *)steer;
     if (job->angle == 0 && !turn_to_position(job))
         return moray_error(MORAY_INPUT, "angle_deg = 0: must not be, unless there is an end_m");
-    MORAY_TRY(turn_make_plans(job));
+    const moray_status made = turn_make_plans(job);
+    if (moray_failed(made))
+        MORAY_TRY(steer_do_without(steer, made));
     choose_trials(job);
     return steer_run_trials(steer);
 }

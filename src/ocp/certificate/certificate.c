@@ -190,9 +190,9 @@ moray_status moray_certify(const moray_solution *solution, const moray_integrato
                            moray_certificate *certificate)
 {
     struct verdict v = {.solution = solution, .c = certificate, .drift = {.value = -1}};
-    *certificate = (moray_certificate){.pass = true};
+    *certificate = (moray_certificate){.pass = true, .mesh_limit = solution->settings.mesh_tolerance};
     if (!moray_transcription_jacobians(solution->transcription, solution->iterate.x))
-        return moray_error(MORAY_NUMERIC, "at the solution, %.200s", solution->transcription->failure.text);
+        return moray_error(MORAY_NUMERIC, "at the solution, %s", solution->transcription->failure.text);
     if (!all_have_length(&v)) {
         certificate->pass = false;
         certificate->kkt = certificate->mesh_error = certificate->between_nodes = certificate->resimulation = NAN;

@@ -147,7 +147,7 @@ static moray_status factor(struct inverse *v)
     MORAY_TRY(measure(v, &objective));
     find_held(v, objective);
     if (!nlp->jacobian(nlp->self, v->solution->iterate.x, true, v->jac))
-        return moray_error(MORAY_NUMERIC, "at the solution, %.200s", v->t->failure.text);
+        return moray_error(MORAY_NUMERIC, "at the solution, %s", v->t->failure.text);
     take_information(v);
     fill(v);
     MORAY_TRY(moray_ldl_new(&v->ldl, nlp->n + nlp->m, &v->pattern));

@@ -26,12 +26,14 @@ static moray_offset offset_at(double t, const void *self)
     return (moray_offset){.value = a->value + a->slope * (t - a->from), .rate = a->slope};
 }
 
-// The newest reading, brought from when it was taken to when what is done now acts by what the estimate has moved since.
+// The newest reading, brought from when it was taken to when what is done now acts by what the estimate has moved
+// since.
 static moray_status navigate(moray_adaptive *a, const moray_swim_sample *sample)
 {
     const moray_adaptive_spec *spec = &a->spec;
     double state[MORAY_BODY_STATES];
-    MORAY_TRY(moray_navigator_advance(a->navigator, sample->t + spec->dead_time, a->value / spec->scale, a->slope / spec->scale));
+    MORAY_TRY(moray_navigator_advance(a->navigator, sample->t + spec->dead_time, a->value / spec->scale,
+                                      a->slope / spec->scale));
     if (a->reading && !a->reading->fresh)
         return moray_ok();
     const double age = spec->dead_time + (a->reading ? sample->t - a->reading->t : 0);
@@ -99,7 +101,8 @@ static moray_status measure(const moray_swim_sample *sample, void *self)
     a->from = t;
     MORAY_TRY(plan(a, t));
     const moray_solution *in_force = moray_receding_horizon_plan(a->engine);
-    const double next = in_force ? moray_steering_offset(in_force, t + spec->dead_time + spec->look).value / a->turning : 0;
+    const double next =
+        in_force ? moray_steering_offset(in_force, t + spec->dead_time + spec->look).value / a->turning : 0;
     const double limit = spec->limits.offset * fabs(spec->scale), rate = spec->limits.offset_rate * fabs(spec->scale);
     a->slope = within((within(spec->scale * next, limit) - now) / spec->look, rate);
     return moray_ok();

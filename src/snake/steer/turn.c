@@ -6,6 +6,7 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "snake/steer/dubins.h"
 #include "snake/steer/guess.h"
 #include "snake/steer/problems.h"
 
@@ -95,29 +96,51 @@ moray_status moray_turn_new(moray_steering_problem *problem, const moray_turn_sp
 
 // ---- Plans ---------------------------------------------------------------------------------------------------------
 
-// How long it takes at least, roughly.
-static double likely(const moray_turn_spec *spec, double speed, double turn_rate)
+// A guess of the turn: how it goes about it, and how long that takes.
+typedef struct outline {
+    moray_dubins way; // turning steadily; where the end has a position, by arcs and legs
+    double radius, seconds;
+} outline;
+
+static outline outline_of(const moray_turn_spec *spec, double speed, double turn_rate)
 {
-    const double ramp = spec->limits.offset / spec->limits.offset_rate;
-    double seconds = fabs(spec->heading) / fabs(turn_rate) + 2 * ramp + 1;
+    const double ramp = spec->limits.offset / spec->limits.offset_rate, wide = 1.15; // arcs begin and end gently
+    const double steady = fabs(spec->heading) / fabs(turn_rate) + 2 * ramp + 1;
+    outline plan = {.radius = wide * speed / fabs(turn_rate), .seconds = steady};
     if (spec->to_position) {
-        const double *V = spec->current, way = hypot(spec->position[0], spec->position[1]);
-        const double with = way > 0 ? (V[0] * spec->position[0] + V[1] * spec->position[1]) / way : 0;
-        seconds = fmax(seconds, way / fmax(speed + with, 0.2 * speed));
+        const double *V = spec->current, distance = hypot(spec->position[0], spec->position[1]);
+        const double longest = 10 * (steady + (distance + 8 * plan.radius) / speed);
+        if (moray_dubins_in_current(spec->position, spec->heading, V, speed, plan.radius, longest, &plan.way,
+                                    &plan.seconds))
+            return plan;
+        plan.seconds = fmax(steady, distance / (0.2 * speed));
     }
-    return seconds;
+    plan.way = (moray_dubins){.turn = {spec->heading < 0 ? -1 : 1}, .length = {fabs(spec->heading)}};
+    return plan;
 }
 
-// Turning steadily; where the end has a position, straight there.
-static void guess_steady(steering_guess *guess, const moray_turn_spec *spec, const moray_straight_motion *straight,
-                         double seconds, double turn_rate)
+// Curvature of the way, in 1/m, where a share of it is swum.
+static double curvature_at(const outline *plan, double share)
 {
+    const double *length = plan->way.length;
+    double left = share * (length[0] + length[1] + length[2]);
+    int part = 0;
+    while (part < 2 && left > length[part])
+        left -= length[part++];
+    return plan->way.turn[part] / plan->radius;
+}
+
+static void guess_outline(steering_guess *guess, const moray_turn_spec *spec, const moray_straight_motion *straight,
+                          const outline *plan, double turn_rate)
+{
+    const double *V = spec->current, *length = plan->way.length;
     const int n = guess->samples.n;
-    const double *V = spec->current, rate = spec->heading / seconds, step = seconds / (n - 1);
-    double p[2] = {0, 0};
+    const double step = plan->seconds / (n - 1), way = plan->radius * (length[0] + length[1] + length[2]);
+    const double speed = way / plan->seconds;
+    double p[2] = {0, 0}, heading = 0;
     for (int k = 0; k < n; k++) {
         double *x = guess->x + k * states;
-        const double heading = rate * step * k;
+        const double rate = speed * curvature_at(plan, (k + 0.5) / n);
         guess->time[k] = step * k;
         moray_straight_motion_start(straight, heading, V, x);
         if (spec->averaged)
@@ -126,15 +149,14 @@ static void guess_steady(steering_guess *guess, const moray_turn_spec *spec, con
         x[MORAY_STATE_PHI_0] = fmin(fmax(rate / turn_rate, -0.9), 0.9) * spec->limits.offset;
         memcpy(x + MORAY_STATE_P_X, p, sizeof p);
         for (int i = 0; i < 2; i++)
-            p[i] += step * (spec->to_position ? spec->position[i] / seconds
-                                              : straight->speed * (i ? sin(heading) : cos(heading)) + V[i]);
+            p[i] += step * ((spec->to_position ? speed : straight->speed) * (i ? sin(heading) : cos(heading)) + V[i]);
+        heading += step * rate;
     }
     moray_steering_parameters(&straight->gait, guess->s);
 }
 
-static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spec, double turn_rate)
+static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spec, double seconds)
 {
-    const double seconds = likely(spec, plan->straight.speed, turn_rate);
     moray_straight_motion_start(&plan->straight, 0, spec->current, spec->start);
     if (spec->averaged)
         spec->start[MORAY_STATE_THETA] = spec->start[MORAY_STATE_V_THETA] = 0;
@@ -150,12 +172,13 @@ static moray_status make(moray_steering_plan *plan, moray_turn_spec *spec, const
 {
     steering_guess samples;
     MORAY_TRY(moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, gait));
-    MORAY_TRY(pose_problem(plan, spec, turn_rate));
+    const outline likely = outline_of(spec, plan->straight.speed, turn_rate);
+    MORAY_TRY(pose_problem(plan, spec, likely.seconds));
     MORAY_TRY(moray_steering_guess_new(&samples, 16 * settings->intervals + 1, 1));
     if (from)
         moray_steering_guess_from_other(&samples, &spec->robot, from->solution, &from->straight, spec->model, stretch);
     else
-        guess_steady(&samples, spec, &plan->straight, likely(spec, plan->straight.speed, turn_rate), turn_rate);
+        guess_outline(&samples, spec, &plan->straight, &likely, turn_rate);
     const moray_guess guess = {.phase = &samples.samples, .s = samples.s};
     const moray_status status =
         moray_solve(moray_steering_ocp(plan->problem.steering), settings, &guess, &plan->solution);

@@ -151,7 +151,7 @@ static moray_status climb_rung(const moray_ladder_spec *spec, const moray_robot 
         if (!moray_failed(status))
             status = moray_makes_way(robot, &spec->baseline, &base);
         if (moray_failed(status))
-            status = moray_error(status.code, "the baseline: %.270s", status.text);
+            status = moray_error(status.code, "the baseline: %s", status.text);
     }
     for (int g = 0; g < spec->gaits && !moray_failed(status); g++)
         compare(&at, &base, &spec->gait[g], &row[g]);

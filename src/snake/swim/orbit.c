@@ -129,7 +129,7 @@ static moray_status no_orbit(const moray_orbit *orbit, const moray_status *why)
     const moray_gait *gait = &orbit->gait;
     return moray_error(MORAY_NOT_SOLVED,
                        "no periodic orbit found for amplitude = %.5g, omega = %.5g, delta = %.5g in a current of "
-                       "(%g, %g) m/s on the course of %.5g: %.120s",
+                       "(%g, %g) m/s on the course of %.5g: %s",
                        gait->amplitude, gait->omega, gait->delta, orbit->spec.current[0], orbit->spec.current[1],
                        orbit->spec.course, why->text);
 }

@@ -211,6 +211,26 @@ static void test_starts(void)
     moray_orbit_free(used);
 }
 
+// Where the defects are down to rounding the slopes of an earlier point tell nothing more, as here.
+static void test_rounding(void)
+{
+    enum { gaits = 100 };
+    const moray_robot robot = robot_of(10);
+    moray_orbit_spec spec = moray_orbit_spec_default(&robot, MORAY_CONTROL_ORIENTED);
+    int failed = 0;
+    spec.steered = false;
+    for (int k = 0; k < gaits; k++) {
+        const moray_gait gait = {.amplitude = 0.045680313869238411,
+                                 .omega = 1.8104619281263352 * (1 + k * 1e-15),
+                                 .delta = 0.60896561614929201};
+        moray_orbit_result found;
+        moray_orbit *orbit;
+        failed += moray_failed(moray_orbit_new(&orbit, &spec)) || moray_failed(moray_orbit_solve(orbit, &gait, &found));
+        moray_orbit_free(orbit);
+    }
+    CHECK(failed == 0, "%d of %d gaits have no orbit", failed, gaits);
+}
+
 static void refuses(moray_orbit_spec spec, const char *text)
 {
     moray_orbit *orbit;
@@ -271,6 +291,7 @@ int main(void)
     }
     test_schemes();
     test_starts();
+    test_rounding();
     test_refusals();
     return tap_done();
 }

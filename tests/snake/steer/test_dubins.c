@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+//
+// Ways of arcs and legs followed to their end, which shares nothing with how they were found.
+#include "tap.h"
+
+#include <math.h>
+
+#include "snake/steer/dubins.h"
+
+static void follow(const moray_dubins *path, double end[3])
+{
+    double x = 0, y = 0, heading = 0;
+    for (int k = 0; k < 3; k++) {
+        const double turn = path->turn[k], length = path->length[k], after = heading + turn * length;
+        x += turn == 0 ? length * cos(heading) : (sin(after) - sin(heading)) / turn;
+        y += turn == 0 ? length * sin(heading) : (cos(heading) - cos(after)) / turn;
+        heading = after;
+    }
+    end[0] = x;
+    end[1] = y;
+    end[2] = heading;
+}
+
+int main(void)
+{
+    unsigned long long seed = 5;
+    double worst = 0, most = 0;
+    int found = 0, n = 2000;
+    for (int k = 0; k < n; k++) {
+        const double x = tap_random(&seed, -6, 6), y = tap_random(&seed, -6, 6), heading = tap_random(&seed, -4, 4);
+        moray_dubins path;
+        double end[3];
+        if (!moray_dubins_shortest(x, y, heading, &path))
+            continue;
+        follow(&path, end);
+        found++;
+        worst = fmax(worst, fabs(end[0] - x) + fabs(end[1] - y) + fabs(end[2] - heading));
+        most = fmax(most, hypot(x, y) - path.length[0] - path.length[1] - path.length[2]);
+    }
+    CHECK(found > n / 2, "%d of %d poses have a way", found, n);
+    CHECK(worst < 1e-9, "each ends where it is to, heading included: %.1e", worst);
+    CHECK(most < 1e-9, "none is shorter than straight on: %.1e", most);
+
+    moray_dubins path;
+    CHECK(moray_dubins_shortest(0, 2, M_PI, &path) &&
+              fabs(path.length[0] + path.length[1] + path.length[2] - M_PI) < 1e-9,
+          "half a circle where that does it");
+    CHECK(moray_dubins_shortest(0, 1, M_PI, &path) && path.turn[1] != 0, "three arcs where the end is too near");
+    const double away[2] = {0, 2}, current[2] = {0.1, 0.1}, none[2] = {0, 0}, strong[2] = {0.5, 0};
+    double still = 0, moved = 0;
+    const bool there = moray_dubins_in_current(away, M_PI, none, 0.25, 1, 100, &path, &still);
+    CHECK(there && fabs(still - M_PI / 0.25) < 0.06, "in still water the length over the speed: %g s", still);
+    const bool against = moray_dubins_in_current(away, M_PI, current, 0.25, 1, 100, &path, &moved);
+    CHECK(against && moved > still, "longer against the current: %g s", moved);
+    CHECK(!moray_dubins_in_current((double[2]){-5, 0}, 0, strong, 0.25, 1, 100, &path, &moved),
+          "never against one that is too strong");
+    return tap_done();
+}
