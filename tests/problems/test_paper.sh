@@ -46,8 +46,8 @@ refuse 'unknown study mappin; did you mean mapping?' mappin
 refuse 'unknown study weather; --help lists them' mapping weather
 refuse 'no study is named: must be all or some of those that --help lists'
 refuse 'unknown study (empty)' ''
-refuse 'unknown option --scheme' mapping --scheme gauss3
-refuse 'unknown option --course' mapping --course 10
+refuse '--scheme: paper has no use for it' mapping --scheme gauss3
+refuse '--course: paper has no use for it' mapping --course 10
 refuse 'links = 3: with delta = 2 pi/(N-1) = 180 deg the joints do not move; set delta_deg' mapping --links 3
 refuse 'theta_max_deg = 90: must be' mapping --set theta_max_deg=90
 refuse 'reading = literal: must be corrected, 23h, l or printed' mapping --set reading=literal

@@ -148,7 +148,7 @@ refuse 'omega_deg_s = -3: must be' --set omega_deg_s=-3
 refuse '--duration = 0: must be' --duration 0
 refuse 'samples; there may be' --output-step 1e-9
 refuse '--integrator = euler: must be explicit, tr-bdf2 or paper' --integrator euler
-refuse 'unknown option --intervals' --intervals 30
+refuse '--intervals: simulate has no use for it' --intervals 30
 refuse 'schedule none.csv: cannot be opened' --schedule none.csv
 refuse 'schedule .: cannot be read' --schedule .
 schedule ''
