@@ -56,6 +56,7 @@ static const moray_option options[] = {
      .min = 0,
      .max = 10000,
      .help = "processes; 0: one a processor"},
+    STEER_TIME_OPTION(sea_job, clock),
     SEA_NUMBER(INT, training, "baseline", "training", 1, 200, NULL, "further draws on which the rivals are tuned"),
     SEA_NUMBER(INT, starts, "baseline", "starts", 1, 1000, NULL, "searches for the numbers of each rival"),
     SEA_NUMBER(INT, evaluations, "baseline", "evaluations", 1, 10000, NULL, "settings tried in each, for every number"),
@@ -108,6 +109,7 @@ int main(int argc, char **argv)
                                 .delay = 0.1,
                                 .drop_out = 0.02},
                     .actuators = {.dead_time = 0.1},
+                    .clock = {.limit = 3600},
                     .seeds = 20,
                     .first_seed = 1,
                     .current_most = 0.2,
@@ -123,12 +125,16 @@ int main(int argc, char **argv)
     if (!moray_app_start(&program, argc, argv, &job, &exit_code))
         return exit_code;
     job.ticker = moray_ticker_start(stderr, job.common.quiet);
+    steer_clock_start(&job.clock);
     moray_interrupt_begin();
     moray_status status = work(&job);
     moray_interrupt_end();
     moray_ticker_end(&job.ticker);
     if (!moray_failed(status))
         status = sea_report(&job);
+    if (!moray_failed(status) && job.seeds < job.wanted)
+        status = moray_error(MORAY_NOT_SOLVED, "%d of %d draws were swum in the time given (--time = %g s)", job.seeds,
+                             job.wanted, job.clock.limit);
     sea_release(&job);
     return moray_app_end(&program, &job, status);
 }

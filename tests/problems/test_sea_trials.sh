@@ -7,9 +7,9 @@ few='--seeds 2 --jobs 1 --set training=1 --set starts=1 --set evaluations=1 --se
 run --json $few --set results=done.txt
 check "swum: $(cat err)" [ $code -eq 0 ]
 check "one JSON object" eval 'python3 -c "import json, sys; json.load(sys.stdin)" <out'
-check "of all laws" eval '[ "$(grep -c "\"told\"" out)" -eq 9 ]'
+check "of all laws" eval '[ "$(grep -c "\"told\"" out)" -eq 10 ]'
 cp out first
-check "every trial is in the file" eval '[ "$(grep -vc "^#" done.txt)" -eq 18 ]'
+check "every trial is in the file" eval '[ "$(grep -vc "^#" done.txt)" -eq 20 ]'
 head -9 done.txt >half.txt && printf '2 3 0.1' >>half.txt
 run --json $few --set results=half.txt
 check "a run that was cut off goes on to the same" eval '[ $code -eq 0 ] && cmp -s out first'
@@ -19,6 +19,8 @@ if thorough; then
 run $few --seeds 1 --task path --set current_max_m_s=0.05 --set planner_current=0.02,0 --rung split2
 check "a path, on a rung: $(cat err)" eval '[ $code -eq 0 ] && grep -q "^receding, estimating" out && grep -q "rung split2" out'
 fi
+run $few --seeds 40 --time 2 --set results=late.txt
+check "the time given ends it: $(cat err)" eval '[ $code -eq 1 ] && one_line && grep -q "in the time given\|not tuned" err'
 refuse 'rung = no_such' --rung no_such
 refuse 'must be unknown or VX,VY' --set planner_current=some
 refuse 'drop_outs' --set drop_outs=1

@@ -55,7 +55,7 @@ static moray_status see_through(const sea_job *job, const moray_robot *robot, mo
     return moray_belief_find(belief, &job->believed, &job->gait, straight->speed, 0.5 * job->offset, rate);
 }
 
-static moray_status make(const sea_job *job, sea_draw *draw, unsigned long number)
+static moray_status make(sea_job *job, sea_draw *draw, unsigned long number)
 {
     unsigned long seed = 0x5EA0 + 7919 * number;
     double factor[SEA_COEFFICIENTS];
@@ -71,7 +71,7 @@ static moray_status make(const sea_job *job, sea_draw *draw, unsigned long numbe
     MORAY_TRY(draw_reference(draw, &seed));
     MORAY_TRY(see_through(job, &draw->robot, &draw->straight, &draw->truth, &draw->turn));
     memcpy(draw->truth.current, draw->current, sizeof draw->current);
-    return moray_ok();
+    return job->task == SEA_HEADING ? sea_plan_heading(job, draw) : moray_ok();
 }
 
 // The plant's hydrodynamics by a rung's name.
@@ -122,6 +122,9 @@ moray_status sea_prepare(sea_job *job)
     job->score = calloc((size_t)job->seeds * SEA_LAWS, sizeof *job->score);
     if (!job->draw || !job->score)
         return moray_error(MORAY_MEMORY, "no memory for %d draws", n);
+    job->drawn = n;
+    if (job->task == SEA_PATH)
+        MORAY_TRY(sea_plan_path(job));
     for (int k = 0; k < n; k++) { // those to train on are none of those to be scored on
         const int number = k < job->seeds ? job->first_seed + k : -1 - (k - job->seeds);
         MORAY_TRY(make(job, &job->draw[k], (unsigned long)number));
@@ -134,8 +137,11 @@ moray_status sea_prepare(sea_job *job)
 
 void sea_release(sea_job *job)
 {
-    for (int k = 0; job->draw && k < job->seeds + job->training; k++)
+    for (int k = 0; job->draw && k < job->drawn; k++) {
+        moray_steering_plan_free(&job->draw[k].plan);
         moray_reference_free(&job->draw[k].reference);
+    }
+    moray_steering_plan_free(&job->plan);
     free(job->draw);
     free(job->score);
     moray_path_free(&job->path);

@@ -52,13 +52,16 @@ static const sea_law heading_laws[] = {
      SEA_TOLD},
     {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
     {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
-    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING}};
+    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING},
+    {"plan and feedback", "beliefs", 1 << GAIN, {0.12}, NO_SUBSET, false, SEA_BELIEVING, true}};
 
-static const sea_law path_laws[] = {{"LOS", "nothing", 7, {0.06, 2.8, 0.4}, NO_SUBSET, false, 0},
-                                    {"ILOS", "nothing", 15, {0.06, 2.8, 0.4, 0.02}, {0, NOTHING, NOTHING}, false, 0},
-                                    {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
-                                    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
-                                    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING}};
+static const sea_law path_laws[] = {
+    {"LOS", "nothing", 7, {0.06, 2.8, 0.4}, NO_SUBSET, false, 0},
+    {"ILOS", "nothing", 15, {0.06, 2.8, 0.4, 0.02}, {0, NOTHING, NOTHING}, false, 0},
+    {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
+    {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
+    {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING},
+    {"plan and feedback", "beliefs", 1 << GAIN | 1 << LOOKAHEAD, {0.06, 1.5}, NO_SUBSET, false, SEA_BELIEVING, true}};
 
 int sea_laws(const sea_job *job, const sea_law **laws)
 {
@@ -69,6 +72,7 @@ int sea_laws(const sea_job *job, const sea_law **laws)
 // ---- Who steers ----------------------------------------------------------------------------------------------------
 
 typedef struct steersman {
+    moray_plan plan;
     moray_feedback feedback;
     moray_heading_law law;
     moray_guidance guidance;
@@ -80,14 +84,40 @@ typedef struct steersman {
     moray_path_seeker seeker;
 } steersman;
 
-static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw, const double *number)
+static double planned_heading(const moray_swim_sample *sample, void *self)
+{
+    const steersman *h = self;
+    double t0, t1, x[MORAY_STEERING_STATES];
+    moray_solution_times(h->plan.solution, 0, &t0, &t1);
+    moray_solution_at(h->plan.solution, 0, fmin(sample->t, t1), x, NULL);
+    return x[MORAY_STATE_THETA];
+}
+
+static double planned_offset(const moray_swim_sample *sample, double t, void *self)
+{
+    const steersman *h = self;
+    (void)sample;
+    return moray_plan_offset(&h->plan, t).value;
+}
+
+static void follow_plan(steersman *h, const sea_job *job, const sea_draw *draw)
+{
+    h->plan = (moray_plan){draw->plan.solution, job->scale};
+    h->feedback.target = planned_heading;
+    h->feedback.feed = planned_offset;
+    h->feedback.self = h;
+}
+
+static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw, bool planned, const double *number)
 {
     h->feedback = (moray_feedback){.gain = job->scale * number[GAIN],
                                    .straight = &job->believed_straight,
                                    .offset = job->offset * fabs(job->scale),
                                    .offset_rate = job->offset_rate * fabs(job->scale),
                                    .period = look_every};
-    if (job->task == SEA_HEADING) {
+    if (job->task == SEA_HEADING && planned) {
+        follow_plan(h, job, draw);
+    } else if (job->task == SEA_HEADING) {
         h->law = (moray_heading_law){
             .gains = {number[GAIN], number[FORWARD], number[LEAD], number[INTEGRAL], number[DERIVATIVE]},
             .reference = &draw->reference,
@@ -99,36 +129,50 @@ static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw,
         h->feedback.self = &h->law;
     } else {
         h->guidance = (moray_guidance){.path = &job->path,
+                                       .plan = planned ? &job->plan : NULL,
+                                       .plan_scale = job->scale,
                                        .lookahead = number[LOOKAHEAD],
                                        .ahead = number[AHEAD],
                                        .gain = number[SIGHT_INTEGRAL],
                                        .period = look_every};
         h->feedback.target = moray_guidance_target;
+        h->feedback.feed = planned ? moray_guidance_feed : NULL;
         h->feedback.self = &h->guidance;
     }
     h->controller = moray_feedback_controller(&h->feedback);
 }
 
-static void pose_problems(steersman *h, const sea_job *job, const sea_draw *draw, double speed, double horizon)
+moray_heading_spec sea_heading_spec(const sea_job *job, const sea_draw *draw)
 {
-    const double error_unit = 10 * DEG, across_unit = 0.1, seconds = 10 * job->path.length / speed;
-    const moray_heading_spec heading = {.robot = job->believed,
-                                        .model = MORAY_CONTROL_ORIENTED,
-                                        .averaged = true,
-                                        .weight = {1 / (error_unit * error_unit), 0, job->weight_steering},
-                                        .reference = &draw->reference,
-                                        .max_error = MORAY_INFINITY};
-    const moray_path_spec path = {
+    const double error_unit = 10 * DEG;
+    return (moray_heading_spec){.robot = job->believed,
+                                .model = MORAY_CONTROL_ORIENTED,
+                                .averaged = true,
+                                .current = {job->belief.current[0], job->belief.current[1]},
+                                .weight = {1 / (error_unit * error_unit), 0, job->weight_steering},
+                                .reference = &draw->reference,
+                                .max_error = MORAY_INFINITY};
+}
+
+moray_path_spec sea_path_spec(const sea_job *job, double speed)
+{
+    const double across_unit = 0.1, seconds = 10 * job->path.length / speed;
+    return (moray_path_spec){
         .robot = job->believed,
         .model = MORAY_CONTROL_ORIENTED,
         .averaged = true,
+        .current = {job->belief.current[0], job->belief.current[1]},
         .weight = {1 / (across_unit * across_unit * seconds), 1 / seconds, job->weight_steering / seconds},
         .path = &job->path,
         .tube = MORAY_INFINITY,
         .reach = reach,
         .speed = speed};
-    h->heading = (moray_heading_replanner){.spec = heading, .horizon = horizon, .preview = true};
-    h->path = (moray_path_replanner){.spec = path, .horizon = horizon};
+}
+
+static void pose_problems(steersman *h, const sea_job *job, const sea_draw *draw, double speed, double horizon)
+{
+    h->heading = (moray_heading_replanner){.spec = sea_heading_spec(job, draw), .horizon = horizon, .preview = true};
+    h->path = (moray_path_replanner){.spec = sea_path_spec(job, speed), .horizon = horizon};
 }
 
 static moray_status set_receding(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law)
@@ -160,7 +204,7 @@ static moray_status set_receding(steersman *h, const sea_job *job, const sea_dra
                                 .dead_time = job->actuators.dead_time};
     if (job->task == SEA_PATH) {
         spec.navigator.heading = job->path.piece->course;
-        spec.navigator.position[1] = 0.5;
+        spec.navigator.position[1] = SEA_BESIDE;
     }
     spec.settings.scheme = "radau3";
     spec.settings.intervals = (int)ceil(3 * job->look_ahead_periods);
@@ -209,7 +253,7 @@ static moray_status swim(const sea_job *job, const sea_draw *draw, steersman *h,
                                         .on_gait = &how};
     if (job->task == SEA_PATH) {
         spec.heading = job->path.piece->course;
-        spec.position[1] = 0.5;
+        spec.position[1] = SEA_BESIDE;
         h->seeker = (moray_path_seeker){&job->path, 0};
         spec.observe = moray_path_seek;
         spec.observer = &h->seeker;
@@ -230,7 +274,7 @@ moray_status sea_swim(const sea_job *job, const sea_draw *draw, int which, const
     *score = (sea_score){0};
     sensors.seed = draw->seed; // the same errors for every law
     if (laws[which].tuned)
-        set_feedback(&h, job, draw, number);
+        set_feedback(&h, job, draw, laws[which].planned, number);
     else
         status = set_receding(&h, job, draw, &laws[which]);
     if (!moray_failed(status))

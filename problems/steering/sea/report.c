@@ -66,7 +66,8 @@ static int best_rival(const sea_job *job, const sea_law *laws, int n)
 {
     int best = 0;
     for (int law = 1; law < n; law++)
-        if (laws[law].tuned && !laws[law].collocated && job->tuned_cost[law] < job->tuned_cost[best])
+        if (laws[law].tuned && !laws[law].collocated && !laws[law].planned &&
+            job->tuned_cost[law] < job->tuned_cost[best])
             best = law;
     return best;
 }
@@ -202,9 +203,11 @@ moray_status sea_report(const sea_job *job)
                    "instruments. Rivals are told nothing of robot and current. The best rival by its training is %s.",
                    job->seeds, moray_model_name(job->snake.model), job->rung, laws[best].name);
     for (int law = 0; law < n; law++)
-        if (!laws[law].tuned || laws[law].collocated)
+        if (!laws[law].tuned || laws[law].collocated || laws[law].planned)
             moray_text_add(text, sizeof text, " %s wins %.0f %% of the draws, median difference %+.3g.", laws[law].name,
                            wins(job, law, best), quantile(job, law, best, by, 0.5));
+    if (job->seeds < job->wanted)
+        moray_text_add(text, sizeof text, " The time given ended before %d more draws.", job->wanted - job->seeds);
     const moray_report report = {.title = "sea_trials", .text = text, .tables = tables, .n_tables = 3};
     return moray_app_show(&job->common, &(moray_results){.name = "sea_trials",
                                                          .found = job,

@@ -5,6 +5,7 @@
 #include "sea.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,8 +41,8 @@ static bool training_cost(void *self, const double *x, double *cost)
 
 static bool go_on(void *observer)
 {
-    (void)observer;
-    return !moray_interrupted();
+    const sea_job *job = observer;
+    return !moray_interrupted() && !steer_clock_up(&job->clock);
 }
 
 static void gather(const double *number, unsigned tuned, double **to)
@@ -75,7 +76,14 @@ static moray_status tune(sea_job *job, const sea_law *laws, int which)
     settings.jobs = job->jobs;
     settings.tolerance = 1e-3;
     settings.go_on = go_on;
-    MORAY_TRY(moray_tune(&problem, &settings, from, rows, x, &info));
+    settings.observer = job;
+    const moray_status status = moray_tune(&problem, &settings, from, rows, x, &info);
+    if (status.code == MORAY_INTERRUPTED && !moray_interrupted() && isfinite(info.cost))
+        moray_ticker_note(&job->ticker, "sea_trials: %s: tuning was ended by the time given", law->name);
+    else if (status.code == MORAY_INTERRUPTED && !moray_interrupted())
+        return moray_error(MORAY_NOT_SOLVED, "%s: not tuned in the time given (--time)", law->name);
+    else
+        MORAY_TRY(status);
     const double *found = x;
     for (int k = 0; k < SEA_NUMBERS; k++)
         job->number[which][k] = law->tuned & 1u << k ? *found++ : 0;
@@ -101,9 +109,13 @@ moray_status sea_tune(sea_job *job)
 {
     const sea_law *laws;
     const int n = sea_laws(job, &laws);
+    int left = 0;
+    for (int law = 0; law < n; law++)
+        left += laws[law].tuned != 0;
     for (int law = 0; law < n; law++) {
         if (!laws[law].tuned)
             continue;
+        steer_clock_give(&job->clock, 0.5 / left--);
         moray_ticker_show(&job->ticker, "sea_trials: tuning %s", laws[law].name);
         MORAY_TRY(laws[law].collocated ? plan_gains(job, laws, law) : tune(job, laws, law));
         moray_ticker_note(&job->ticker, "sea_trials: %s tuned on %d draws by %d settings: cost %.5g", laws[law].name,
@@ -224,8 +236,11 @@ static void try(int k, void *result, void *self)
     const trials *t = self;
     outcome *out = result;
     const int draw = t->todo[k][0], law = t->todo[k][1];
+    out->score = (sea_score){0};
     if (moray_interrupted())
         out->status = moray_error(MORAY_INTERRUPTED, "interrupted");
+    else if (steer_clock_up(&t->job->clock))
+        out->status = moray_ok(); // not known
     else
         out->status = sea_swim(t->job, &t->job->draw[draw], law, t->job->number[law], &out->score);
 }
@@ -246,11 +261,21 @@ static moray_status run_some(trials *t, int n, FILE *file)
             const int draw = t->todo[k][0], law = t->todo[k][1];
             MORAY_TRY(some[k].status);
             job->score[draw * SEA_LAWS + law] = some[k].score;
-            if (file)
+            if (file && some[k].score.known)
                 add_line(file, job->first_seed + draw, law, &some[k].score);
         }
     }
     return moray_ok();
+}
+
+// Draws from the first on that were swum under every law.
+static int complete(const sea_job *job, int n_laws)
+{
+    for (int draw = 0; draw < job->seeds; draw++)
+        for (int law = 0; law < n_laws; law++)
+            if (!job->score[draw * SEA_LAWS + law].known)
+                return draw;
+    return job->seeds;
 }
 
 moray_status sea_run(sea_job *job)
@@ -260,6 +285,7 @@ moray_status sea_run(sea_job *job)
     int n = 0;
     FILE *file;
     MORAY_TRY(open_results(job, &file));
+    steer_clock_give(&job->clock, 1);
     trials t = {job, calloc((size_t)(job->seeds * n_laws), sizeof *t.todo)};
     int(*all)[2] = t.todo;
     moray_status status = all ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d trials", job->seeds * n_laws);
@@ -274,5 +300,11 @@ moray_status sea_run(sea_job *job)
     free(all);
     if (file)
         fclose(file);
-    return status;
+    MORAY_TRY(status);
+    job->wanted = job->seeds;
+    job->seeds = complete(job, n_laws);
+    if (job->seeds == 0)
+        return moray_error(MORAY_NOT_SOLVED, "no draw was swum under all laws in the time given (--time = %g s)",
+                           job->clock.limit);
+    return moray_ok();
 }

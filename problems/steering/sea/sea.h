@@ -8,9 +8,11 @@
 #include "degree.h"
 #include "moray/moray.h"
 #include "moray/snake.h"
+#include "steering/clock.h"
 
 enum { SEA_HEADING, SEA_PATH }; // tasks
-enum { SEA_MOST_SEEDS = 2000, SEA_LAWS = 9, SEA_NUMBERS = 5, SEA_SCORES = 3, SEA_COEFFICIENTS = 4 };
+#define SEA_BESIDE 0.5          // of a path, where it begins [m]
+enum { SEA_MOST_SEEDS = 2000, SEA_LAWS = 10, SEA_NUMBERS = 5, SEA_SCORES = 3, SEA_COEFFICIENTS = 4 };
 
 typedef struct sea_job sea_job;
 
@@ -22,7 +24,8 @@ typedef struct sea_draw {
     moray_reference reference;          // owned
     moray_straight_motion straight;     // of the robot
     moray_belief truth;
-    double turn; // rate of turning per offset of the control-oriented model [rad/(s m)]
+    moray_steering_plan plan; // of the heading, on the robot believed; owned
+    double turn;              // rate of turning per offset of the control-oriented model [rad/(s m)]
 } sea_draw;
 
 // A law at sea. Laws with numbers are tuned; the others plan.
@@ -33,6 +36,7 @@ typedef struct sea_law {
     int subset[3];   // laws that leave some of the numbers out; -1: none
     bool collocated; // its numbers come from a robust plan over the training draws, not from the tuner
     enum { SEA_TOLD, SEA_BELIEVING, SEA_ESTIMATING } knows; // of who plans
+    bool planned; // feedback around a plan made beforehand; tuned, but no rival
 } sea_law;
 
 // Of a trial. Heading: RMS and largest error [rad], power [W]; path: RMS distance [m], time to its end (the longest
@@ -67,8 +71,12 @@ struct sea_job {
     int starts, evaluations, jobs;
     double replan_periods, look_ahead_periods, weight_steering;
     char results[MORAY_PATH_SIZE]; // file of trials done; empty: none
+    steer_clock clock;
     // found along the way
     moray_path path;
+    moray_steering_plan plan; // of it, on the robot believed
+    int drawn;                // draws there are
+    int wanted;               // seeds asked for, where the time given ended the trials before; `seeds` are those swum
     moray_robot believed;
     moray_straight_motion believed_straight;
     moray_belief belief;
@@ -93,9 +101,19 @@ void sea_release(sea_job *job);
 // Swims one draw under a law with these numbers.
 moray_status sea_swim(const sea_job *job, const sea_draw *draw, int law, const double *number, sea_score *score);
 
-// Tunes what is tuned on the training draws; swims all seeds. Error: MORAY_INTERRUPTED, MORAY_IO, those of the trials.
+// Tunes what is tuned on the training draws, in half of the time given; swims all seeds, or as many as that leaves time
+// for. Error: MORAY_INTERRUPTED, MORAY_IO, those of the trials; MORAY_NOT_SOLVED where the time ended before the first.
 moray_status sea_tune(sea_job *job);
 moray_status sea_run(sea_job *job);
+
+// Problems on the averaged plant of the robot believed, without limits.
+moray_heading_spec sea_heading_spec(const sea_job *job, const sea_draw *draw);
+moray_path_spec sea_path_spec(const sea_job *job, double speed);
+
+// Plans made beforehand, into the draw or the job. Error: MORAY_NOT_SOLVED, those of moray_heading_plan_make and
+// moray_path_plan_make.
+moray_status sea_plan_heading(sea_job *job, sea_draw *draw);
+moray_status sea_plan_path(sea_job *job);
 
 // Gain, forward and integral numbers of a law by collocation over the training draws; those it began with where that
 // does not solve, told. Error: those of moray_robust_gains.
