@@ -100,16 +100,31 @@ void steer_tuning_table(const steer_job *job, steer_tables *tables)
 
 // ---- In words ------------------------------------------------------------------------------------------------------
 
-const steer_trial *steer_best(const steer_job *job, unsigned laws, int score)
+const steer_trial *steer_best_on(const steer_job *job, int gait, unsigned laws, int score)
 {
     const steer_trial *best = NULL;
     for (int k = 0; k < job->n_trials; k++) {
         const steer_trial *trial = &job->trial[k];
         const bool wanted = laws & 1u << (trial->law - job->program->laws) && trial->run && !trial->barred;
-        if (wanted && (!best || trial->score[1][score] < best->score[1][score]))
+        if (wanted && (gait < 0 || trial->gait == gait) && (!best || trial->score[1][score] < best->score[1][score]))
             best = trial;
     }
     return best;
+}
+
+const steer_trial *steer_best(const steer_job *job, unsigned laws, int score)
+{
+    return steer_best_on(job, -1, laws, score);
+}
+
+const steer_trial *steer_last_trial(const steer_job *job, int law)
+{
+    for (int k = 0; k < job->n_trials; k++) {
+        const steer_trial *trial = &job->trial[k];
+        if (trial->law == &job->program->laws[law] && trial->plan == job->snake.model && trial->run)
+            return trial;
+    }
+    return NULL;
 }
 
 static void print_receding(const steer_job *job, const steer_trial *trial)

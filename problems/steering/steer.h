@@ -290,6 +290,10 @@ void steer_tuning_table(const steer_job *job, steer_tables *tables);
 // not barred; NULL: none.
 const steer_trial *steer_best(const steer_job *job, unsigned laws, int score);
 
+// The same of those on one gait; and the trial of a law with the last plan. NULL: none has run.
+const steer_trial *steer_best_on(const steer_job *job, int gait, unsigned laws, int score);
+const steer_trial *steer_last_trial(const steer_job *job, int law);
+
 // Begins a text with the limit; adds to one.
 void steer_say_limit(const steer_job *job, char *text, size_t size); // "With |phi_0| at its limit ... the robot turns"
 void steer_say_saturation(const steer_job *job, char *text, size_t size); // behind a "T" or "t"

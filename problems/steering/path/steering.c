@@ -164,21 +164,25 @@ static void headline(const steer_job *steer, FILE *file)
     fprintf(file, "path %s, radius %g m, from (%g, %g)", job->path_text, job->radius, job->start[0], job->start[1]);
 }
 
+// One planner beside the guidance tuned on the same gait; receding horizon for itself.
 static void conclude(const steer_job *job, char *text, size_t size)
 {
-    const steer_trial *ours = steer_best(job, 1 << PLAN | 1 << BOTH | 1 << RECEDING, COST);
-    const steer_trial *theirs = steer_best(job, 1 << LOS | 1 << ILOS, COST);
-    if (!ours || !theirs) {
-        snprintf(text, size, "The time given ended before both optimised steering and tuned guidance were swum.");
+    const steer_trial *plan = steer_last_trial(job, BOTH), *receding = steer_last_trial(job, RECEDING);
+    const steer_trial *rival = steer_best_on(job, 1 + (int)job->snake.model, 1 << LOS | 1 << ILOS, COST);
+    *text = 0;
+    if (!plan || !rival) {
+        moray_text_add(text, size, "The time given ended before both the plan and tuned guidance were swum.");
         return;
     }
-    const double *a = ours->score[1], *b = theirs->score[1];
-    snprintf(text, size,
-             "First-principles model, same limits: the best optimised steering (%s) takes %.2f s with a settled RMS "
-             "cross-track error of %.2f cm, the best tuned guidance (%s) %.2f s and %.2f cm; in what both were to "
-             "minimise %.2f against %.2f%s.",
-             ours->name, a[TIME], 100 * a[SETTLED_RMS], theirs->name, b[TIME], 100 * b[SETTLED_RMS], a[COST], b[COST],
-             a[COST] < b[COST] ? "" : ": the optimised one LOSES");
+    const double *a = plan->score[1], *b = rival->score[1];
+    moray_text_add(text, size,
+                   "First-principles model, same limits, same gait: the %s takes %.2f s with a settled RMS cross-track "
+                   "error of %.2f cm, the better of the tuned guidances (%s) %.2f s and %.2f cm; in what both were to "
+                   "minimise %.2f against %.2f%s.",
+                   plan->name, a[TIME], 100 * a[SETTLED_RMS], rival->name, b[TIME], 100 * b[SETTLED_RMS], a[COST],
+                   b[COST], a[COST] < b[COST] ? "" : ": the plan LOSES");
+    if (receding)
+        moray_text_add(text, size, " In receding horizon (%s) it is %.2f.", receding->name, receding->score[1][COST]);
 }
 
 // ---- JSON, figures -------------------------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ static const sea_law heading_laws[] = {
      false,
      0},
     {"P ahead", "nothing", 1 << GAIN | 1 << LEAD, {0.12, 0, 2}, {0, NOTHING, NOTHING}, false, 0},
-    {"PID ahead, rate fed f.", "nothing", 31, {0.12, 0.2, 2, 0.05, 0.5}, {1, 2, 3}, false, 0},
+    {"PID and rate, ahead", "nothing", 31, {0.12, 0.2, 2, 0.05, 0.5}, {1, 2, 3}, false, 0},
     {"PI, rate, by collocation",
      "nothing",
      1 << GAIN | 1 << FORWARD | 1 << INTEGRAL,
@@ -53,7 +53,7 @@ static const sea_law heading_laws[] = {
     {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
     {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
     {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING},
-    {"plan and feedback", "beliefs", 1 << GAIN, {0.12}, NO_SUBSET, false, SEA_BELIEVING, true}};
+    {"plan and feedback", "beliefs", 1 << GAIN, {0.12}, NO_SUBSET, false, SEA_BEFOREHAND}};
 
 static const sea_law path_laws[] = {
     {"LOS", "nothing", 7, {0.06, 2.8, 0.4}, NO_SUBSET, false, 0},
@@ -61,7 +61,7 @@ static const sea_law path_laws[] = {
     {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
     {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
     {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING},
-    {"plan and feedback", "beliefs", 1 << GAIN | 1 << LOOKAHEAD, {0.06, 1.5}, NO_SUBSET, false, SEA_BELIEVING, true}};
+    {"plan and feedback", "beliefs", 1 << GAIN | 1 << LOOKAHEAD, {0.06, 1.5}, NO_SUBSET, false, SEA_BEFOREHAND}};
 
 int sea_laws(const sea_job *job, const sea_law **laws)
 {
@@ -274,7 +274,7 @@ moray_status sea_swim(const sea_job *job, const sea_draw *draw, int which, const
     *score = (sea_score){0};
     sensors.seed = draw->seed; // the same errors for every law
     if (laws[which].tuned)
-        set_feedback(&h, job, draw, laws[which].planned, number);
+        set_feedback(&h, job, draw, laws[which].knows == SEA_BEFOREHAND, number);
     else
         status = set_receding(&h, job, draw, &laws[which]);
     if (!moray_failed(status))

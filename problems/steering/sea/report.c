@@ -66,7 +66,7 @@ static int best_rival(const sea_job *job, const sea_law *laws, int n)
 {
     int best = 0;
     for (int law = 1; law < n; law++)
-        if (laws[law].tuned && !laws[law].collocated && !laws[law].planned &&
+        if (laws[law].tuned && !laws[law].collocated && laws[law].knows != SEA_BEFOREHAND &&
             job->tuned_cost[law] < job->tuned_cost[best])
             best = law;
     return best;
@@ -203,7 +203,7 @@ moray_status sea_report(const sea_job *job)
                    "instruments. Rivals are told nothing of robot and current. The best rival by its training is %s.",
                    job->seeds, moray_model_name(job->snake.model), job->rung, laws[best].name);
     for (int law = 0; law < n; law++)
-        if (!laws[law].tuned || laws[law].collocated || laws[law].planned)
+        if (!laws[law].tuned || laws[law].collocated || laws[law].knows == SEA_BEFOREHAND)
             moray_text_add(text, sizeof text, " %s wins %.0f %% of the draws, median difference %+.3g.", laws[law].name,
                            wins(job, law, best), quantile(job, law, best, by, 0.5));
     if (job->seeds < job->wanted)

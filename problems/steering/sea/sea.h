@@ -35,8 +35,8 @@ typedef struct sea_law {
     double start[SEA_NUMBERS];
     int subset[3];   // laws that leave some of the numbers out; -1: none
     bool collocated; // its numbers come from a robust plan over the training draws, not from the tuner
-    enum { SEA_TOLD, SEA_BELIEVING, SEA_ESTIMATING } knows; // of who plans
-    bool planned; // feedback around a plan made beforehand; tuned, but no rival
+    // Of who plans, anew and anew or beforehand; a plan made beforehand is one with tuned feedback, and no rival.
+    enum { SEA_TOLD, SEA_BELIEVING, SEA_ESTIMATING, SEA_BEFOREHAND } knows;
 } sea_law;
 
 // Of a trial. Heading: RMS and largest error [rad], power [W]; path: RMS distance [m], time to its end (the longest

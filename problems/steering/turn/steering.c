@@ -138,35 +138,42 @@ static void headline(const steer_job *steer, FILE *file)
         fprintf(file, " to (%g, %g) m", job->end[0], job->end[1]);
 }
 
+// The plan and bang-bang steering, both swum blindly; with feedback for itself.
 static void conclude(const steer_job *steer, char *text, size_t size)
 {
     const turn_job *job = (const turn_job *)steer;
-    const steer_trial *ours = steer_best(steer, 1 << PLAN | 1 << BOTH, WEIGHTED);
+    const steer_trial *ours = steer_last_trial(steer, PLAN), *both = steer_last_trial(steer, BOTH);
     const steer_trial *theirs = steer_best(steer, 1 << BANG | 1 << BRAKE, WEIGHTED);
+    *text = 0;
     if (!ours || !theirs) {
-        snprintf(text, size, "The time given ended before both planned and bang-bang turns were swum.");
+        moray_text_add(text, size, "The time given ended before both planned and bang-bang turns were swum.");
         return;
     }
     const double *a = ours->score[1], *b = theirs->score[1];
     const double plan = steer_duration(steer_last_plan(steer)->solution);
     if (turn_to_position(job))
-        snprintf(
+        moray_text_add(
             text, size,
-            "First-principles model: %s comes within %.3g cm of the end position; the plan takes %.2f s. Bang-bang "
+            "First-principles model: the %s comes within %.3g cm of the end position; it takes %.2f s. Bang-bang "
             "steering, tuned for the heading alone, passes at %.3g m.",
             ours->name, 100 * a[MISS], plan, b[MISS]);
     else
-        snprintf(
+        moray_text_add(
             text, size,
-            "First-principles model, same limits: the best optimised turn (%s) is within %.3g deg of its heading "
-            "after %.2f s, of the tuned bang-bang turns the better (%s) after %.2f s; weighted by the error %.3f s "
-            "against %.3f s%s. The plan itself takes %.2f s, until offset and turning are at rest.",
+            "First-principles model, same limits: the %s, swum blindly, is within %.3g deg of its heading after %.2f "
+            "s, "
+            "of the tuned bang-bang turns the better (%s) after %.2f s; weighted by the error %.3f s against %.3f s%s. "
+            "The plan itself takes %.2f s, until offset and turning are at rest.",
             ours->name, job->band / DEG, a[SETTLED], theirs->name, b[SETTLED], a[WEIGHTED], b[WEIGHTED],
             fabs(a[WEIGHTED] / b[WEIGHTED] - 1) < 0.02
                 ? ", as good as the same: the fastest turn is a bang-bang one, which the plan finds without trials"
             : a[WEIGHTED] < b[WEIGHTED] ? ""
-                                        : ": the optimised one LOSES",
+                                        : ": the plan LOSES",
             plan);
+    if (both && turn_to_position(job))
+        moray_text_add(text, size, " With feedback around the plan it is %.3g cm.", 100 * both->score[1][MISS]);
+    else if (both)
+        moray_text_add(text, size, " With feedback around it %.3f s, weighted.", both->score[1][WEIGHTED]);
 }
 
 static void turn_explain(const steer_job *job, char *text, size_t size)

@@ -94,6 +94,35 @@ static void test_turn(void)
     CHECK(took[0] > 0.9 * steady && took[0] < steady + 2 * 1.5 + 2, "%.2f s, of which %.2f s steady", took[0], steady);
 }
 
+// Ends beside the start, nearer than the robot's circle is wide, in a current: three arcs lead there.
+static void test_poses(void)
+{
+    static const double ends[][3] = {{0, 2, 180}, {0, 0.5, -180}, {-1, 0, 0}, {3, 1, 90}}; // [m], [m], [deg]
+    for (int k = 0; k < 4; k++) {
+        moray_turn_spec spec = spec_of(MORAY_CONTROL_ORIENTED, true, 10);
+        moray_gait gait = moray_gait_paper(&spec.robot);
+        moray_settings settings = moray_settings_default();
+        moray_steering_plan plan;
+        double rate, t0, t1, x[MORAY_STEERING_STATES];
+        spec.limits.theta_max = moray_fixed(20 * DEG);
+        spec.heading = ends[k][2] * DEG;
+        spec.to_position = true;
+        memcpy(spec.position, ends[k], sizeof spec.position);
+        settings.scheme = "radau3";
+        settings.intervals = 30;
+        gait.offset = spec.limits.offset;
+        CHECK_OK(moray_turn_rate(&spec.robot, spec.model, &gait, &rate), "turn rate");
+        gait.offset = 0;
+        CHECK_OK(moray_turn_plan_make(&plan, &spec, &settings, &gait, rate, NULL, 1), "plan");
+        moray_solution_times(plan.solution, 0, &t0, &t1);
+        moray_solution_at(plan.solution, 0, t1, x, NULL);
+        CHECK(moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED &&
+                  hypot(x[MORAY_STATE_P_X] - ends[k][0], x[MORAY_STATE_P_Y] - ends[k][1]) < 1e-6,
+              "(%g, %g) m and %g deg in %.3g s", ends[k][0], ends[k][1], ends[k][2], t1);
+        moray_steering_plan_free(&plan);
+    }
+}
+
 int main(void)
 {
     for (int links = 3; links <= 10; links += 7) {
@@ -103,5 +132,6 @@ int main(void)
     }
     test_refusals();
     test_turn();
+    test_poses();
     return tap_done();
 }
