@@ -92,6 +92,12 @@ show path_following path_following --current=-0.05,0.1
 show min_time_turn min_time_turn --current 0.1,0.1
 show sea_trials sea_trials --seeds 20 --set training=6 --set starts=3 --set evaluations=6
 show sea_trials_path sea_trials --task path --set current_max_m_s=0.1 --set duration_s=150 --seeds 12 --set training=5 --set starts=4 --set evaluations=8
+few='--seeds 12 --set training=4 --set starts=2 --set evaluations=4'
+none='--set spread=0 --set current_max_m_s=0 --set current_turning_deg_s=0 --set heading_deg=0 --set joints_deg=0 --set position_m=0
+    --set drop_outs=0 --set delay_s=0 --set dead_time_s=0'
+show sea_trials_known sea_trials $few $none
+show sea_trials_consistent sea_trials $few --rung consistent
+show sea_trials_control sea_trials $few --model control
 show paper paper all
 show classics classics all
 print benchmark_s1 benchmark --part s1 --set repeats=9

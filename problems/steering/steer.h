@@ -216,6 +216,12 @@ moray_settings steer_settings(steer_job *job, bool averaged, int intervals, doub
 // Whether a solve found what was asked for, if only on a mesh before that which the time given cut off.
 bool steer_solved(const moray_solution *solution);
 
+// Whether the time given, or Ctrl-C, ended it.
+static inline bool steer_cut_short(const moray_solution *solution)
+{
+    return moray_solution_info(solution)->outcome == MORAY_NLP_INTERRUPTED;
+}
+
 // Goes on without the first-principles plan that failed for this reason, where there is a control-oriented one: the
 // model is that from then on, and trials are to be chosen anew. Error: the reason, where it is another or there is
 // none.

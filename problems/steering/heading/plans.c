@@ -66,7 +66,7 @@ static moray_status why_not(const heading_job *job, const moray_steering_plan *p
     const double jump = largest_jump(job), fastest = moray_reference_fastest(&job->reference, 0, job->horizon);
     const double sustained = fabs(job->steer.turn_rate[plan->straight.model]);
     const moray_status told = steer_not_solved(plan->solution);
-    if (told.code != MORAY_NOT_SOLVED || !isfinite(job->max_error))
+    if (told.code != MORAY_NOT_SOLVED || steer_cut_short(plan->solution) || !isfinite(job->max_error))
         return told;
     if (jump > 2 * job->max_error)
         return moray_error(

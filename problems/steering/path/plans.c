@@ -107,7 +107,8 @@ static moray_status why_not(const path_job *job, const moray_steering_plan *plan
     const moray_path_piece *corner = tightest(job);
     const double turn_rate = fabs(job->steer.turn_rate[plan->straight.model]);
     const moray_status told = steer_not_solved(plan->solution);
-    if (told.code != MORAY_NOT_SOLVED || !isfinite(job->tube) || !corner || path_turning(job, corner) <= turn_rate)
+    if (told.code != MORAY_NOT_SOLVED || steer_cut_short(plan->solution) || !isfinite(job->tube) || !corner ||
+        path_turning(job, corner) <= turn_rate)
         return told;
     say_corner(job, corner, turn_rate, text, sizeof text);
     return moray_error(MORAY_NOT_SOLVED, "tube_m = %g cannot be kept: %s", job->tube, text);

@@ -39,10 +39,15 @@ static moray_settings settings_of(sea_job *job, int intervals)
 // Its heading and places are means over an undulation: there is none to be taken off.
 static moray_status take(moray_steering_plan *plan)
 {
+    const moray_nlp_outcome outcome = moray_solution_info(plan->solution)->outcome;
     for (int k = 0; k < 2; k++)
         plan->straight.undulation[k] = 0;
-    return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED ? moray_ok()
-                                                                            : moray_solution_failure(plan->solution);
+    if (outcome == MORAY_NLP_SOLVED)
+        return moray_ok();
+    if (outcome != MORAY_NLP_INTERRUPTED)
+        return moray_solution_failure(plan->solution);
+    return moray_interrupted() ? moray_error(MORAY_INTERRUPTED, "interrupted; nothing is written")
+                               : moray_error(MORAY_NOT_SOLVED, "not all draws were planned in the time given (--time)");
 }
 
 moray_status sea_plan_heading(sea_job *job, sea_draw *draw)

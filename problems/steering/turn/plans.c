@@ -19,7 +19,7 @@ static moray_status why_not(const turn_job *job, const moray_steering_plan *plan
 {
     const double speed = plan->straight.speed;
     const moray_status told = steer_not_solved(plan->solution);
-    if (told.code != MORAY_NOT_SOLVED || !turn_to_position(job))
+    if (told.code != MORAY_NOT_SOLVED || steer_cut_short(plan->solution) || !turn_to_position(job))
         return told;
     return moray_error(MORAY_NOT_SOLVED,
                        "end_m = %g,%g with angle_deg = %g is not reached: the robot turns on a circle of %.3g m at "
