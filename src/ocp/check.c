@@ -16,6 +16,7 @@ struct subject {
     int p;
     bool observed; // of the phase
     const moray_map *map;
+    moray_bounds *box;
     double *points, *in, *out, *weight; // points over the whole box, and the one at hand
 };
 
@@ -103,12 +104,26 @@ static bool is_finite(const struct subject *s)
     return true;
 }
 
+static const double step_part = 0.02; // of 1 + |.|: the largest step of moray_check_derivatives
+
+// Inwards by the steps of the differences, as far as the box has room: beyond it functions need not exist.
+static void keep_off_bounds(struct subject *s)
+{
+    for (int j = 0; j < s->map->n_in; j++) {
+        const double step = step_part * (1 + fabs(s->in[j])), low = s->box[j].lower + step,
+                     high = s->box[j].upper - step;
+        if (low < high)
+            s->in[j] = fmin(fmax(s->in[j], low), high);
+    }
+}
+
 // A point where a function is not finite tells nothing of its derivatives and is passed over; all passed over is an
 // error.
 static moray_status check_at(struct subject *s, int point, int *checked, moray_ocp_derivative_report *report)
 {
     moray_derivative_report found;
     s->in = s->points + point * s->map->n_in;
+    keep_off_bounds(s);
     for (int i = 0; i < s->map->n_out; i++)
         s->weight[i] = 1 + 0.3 * cos(2.0 * i + point);
     if (!is_finite(s))
@@ -124,14 +139,21 @@ static moray_status check_subject(struct subject s, moray_ocp_derivative_report 
 {
     int checked = 0;
     s.points = calloc((size_t)(moray_probe_points * s.map->n_in + 2 * s.map->n_out) + 1, sizeof *s.points);
-    if (!s.points)
+    s.box = calloc((size_t)s.map->n_in + 1, sizeof *s.box);
+    if (!s.points || !s.box) {
+        free(s.points);
+        free(s.box);
         return moray_error(MORAY_MEMORY, "no memory to check the derivatives of %s", subject_name(&s));
+    }
     s.out = s.points + moray_probe_points * s.map->n_in;
     s.weight = s.out + s.map->n_out;
-    if (s.p < 0)
+    if (s.p < 0) {
         moray_endpoint_points(s.ocp, 0, s.points);
-    else
+        moray_endpoint_box(s.ocp, s.box);
+    } else {
         moray_phase_points(s.ocp, &s.ocp->phase[s.p], 0, s.points);
+        moray_phase_box(s.ocp, &s.ocp->phase[s.p], s.box);
+    }
     moray_status status = moray_ok();
     for (int point = 0; point < moray_probe_points && !moray_failed(status); point++)
         status = check_at(&s, point, &checked, report);
@@ -139,6 +161,7 @@ static moray_status check_subject(struct subject s, moray_ocp_derivative_report 
         status = moray_error(MORAY_NUMERIC, "%s: its functions are not finite at any of %d points within the bounds",
                              subject_name(&s), moray_probe_points);
     free(s.points);
+    free(s.box);
     return status;
 }
 

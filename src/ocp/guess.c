@@ -78,9 +78,9 @@ static void guess_times(const struct transcription *t, int p, double *x)
     const struct phase_layout *layout = &t->layout.phase[p];
     const double start = phase->t0.lower, width = phase->tf.upper - start;
     double t0 = moray_bounds_middle(phase->t0), tf = moray_bounds_middle(phase->tf);
-    if (phase->tf.upper >= MORAY_INFINITY)
+    if (phase->tf.upper >= MORAY_ENDLESS)
         tf = fmax(phase->tf.lower, t0 + 1);
-    else if (tf <= t0 && start <= -MORAY_INFINITY)
+    else if (tf <= t0 && start <= -MORAY_ENDLESS)
         t0 = within(tf - 1, phase->t0);
     else if (tf - t0 <= no_length * width) {
         t0 = layout->t0 < 0 ? start : within(start + width * p / t->ocp->phases, phase->t0);
@@ -111,6 +111,27 @@ static void guess_from_bounds(const struct transcription *t, int p, double *x)
         for (int r = 0; r < phase->nu && node->collocated; r++)
             x[node->x + phase->nx + r] = moray_bounds_middle(phase->u[r]);
     }
+}
+
+// A final time that nothing bounds: as late as the states need to get to where they must.
+static moray_status guess_endless_times(struct transcription *t, const moray_guess *guess, double *x)
+{
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const struct phase *phase = &t->ocp->phase[p];
+        const struct phase_layout *layout = &t->layout.phase[p];
+        const bool sampled = guess && (guess->from || (guess->phase && guess->phase[p].n != 0));
+        if (sampled || layout->tf < 0 || phase->tf.upper < MORAY_ENDLESS || phase->has_duration ||
+            !moray_transcription_jacobians(t, x))
+            continue;
+        double *size = calloc((size_t)(phase->nx + phase->nu) + 1, sizeof *size);
+        if (!size)
+            return moray_error(MORAY_MEMORY, "no memory for the guess of phase %s", phase->name);
+        const double needed = moray_needed_duration(t, p, x, size), t0 = t->phase[p].t0;
+        if (needed > 0)
+            x[layout->tf] = fmax(phase->tf.lower, t0 + needed);
+        free(size);
+    }
+    return moray_ok();
 }
 
 static moray_status check_sizes(const moray_ocp *ocp, const moray_ocp *other)
@@ -224,6 +245,7 @@ moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess,
     clamp(t, x);
     for (int p = 0; p < t->ocp->phases; p++)
         moray_guess_holds(t, p, x); // of clamped ones
+    MORAY_TRY(guess_endless_times(t, guess, x));
     double *g = calloc((size_t)t->layout.rows + 1, sizeof *g);
     if (!g)
         return moray_error(MORAY_MEMORY, "no memory for %d constraints", t->layout.rows);

@@ -215,3 +215,34 @@ void moray_endpoint_points(const moray_ocp *ocp, int trial, double *points)
         box_list(ocp->s, ocp->ns, (int)(in - point), k, &in);
     }
 }
+
+// ---- The box ----
+
+static moray_bounds *add_bounds(moray_bounds *box, const moray_bounds *bounds, int n)
+{
+    for (int i = 0; i < n; i++)
+        *box++ = bounds[i];
+    return box;
+}
+
+void moray_phase_box(const moray_ocp *ocp, const struct phase *p, moray_bounds *box)
+{
+    box = add_bounds(box, p->x, p->nx);
+    box = add_bounds(box, p->u, p->nu);
+    box = add_bounds(box, ocp->s, ocp->ns);
+    *box = moray_between(p->t0.lower, p->tf.upper);
+}
+
+void moray_endpoint_box(const moray_ocp *ocp, moray_bounds *box)
+{
+    for (const struct phase *p = ocp->phase; p < ocp->phase + ocp->phases; p++) {
+        box = add_bounds(box, p->x, p->nx);
+        box = add_bounds(box, &p->t0, 1);
+        box = add_bounds(box, p->x, p->nx);
+        box = add_bounds(box, &p->tf, 1);
+        box = add_bounds(box, p->q, p->nq);
+        for (int end = 0; end < 2 && p->end_controls; end++)
+            box = add_bounds(box, p->u, p->nu);
+    }
+    add_bounds(box, ocp->s, ocp->ns);
+}

@@ -22,6 +22,10 @@ enum { moray_probe_points = 32 };
 void moray_phase_points(const moray_ocp *ocp, const struct phase *p, int trial, double *points);
 void moray_endpoint_points(const moray_ocp *ocp, int trial, double *points);
 
+// The box itself: box[inputs].
+void moray_phase_box(const moray_ocp *ocp, const struct phase *p, moray_bounds *box);
+void moray_endpoint_box(const moray_ocp *ocp, moray_bounds *box);
+
 // Magnitudes for difference steps: 1, or what the bounds say where that is less (wide bounds say nothing).
 void moray_phase_sizes(const moray_ocp *ocp, const struct phase *p, double *size);
 void moray_endpoint_sizes(const moray_ocp *ocp, double *size);

@@ -10,7 +10,9 @@
 
 double moray_bounds_middle(moray_bounds bounds)
 {
-    const bool below = bounds.lower > -MORAY_INFINITY, above = bounds.upper < MORAY_INFINITY;
+    const bool below = bounds.lower > -MORAY_ENDLESS, above = bounds.upper < MORAY_ENDLESS;
+    if (!below && !above)
+        return fmin(fmax(0, bounds.lower), bounds.upper);
     return below && above ? (bounds.lower + bounds.upper) / 2 : below ? bounds.lower : above ? bounds.upper : 0;
 }
 

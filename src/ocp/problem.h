@@ -66,7 +66,10 @@ struct moray_ocp {
     int n_owned, owned_room;
 };
 
-// A value within bounds: their middle, the finite one, or 0.
+// Bounds from here on say nothing of how large a quantity is.
+#define MORAY_ENDLESS 1e15
+
+// A value within bounds: their middle, the one that is not endless, or 0.
 double moray_bounds_middle(moray_bounds bounds);
 bool moray_bounds_are_fixed(moray_bounds bounds);
 

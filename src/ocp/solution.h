@@ -23,8 +23,13 @@ struct moray_solution {
 // MORAY_MEMORY.
 moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess, double *x);
 
-// Chooses x_scale and g_scale of the programme from bounds and the guess. Error: MORAY_MEMORY, MORAY_NUMERIC.
-moray_status moray_choose_scales(struct transcription *t, const double *x);
+// Chooses x_scale and g_scale of the programme from bounds and the guess, or the durations of what was found. Error:
+// MORAY_MEMORY, MORAY_NUMERIC.
+moray_status moray_choose_scales(struct transcription *t, const double *x, bool found);
+
+// How long phase p must last for its states to come from one end to the other, by the slopes at the guess x, in whose
+// caches they are, and by what is known of sizes; 0: nothing tells. size[n]: scratch for states and controls.
+double moray_needed_duration(struct transcription *t, int p, const double *x, double *size);
 
 // moray_solution_at by the time in the phase, 0..1, on the polynomials of one interval; NULL: of the one at tau, before
 // an edge.

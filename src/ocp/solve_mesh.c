@@ -87,7 +87,7 @@ static moray_status solve_in_scale(moray_solution *solution)
     struct transcription *t = solution->transcription;
     const moray_nlp_settings settings = solver_settings(&solution->settings, true);
     const moray_nlp_info first = solution->info;
-    MORAY_TRY(moray_choose_scales(t, solution->iterate.x));
+    MORAY_TRY(moray_choose_scales(t, solution->iterate.x, true));
     MORAY_TRY(moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info));
     solution->info.iterations += first.iterations;
     solution->info.seconds += first.seconds;
@@ -103,7 +103,7 @@ static moray_status run_solver(moray_solution *solution, const moray_guess *gues
         settings.barrier = solution->settings.barrier;
     MORAY_TRY(moray_fill_guess(t, guess, solution->iterate.x));
     if (solution->settings.own_scaling)
-        MORAY_TRY(moray_choose_scales(t, solution->iterate.x));
+        MORAY_TRY(moray_choose_scales(t, solution->iterate.x, false));
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (warm)
         MORAY_TRY(moray_carry_multipliers(guess, solution));

@@ -14,12 +14,14 @@
 enum { levels = 8 };
 static const double first_step = 0.02; // of the size
 static const double enough = 1e-10;    // doubt, relative, at which no smaller step is tried
+static const double narrow = 1e-2;     // of a step: a side with less room is none
 static const double stays = 0.5;       // of a bend after a step four times as large: a smooth one falls to a quarter
 static const double certain = 4;       // doubts by which the slopes on either side of a kink differ
 enum side { behind_only = -1, both, ahead_only };
 
 struct columns {
     const moray_map *map;
+    const moray_bounds *box; // NULL: none
     double *in, *here, *ahead, *behind;
     double *bend;  // [n_out]: quotient ahead less that behind
     double *table; // [n_out][levels]: the last row of each extrapolation
@@ -132,13 +134,31 @@ static void tell_kinks(struct columns *c, int j, double size, const struct slope
     }
 }
 
+// Whether both sides leave room for steps, or which does; the size falls to what fits.
+static enum side find_room(const struct columns *c, int j, double *size)
+{
+    const double at = c->in[j], behind = c->box ? at - c->box[j].lower : INFINITY,
+                 ahead = c->box ? c->box[j].upper - at : INFINITY;
+    const double less = fmin(behind, ahead), more = fmax(behind, ahead);
+    if (!(more > 0))
+        return both;
+    const enum side side = less > narrow * first_step * *size ? both : ahead > behind ? ahead_only : behind_only;
+    *size = fmin(*size, (side == both ? less : more) / first_step);
+    return side;
+}
+
 static void difference_column(struct columns *c, int j, double size, const struct slope side[2], double *jac,
                               double *doubt, double *kink)
 {
     static const enum side order[] = {both, ahead_only, behind_only};
     const int n_out = c->map->n_out;
+    const enum side room = find_room(c, j, &size);
     memset(kink, 0, (size_t)n_out * sizeof *kink);
     c->bent = false;
+    if (room != both) {
+        difference(c, j, room, size, jac, doubt);
+        return;
+    }
     for (int k = 0; k < 3; k++) {
         difference(c, j, order[k], size, jac, doubt);
         if (all_known(doubt, n_out)) {
@@ -149,15 +169,15 @@ static void difference_column(struct columns *c, int j, double size, const struc
     }
 }
 
-moray_status moray_difference_columns(const moray_map *map, const double *in, const double *size, double *jac,
-                                      double *doubt, double *kink)
+moray_status moray_difference_columns(const moray_map *map, const double *in, const double *size,
+                                      const moray_bounds *box, double *jac, double *doubt, double *kink)
 {
     const size_t n_in = (size_t)map->n_in, n_out = (size_t)map->n_out;
     double *block = calloc(n_in + (8 + levels) * n_out + 1, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to difference %d functions", map->n_out);
     double *at = block + n_in;
-    struct columns c = {.map = map, .in = block, .here = at, .ahead = at + n_out, .behind = at + 2 * n_out};
+    struct columns c = {.map = map, .box = box, .in = block, .here = at, .ahead = at + n_out, .behind = at + 2 * n_out};
     const struct slope side[] = {{at + 3 * n_out, at + 4 * n_out}, {at + 5 * n_out, at + 6 * n_out}};
     c.bend = at + 7 * n_out;
     c.table = at + 8 * n_out;

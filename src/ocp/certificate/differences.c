@@ -114,8 +114,9 @@ static void lagrangian_slopes_at(void *self, const double *in, double *values)
     }
 }
 
-// Factors of 0.5 to 1.5 and both signs, other ones for every direction; but for the first, variables that a step would
-// take past a bound stay, because beyond it the functions need not exist.
+// Factors of 0.5 to 1.5 and both signs, other ones for every direction. Beyond bounds the functions need not exist:
+// variables that a step would take past one stay, but along the first direction, which is walked to one side, go
+// inwards.
 static void set_direction(struct ray *ray, int which)
 {
     const moray_nlp *nlp = ray->nlp;
@@ -123,8 +124,9 @@ static void set_direction(struct ray *ray, int which)
         const double part = fmod(0.7548776662466927 * (j + 1) * (which + 1), 1);
         const double side = fmod(0.5698402909980532 * (j + 1) * (which + 1), 1) < 0.5 ? -1 : 1;
         const double step = step_part * (0.5 + part) * x_size(ray, j), x = ray->solution->iterate.x[j];
-        const bool near = x - 0.02 * step < nlp->x_lower[j] || x + 0.02 * step > nlp->x_upper[j];
-        ray->direction[j] = which > 0 && near ? 0 : side * step;
+        const bool low = x - 0.02 * step<nlp->x_lower[j], high = x + 0.02 * step> nlp->x_upper[j];
+        const double inwards = which > 0 || (low && high) ? 0 : low ? 1 : -1;
+        ray->direction[j] = step * (low || high ? inwards : side);
     }
 }
 
@@ -148,15 +150,16 @@ static double disagreement(double given, double found, double doubt, double kink
     return isnan(far) ? INFINITY : isnan(error) ? 0 : error;
 }
 
-static moray_status check_along(const moray_map *map, double *worst)
+static moray_status check_along(const moray_map *map, int which, double *worst)
 {
     const double here = 0, size = 1;
+    const moray_bounds box = which > 0 ? moray_free() : moray_at_least(0);
     const size_t n = (size_t)map->n_out;
     double *given = calloc(4 * n + 1, sizeof *given);
     if (!given)
         return moray_error(MORAY_MEMORY, "no memory to check derivatives of %d functions", map->n_out);
     double *found = given + n, *doubt = found + n, *kink = doubt + n;
-    const moray_status status = moray_difference_columns(map, &here, &size, found, doubt, kink);
+    const moray_status status = moray_difference_columns(map, &here, &size, &box, found, doubt, kink);
     map->jacobian(map->self, &here, given);
     for (size_t i = 0; i < n && !moray_failed(status); i++)
         *worst = fmax(*worst, disagreement(given[i], found[i], doubt[i], kink[i]));
@@ -174,9 +177,9 @@ static moray_status check_all(struct ray *ray, double *worst)
     lagrangian.value = lagrangian_at, lagrangian.jacobian = lagrangian_slopes_at;
     for (int k = 0; k < directions && !moray_failed(status); k++) {
         set_direction(ray, k);
-        status = check_along(&functions, worst);
+        status = check_along(&functions, k, worst);
         if (!moray_failed(status))
-            status = check_along(&lagrangian, worst);
+            status = check_along(&lagrangian, k, worst);
     }
     moray_pattern_free(&functions.jac);
     moray_pattern_free(&lagrangian.jac);

@@ -10,16 +10,18 @@
 #include "ocp/solution.h"
 
 struct phase_witness {
-    double *size;     // [n_in] of x, u, s, t: how far each moves in the phase
-    double *out_size; // [n_out] of f, c, g: how far each moves where an input moves by its size
-    double *integral; // [nq] size of q
-    double *slope;    // [n_in][n_out] the largest derivatives along the phase
-    struct kept kept; // differences at every node; doubt: how far off rounding and bends may have led
+    moray_bounds *box; // [n_in] of x, u, s, t: where the functions may be asked
+    double *size;      // [n_in] how far each moves in the phase
+    double *out_size;  // [n_out] of f, c, g: how far each moves where an input moves by its size
+    double *integral;  // [nq] size of q
+    double *slope;     // [n_in][n_out] the largest derivatives along the phase
+    struct kept kept;  // differences at every node; doubt: how far off rounding and bends may have led
 };
 
 struct witness {
     const moray_solution *solution;
     struct phase_witness *phase;
+    moray_bounds *end_box;           // [n_in] of the endpoint
     double *end_size, *end_out_size; // [n_in], [n_out] of the endpoint
     struct kept end;                 // its differences, as of one node
     double duration;                 // of the longest phase

@@ -23,7 +23,7 @@ static void difference(const struct bent *bent, double in, double jac[2], double
     static const double size = 1;
     struct bent self = *bent;
     const moray_map map = {.n_in = 1, .n_out = 2, .value = value, .self = &self};
-    CHECK_OK(moray_difference_columns(&map, &in, &size, jac, doubt, kink), "differences");
+    CHECK_OK(moray_difference_columns(&map, &in, &size, NULL, jac, doubt, kink), "differences");
 }
 
 // Where one of the sides holds the input, its slope is among the two that are told, and nothing else is near it.

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+//
+// How large everything is, by its bounds, by the guess and by what drives it there.
+#include "ocp/guess_sizes.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double least_size = 1e-15; // that is derived from others
+enum { trial_nodes = 8 };               // at which integrands are looked at, about
+enum { magnitudes = 15 };               // of durations, either way
+static const double wide = 1e3;         // a box that large beside the values at its ends is no size
+static const double noise = 1e-8;       // a guess as small as this may be rounding
+
+double moray_known_size(moray_bounds bounds, double guess)
+{
+    if (bounds.lower > -MORAY_ENDLESS && bounds.upper < MORAY_ENDLESS && bounds.lower < bounds.upper)
+        return fmax(fabs(bounds.lower), fabs(bounds.upper));
+    return guess > noise && guess < MORAY_INFINITY ? guess : 0;
+}
+
+// Of a state: that of its box, unless it is fixed at both ends to far less.
+static double size_of_state(const struct phase *phase, int r, double guess)
+{
+    const double known = moray_known_size(phase->x[r], guess);
+    const bool fixed = moray_bounds_are_fixed(phase->x0[r]) && moray_bounds_are_fixed(phase->xf[r]);
+    return fixed && guess * wide < known ? moray_known_size(moray_free(), guess) : known;
+}
+
+static double largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
+{
+    double largest = 0;
+    for (int n = 0; n < layout->nodes; n++)
+        largest = fmax(largest, fabs(x[layout->node[n].x + offset]));
+    return largest;
+}
+
+// How far an input of size 1 moves a state over the phase, by the largest slope among the nodes at the guess.
+static double reach(const struct transcription *t, int p, int state, int input)
+{
+    const struct phase_cache *cache = &t->phase[p];
+    const moray_map *map = cache->map;
+    double largest = 0;
+    for (int k = 0; k < map->jac.nnz; k++)
+        if (map->jac.row[k] == state && map->jac.col[k] == input)
+            for (int n = 0; n < t->layout.phase[p].nodes; n++)
+                largest = fmax(largest, fabs(cache->jac[n * map->jac.nnz + k]));
+    return largest * fabs(cache->tf - cache->t0);
+}
+
+// How far what is known moves a state over the phase, one cause alone.
+static double known_reach(const struct transcription *t, int p, const double *size, int state)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    double furthest = 0;
+    for (int j = 0; j < phase->nx + phase->nu; j++)
+        furthest = fmax(furthest, reach(t, p, state, j) * size[j]);
+    return furthest;
+}
+
+// The size of an input that nothing else tells: for a state what those of known size move it by, else what it takes to
+// move a state of known size by that, or by as much as another cause does where they hold each other in check. 0:
+// nothing is known.
+static double derived_size(const struct transcription *t, int p, const double *size, int i)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const double by_causes = i < phase->nx ? known_reach(t, p, size, i) : 0;
+    double by_effects = INFINITY;
+    for (int r = 0; r < phase->nx; r++)
+        if (size[r] > 0 && reach(t, p, r, i) > 0)
+            by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / reach(t, p, r, i));
+    return by_causes > 0 ? by_causes : isfinite(by_effects) ? by_effects : 0;
+}
+
+static double largest_of(const double *size, int n)
+{
+    double largest = 1;
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, size[i]);
+    return largest;
+}
+
+// A size far above all others comes from a slope that is rounding: where the guess is at rest or straight, say.
+static bool is_size(double derived, double largest_known)
+{
+    return derived > least_size && derived < largest_known / noise;
+}
+
+static void derive_sizes(const struct transcription *t, int p, double *size)
+{
+    const int n = t->ocp->phase[p].nx + t->ocp->phase[p].nu;
+    const double largest_known = largest_of(size, n);
+    bool found = true;
+    while (found) {
+        found = false;
+        for (int i = 0; i < n; i++) {
+            const double derived = size[i] > 0 ? 0 : derived_size(t, p, size, i);
+            if (is_size(derived, largest_known)) {
+                size[i] = derived;
+                found = true;
+            }
+        }
+    }
+    for (int i = 0; i < n; i++)
+        size[i] = size[i] > 0 ? size[i] : 1;
+}
+
+// An input moved by its size, as far as its box has room.
+static double moved_within(double at, double size, moray_bounds box)
+{
+    return at + size <= box.upper ? at + size : fmax(at - size, box.lower);
+}
+
+// The integrand at a node, at most: as it is, and where each input moves by its size. work[n_in + n_out].
+static double largest_integrand(const struct transcription *t, int p, int m, int n, const double *size, double *work)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const moray_map *map = t->phase[p].map;
+    const double *at = t->phase[p].in + n * map->n_in;
+    double *value = work + map->n_in, largest = 0;
+    memcpy(work, at, (size_t)map->n_in * sizeof *work);
+    for (int j = 0; j <= phase->nx + phase->nu; j++) {
+        if (j < phase->nx + phase->nu)
+            work[j] = moved_within(at[j], size[j], j < phase->nx ? phase->x[j] : phase->u[j - phase->nx]);
+        map->value(map->self, work, value);
+        const double here = fabs(value[phase->nx + phase->nc + m]);
+        largest = isfinite(here) ? fmax(largest, here) : largest;
+        work[j] = at[j];
+    }
+    return largest;
+}
+
+double moray_size_of_integral(const struct transcription *t, int p, int m, double guess, const double *size,
+                              double *work)
+{
+    const double known = moray_known_size(t->ocp->phase[p].q[m], guess);
+    double largest = 0;
+    if (known > 0)
+        return known;
+    for (int n = 0; n < t->layout.phase[p].nodes; n += 1 + t->layout.phase[p].nodes / trial_nodes)
+        if (t->layout.phase[p].node[n].collocated)
+            largest = fmax(largest, largest_integrand(t, p, m, n, size, work));
+    largest *= fabs(t->phase[p].tf - t->phase[p].t0);
+    return largest > 0 ? largest : 1;
+}
+
+static double largest_control(const struct phase_layout *layout, const double *x, int offset)
+{
+    double largest = 0;
+    for (int n = 0; n < layout->nodes; n++)
+        if (layout->node[n].collocated)
+            largest = fmax(largest, fabs(x[layout->node[n].x + offset]));
+    return largest;
+}
+
+void moray_size_inputs(const struct transcription *t, int p, const double *x, double *size)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    for (int r = 0; r < phase->nx; r++)
+        size[r] = size_of_state(phase, r, largest_in_phase(layout, x, r));
+    for (int r = phase->nx; r < phase->nx + phase->nu; r++)
+        size[r] = moray_known_size(phase->u[r - phase->nx], largest_control(layout, x, r));
+    derive_sizes(t, p, size);
+}
+
+// ---- Durations ----
+
+// Whether every state that is fixed at both ends can have come from one to the other. none: whether none is.
+static bool reaches(const struct transcription *t, int p, const double *size, bool *none)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    bool reached = true;
+    *none = true;
+    for (int r = 0; r < phase->nx; r++) {
+        const double way = fabs(phase->xf[r].lower - phase->x0[r].lower);
+        if (!moray_bounds_are_fixed(phase->x0[r]) || !moray_bounds_are_fixed(phase->xf[r]) || !(way > 0))
+            continue;
+        *none = false;
+        reached = reached && known_reach(t, p, size, r) >= way;
+    }
+    return reached;
+}
+
+double moray_needed_duration(struct transcription *t, int p, const double *x, double *size)
+{
+    struct phase_cache *cache = &t->phase[p];
+    const double tf = cache->tf;
+    double needed = 0;
+    bool none = false;
+    for (int k = -4 * magnitudes; k <= 4 * magnitudes && needed <= 0 && !none; k++) {
+        cache->tf = cache->t0 + pow(10, k / 4.0);
+        moray_size_inputs(t, p, x, size);
+        if (reaches(t, p, size, &none) && !none)
+            needed = cache->tf - cache->t0;
+    }
+    cache->tf = tf;
+    return needed;
+}

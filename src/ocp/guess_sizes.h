@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#ifndef SRC_OCP_GUESS_SIZES_H
+#define SRC_OCP_GUESS_SIZES_H
+
+#include "ocp/solution.h"
+
+// Of a quantity: that of its bounds where it has both, else of its guess; 0 where that says nothing.
+double moray_known_size(moray_bounds bounds, double guess);
+
+// size[nx + nu] of the states and controls of phase p at the guess x, in whose caches the slopes are.
+void moray_size_inputs(const struct transcription *t, int p, const double *x, double *size);
+
+// What integral m may come to, by its integrand along the guess where its bounds and its guess tell nothing.
+// work[n_in + n_out].
+double moray_size_of_integral(const struct transcription *t, int p, int m, double guess, const double *size,
+                              double *work);
+
+#endif

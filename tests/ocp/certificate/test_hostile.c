@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+//
+// Problems in units and boxes that mislead, with kinks at their ends and functions that do not exist beyond their
+// bounds: the right optimum, with a certificate.
+#include "tap.h"
+
+#include <tgmath.h>
+
+#include "moray/ocp.h"
+#include "rk4.h"
+
+static const int rk4_steps = 100;
+static const moray_integrator rk4 = {rk4_run, &rk4_steps};
+
+struct hostile {
+    const char *name;
+    moray_phase_spec phase;
+    moray_endpoint_fn *endpoint;
+    int ns;
+    double optimum, tolerance; // relative
+};
+
+static void check(const struct hostile *h)
+{
+    const moray_bounds s[] = {moray_between(-1, 1)};
+    moray_ocp_spec spec = {.name = h->name, .phases = 1, .phase = &h->phase, .endpoint = h->endpoint, .ns = h->ns};
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    moray_certificate c;
+    moray_settings settings = moray_settings_default();
+    spec.s = moray_bounds_of(s, h->ns);
+    settings.max_refinements = 12;
+    CHECK_OK(moray_ocp_new(&ocp, &spec), h->name);
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), h->name);
+    CHECK_OK(moray_certify(solution, &rk4, &c), h->name);
+    const double found = moray_solution_objective(solution);
+    CHECK(fabs(found / h->optimum - 1) < h->tolerance, "%s: %.10g, expected %.10g", h->name, found, h->optimum);
+    CHECK(c.pass, "%s: %s", h->name, c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+static void first_integral(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static void duration(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].tf - at->phase[0].t0;
+}
+
+// ---- Least time from rest to rest, |u| <= a: 2 sqrt(distance / a) ----
+
+static void dash(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = at->u[0];
+}
+
+static void test_dash(const char *name, double distance, double a, moray_bounds t0, moray_bounds tf, moray_bounds x)
+{
+    const moray_bounds all[] = {x, x}, start[] = {moray_fixed(0), moray_fixed(0)},
+                       end[] = {moray_fixed(distance), moray_fixed(0)}, u[] = {moray_between(-a, a)};
+    check(&(struct hostile){name,
+                            {.name = "dash",
+                             .nx = 2,
+                             .nu = 1,
+                             .continuous = dash,
+                             .t0 = t0,
+                             .tf = tf,
+                             .x = moray_bounds_of(all, 2),
+                             .x0 = moray_bounds_of(start, 2),
+                             .xf = moray_bounds_of(end, 2),
+                             .u = moray_bounds_of(u, 1)},
+                            duration,
+                            0,
+                            2 * sqrt(distance / a),
+                            1e-6});
+}
+
+static void test_dashes(void)
+{
+    const moray_bounds none = moray_free(), at_once = moray_fixed(0);
+    test_dash("times within 1e5 s for 2 s", 1, 1, moray_between(0, 1e5), moray_between(0, 1e5), none);
+    test_dash("any final time, 1e7 m", 1e7, 1, at_once, none, none);
+    test_dash("any final time, a micrometre at 1e12 m/s2", 1e-6, 1e12, at_once, none, none);
+    test_dash("a millimetre in a box of 1e6 m", 1e-3, 1, at_once, moray_between(0, 100), moray_between(-1e6, 1e6));
+    test_dash("bounds of 2e19", 1, 1, at_once, moray_between(0, 2e19), moray_between(-2e19, 2e19));
+}
+
+// ---- Costs of 1e-12 and 1e15: the integral of k (1 + t) u^2, x from 0 to 1 in 1 s; the optimum is k / log 2 ----
+
+static void costly(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+    out->g[0] = 1e15 * at->u[0] * at->u[0] * (1 + at->t);
+}
+
+static void cheap(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+    out->g[0] = 1e-12 * at->u[0] * at->u[0] * (1 + at->t);
+}
+
+static void test_cost(const char *name, moray_continuous_fn *continuous, double k)
+{
+    check(&(struct hostile){name,
+                            {.name = "walk",
+                             .nx = 1,
+                             .nu = 1,
+                             .nq = 1,
+                             .continuous = continuous,
+                             .tf = moray_fixed(1),
+                             .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                             .xf = MORAY_BOUNDS(moray_fixed(1)),
+                             .u = MORAY_BOUNDS(moray_between(-5, 5))},
+                            first_integral,
+                            0,
+                            k / log(2),
+                            1e-6});
+}
+
+// ---- A parameter whose middle is the worst, beside an integral that is 0: J = q - s^2, |s| <= 1 ----
+
+static void rest(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+    out->g[0] = at->u[0] * at->u[0];
+}
+
+static void bowl(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0] - at->s[0] * at->s[0];
+}
+
+static void test_parameter(void)
+{
+    check(&(struct hostile){"a parameter at its worst in the middle",
+                            {.name = "rest",
+                             .nx = 1,
+                             .nu = 1,
+                             .nq = 1,
+                             .continuous = rest,
+                             .tf = moray_fixed(1),
+                             .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                             .xf = MORAY_BOUNDS(moray_fixed(0)),
+                             .u = MORAY_BOUNDS(moray_between(-8, 8))},
+                            bowl,
+                            1,
+                            -1,
+                            1e-6});
+}
+
+// ---- Dry friction 0.3 against a motion that begins and ends at its kink, v = 0, over 1 m with |u| <= 1: with
+//      accelerations 0.7 and 1.3 the least time is sqrt(2 (1 / 0.7 + 1 / 1.3)) ----
+
+static void slide(const moray_node *at, moray_rates *out, const void *data)
+{
+    const double v = creal(at->x[1]);
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = at->u[0] - 0.3 * (v > 0 ? 1 : v < 0 ? -1 : 0);
+}
+
+static void test_friction(void)
+{
+    check(&(struct hostile){"dry friction",
+                            {.name = "slide",
+                             .nx = 2,
+                             .nu = 1,
+                             .continuous = slide,
+                             .tf = moray_between(0.1, 20),
+                             .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                             .xf = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0)),
+                             .u = MORAY_BOUNDS(moray_between(-1, 1))},
+                            duration,
+                            0,
+                            sqrt(2 * (1 / 0.7 + 1 / 1.3)),
+                            1e-6});
+}
+
+// ---- A table that is read by a cast: it has no entries outside the box, where the functions are never asked, neither
+//      by the solve and its diagnosis nor by the certificate and the check of derivatives ----
+
+enum { entries = 10 };
+static int outside; // how often
+
+static void read_table(const moray_node *at, moray_rates *out, const void *data)
+{
+    static const double table[entries + 1] = {0, 1, 4, 9, 16, 25, 36, 49, 64, 81, 100};
+    const int i = (int)creal(at->x[0]), second = (int)creal(at->t);
+    (void)data;
+    outside += i < 0 || i >= entries || second < 0 || second > 5;
+    const int k = i < 0 ? 0 : i >= entries ? entries - 1 : i;
+    out->f[0] = at->u[0] + 0.001 * (table[k] + (at->x[0] - k) * (table[k + 1] - table[k]));
+    out->g[0] = at->u[0] * at->u[0];
+}
+
+static void test_table(void)
+{
+    const moray_phase_spec phase = {.name = "climb",
+                                    .nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = read_table,
+                                    .tf = moray_fixed(5),
+                                    .x = MORAY_BOUNDS(moray_between(0, 9.999)),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(9.9)),
+                                    .u = MORAY_BOUNDS(moray_between(-5, 5))};
+    moray_ocp *ocp;
+    moray_solution *solution;
+    moray_certificate c;
+    moray_ocp_derivative_report report;
+    moray_settings settings = moray_settings_default();
+    settings.max_iterations = 30; // of no matter: kinks end the solve, and the diagnosis looks for a reason
+    CHECK_OK(moray_ocp_new(
+                 &ocp, &(moray_ocp_spec){.name = "table", .phases = 1, .phase = &phase, .endpoint = first_integral}),
+             "table");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "table");
+    CHECK_OK(moray_certify(solution, &rk4, &c), "table");
+    CHECK_OK(moray_ocp_check_derivatives(ocp, &report), "table");
+    CHECK(outside == 0, "asked outside the box %d times", outside);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+int main(void)
+{
+    test_dashes();
+    test_cost("a cost of 1e-12", cheap, 1e-12);
+    test_cost("a cost of 1e15", costly, 1e15);
+    test_parameter();
+    test_friction();
+    test_table();
+    return tap_done();
+}
