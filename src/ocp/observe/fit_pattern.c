@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+//
+// Where the entries of a fit stand: those of the endpoint, then those of each observation; entries between parameters
+// are shared.
+#include "ocp/observe/fit_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Which local inputs and pairs h has.
+static moray_status find_pairs(struct part *part, int ns)
+{
+    const int n = part->phase->nx + part->phase->nu + ns;
+    const moray_map *map = part->map;
+    bool *felt = calloc((size_t)n * (size_t)(n + 1) + 1, sizeof *felt), *pair = felt ? felt + n : NULL;
+    part->input = calloc((size_t)n + 1, sizeof *part->input);
+    part->a = calloc((size_t)n * (size_t)n + 1, sizeof *part->a);
+    part->b = calloc((size_t)n * (size_t)n + 1, sizeof *part->b);
+    if (!felt || !part->input || !part->a || !part->b) {
+        free(felt);
+        return moray_error(MORAY_MEMORY, "no memory for the observations");
+    }
+    for (int e = 0; e < map->jac.nnz; e++)
+        for (int d = 0; d < map->jac.nnz && map->jac.col[e] < n; d++) {
+            felt[map->jac.col[e]] = true;
+            if (map->jac.row[d] == map->jac.row[e] && map->jac.col[d] <= map->jac.col[e])
+                pair[map->jac.col[e] * n + map->jac.col[d]] = true;
+        }
+    for (int e = 0; e < map->hess.nnz; e++)
+        if (map->hess.row[e] < n && map->hess.col[e] < n)
+            pair[map->hess.row[e] * n + map->hess.col[e]] = true;
+    for (int i = 0; i < n; i++)
+        if (felt[i])
+            part->input[part->inputs++] = i;
+    for (int k = 0; k < n * n; k++)
+        if (pair[k])
+            part->a[part->pairs] = k / n, part->b[part->pairs++] = k % n;
+    free(felt);
+    return moray_ok();
+}
+
+moray_status moray_fit_part_new(struct part *part, const moray_ocp *ocp, int p, int first)
+{
+    const struct phase *phase = &ocp->phase[p];
+    *part = (struct part){.map = phase->observed.map, .phase = phase, .first = first};
+    if (phase->observed.n == 0)
+        return moray_ok();
+    const moray_map *map = part->map;
+    const size_t n = (size_t)map->n_in, ny = (size_t)map->n_out;
+    part->in = calloc(2 * n + 2 * ny + (size_t)map->jac.nnz + (size_t)map->hess.nnz + n * n, sizeof *part->in);
+    if (!part->in)
+        return moray_error(MORAY_MEMORY, "no memory for the observations");
+    part->gradient = part->in + n;
+    part->out = part->gradient + n;
+    part->weight = part->out + ny;
+    part->jac = part->weight + ny;
+    part->hess = part->jac + map->jac.nnz;
+    part->bend = part->hess + map->hess.nnz;
+    return find_pairs(part, ocp->ns);
+}
+
+// An entry of the pattern; one between parameters stands once, at *known unless that is negative.
+static int entry(moray_pattern *pattern, int row, int col, int *known)
+{
+    if (known && *known >= 0)
+        return *known;
+    pattern->row[pattern->nnz] = row;
+    pattern->col[pattern->nnz] = col;
+    if (known)
+        *known = pattern->nnz;
+    return pattern->nnz++;
+}
+
+// Where the endpoint has entries between parameters: slope[ns] of the objective, pair[ns][ns]; -1: nowhere.
+static void find_shared(const struct fit_map *fit, int *slope, int *pair)
+{
+    const int ns = fit->ocp->ns;
+    const moray_pattern *jac = &fit->base->jac, *hess = &fit->base->hess;
+    for (int i = 0; i < ns + ns * ns; i++)
+        slope[i] = -1;
+    for (int k = 0; k < jac->nnz; k++)
+        if (jac->row[k] == 0 && jac->col[k] >= fit->s)
+            slope[jac->col[k] - fit->s] = k;
+    for (int k = 0; k < hess->nnz; k++)
+        if (hess->row[k] >= fit->s && hess->col[k] >= fit->s)
+            pair[(hess->row[k] - fit->s) * ns + hess->col[k] - fit->s] = k;
+}
+
+// Parameters are inputs before those of the times: the lower triangle has them as columns.
+static void place_entries(struct fit_map *fit, int *slope, int *pair)
+{
+    const int ns = fit->ocp->ns;
+    int jac = 0, hess = 0;
+    for (int p = 0; p < fit->ocp->phases; p++) {
+        const struct part *part = &fit->part[p];
+        const int w = part->phase->nx + part->phase->nu;
+        for (int k = 0; k < fit->ocp->phase[p].observed.n; k++) {
+            for (int i = 0; i < part->inputs; i++) {
+                const int at = part->input[i];
+                fit->jac_at[jac++] =
+                    entry(&fit->map.jac, 0, moray_fit_place(fit, part, k, at), at >= w ? &slope[at - w] : NULL);
+            }
+            for (int e = 0; e < part->pairs; e++) {
+                const int a = moray_fit_place(fit, part, k, part->a[e]), b = moray_fit_place(fit, part, k, part->b[e]);
+                int *known = part->a[e] >= w && part->b[e] >= w ? &pair[(a - fit->s) * ns + b - fit->s] : NULL;
+                fit->hess_at[hess++] = entry(&fit->map.hess, a > b ? a : b, a > b ? b : a, known);
+            }
+        }
+    }
+}
+
+moray_status moray_fit_make_patterns(struct fit_map *fit)
+{
+    size_t jac = 1, hess = 1;
+    for (int p = 0; p < fit->ocp->phases; p++) {
+        jac += (size_t)fit->part[p].inputs * (size_t)fit->ocp->phase[p].observed.n;
+        hess += (size_t)fit->part[p].pairs * (size_t)fit->ocp->phase[p].observed.n;
+    }
+    const int base_jac = fit->base->jac.nnz, base_hess = fit->base->hess.nnz;
+    fit->jac_at = calloc(jac, sizeof *fit->jac_at);
+    fit->hess_at = calloc(hess, sizeof *fit->hess_at);
+    if (!fit->jac_at || !fit->hess_at)
+        return moray_error(MORAY_MEMORY, "no memory for the observations");
+    MORAY_TRY(moray_pattern_new(&fit->map.jac, base_jac + (int)jac));
+    MORAY_TRY(moray_pattern_new(&fit->map.hess, base_hess + (int)hess));
+    memcpy(fit->map.jac.row, fit->base->jac.row, (size_t)base_jac * sizeof(int));
+    memcpy(fit->map.jac.col, fit->base->jac.col, (size_t)base_jac * sizeof(int));
+    memcpy(fit->map.hess.row, fit->base->hess.row, (size_t)base_hess * sizeof(int));
+    memcpy(fit->map.hess.col, fit->base->hess.col, (size_t)base_hess * sizeof(int));
+    fit->map.jac.nnz = base_jac, fit->map.hess.nnz = base_hess;
+    const size_t ns = (size_t)fit->ocp->ns;
+    int *shared = calloc(ns + ns * ns + 1, sizeof *shared);
+    if (!shared)
+        return moray_error(MORAY_MEMORY, "no memory for the observations");
+    find_shared(fit, shared, shared + ns);
+    place_entries(fit, shared, shared + ns);
+    free(shared);
+    return moray_ok();
+}
