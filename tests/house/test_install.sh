@@ -58,6 +58,16 @@ near() {
 check "it finds the published optimum 4: $(optimum)" near "$(optimum)" 4
 check "and with l = 1/10, 4 / (9 l) = 4.444444: $(optimum --set l=0.1)" near "$(optimum --set l=0.1)" 4.4444444
 check "certified" eval './mine --out results && [ -s results/report.html ] && grep -q "\"pass\":.true" results/summary.json'
+sed -n '/^```c$/,/^```$/p' "$source/docs/tutorial.md" | grep -v '^```' >mine.c
+# shellcheck disable=SC2046
+check "the program of the tutorial builds" "$@" mine.c -o mine $(pkg-config --cflags --libs moray)
+check "its default mesh is too coarse, as it says: exit 3" eval './mine --quiet >/dev/null 2>&1; [ $? -eq 3 ]'
+check "and refined it finds 4 / (9 l) within a millionth: $(optimum --set refinements=10)" \
+    eval 'optimum --set refinements=10 | awk "{ exit !(\$1 - 4 < 4e-6 && 4 - \$1 < 4e-6) }"'
+sed 's/\.u = MORAY_BOUNDS(moray_free())/.u = MORAY_BOUNDS(moray_between(-2, 2))/' mine.c >weak.c
+# shellcheck disable=SC2046
+check "a push too weak builds" "$@" weak.c -o weak $(pkg-config --cflags --libs moray)
+check "and is infeasible: exit 1" eval './weak >/dev/null 2>err; [ $? -eq 1 ] && grep -q infeasible err'
 sed -n '/^```c/,/^```$/p' "$source/src/control/README.md" | grep -v '^```' >loop.c
 # shellcheck disable=SC2046
 check "the example of src/control builds" "$@" loop.c -o loop $(pkg-config --cflags --libs moray)
