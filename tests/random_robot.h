@@ -30,6 +30,25 @@ static inline moray_robot random_robot(random_seed *seed, int N)
     return robot;
 }
 
+// The same of unequal links, every field at random, a tail fin among them; link[N] as moray_robot_from_links leaves it.
+static inline moray_robot random_unequal_robot(random_seed *seed, int N, moray_link *link)
+{
+    moray_robot robot = random_robot(seed, N);
+    for (int i = 0; i < N; i++) {
+        moray_link *it = &link[i];
+        double *const fields[] = {&it->l,        &it->m,       &it->J,        &it->c_t,
+                                  &it->c_n,      &it->mu_n,    &it->lambda_1, &it->lambda_2,
+                                  &it->lambda_3, &it->fin_c_t, &it->fin_c_n,  &it->fin_mu_n};
+        for (unsigned k = 0; k < sizeof fields / sizeof *fields; k++)
+            *fields[k] = tap_random(seed, 0.3, 1.5);
+        it->cm = it->l * tap_random(seed, -0.8, 0.8);
+        it->cb = it->l * tap_random(seed, -0.8, 0.8);
+        it->fin_at = it->l * tap_random(seed, -2, 2);
+    }
+    moray_robot_from_links(&robot, link);
+    return robot;
+}
+
 // The k-th combination of the choices of hydrodynamics, of so many; the first is the paper's.
 enum { HYDRO_VARIANTS = 18 };
 static inline moray_hydrodynamics hydro_variant(int k)

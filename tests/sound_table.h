@@ -27,6 +27,7 @@ static inline size_t option_size(const moray_option *row)
         return 0;
     case MORAY_OPTION_IPOPT:
         return sizeof(moray_ipopt_list);
+    case MORAY_OPTION_LIST:
     case MORAY_OPTION_TEXT:
         break;
     }

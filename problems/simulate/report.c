@@ -18,19 +18,19 @@ static void describe(const simulate *run, const simulate_results *results, char 
     const bool control = is_control(run);
     const double theta_max =
         moray_theta_max_from_amplitude(robot, run->snake.model, gait->amplitude, gait->delta) / DEG;
-    char changes[60] = "", taper[40] = "";
+    char changes[60] = "", taper[40] = "", links[MORAY_LINKS_TEXT];
     if (results->n_changes > 1)
         snprintf(changes, sizeof changes, "%d gaits, the last one from t = %g s: ", results->n_changes,
                  results->schedule[results->n_changes - 1].t);
     if (gait->taper != 0)
         snprintf(taper, sizeof taper, ", taper %g", gait->taper);
     snprintf(text, size,
-             "%d links, %s model, current (%g, %g) m/s. %stheta_max %.4g deg (%s = %.4g %s), omega %.4g deg/s, delta "
+             "%s, %s model, current (%g, %g) m/s. %stheta_max %.4g deg (%s = %.4g %s), omega %.4g deg/s, delta "
              "%.4g deg, phi_0 %.4g %s%s.",
-             robot->links, moray_model_name(run->snake.model), run->snake.current[0], run->snake.current[1], changes,
-             theta_max, control ? "a" : "alpha", gait->amplitude * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
-             gait->omega / DEG, gait->delta / DEG, gait->offset * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
-             taper);
+             moray_snake_links_text(robot, links), moray_model_name(run->snake.model), run->snake.current[0],
+             run->snake.current[1], changes, theta_max, control ? "a" : "alpha",
+             gait->amplitude * (control ? 100 : 1 / DEG), control ? "cm" : "deg", gait->omega / DEG, gait->delta / DEG,
+             gait->offset * (control ? 100 : 1 / DEG), control ? "cm" : "deg", taper);
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------

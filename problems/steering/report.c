@@ -164,7 +164,9 @@ static void print(const void *found, const moray_report *report)
     const steer_job *job = found;
     const steer_program *program = job->program;
     char text[STEER_TEXT];
-    printf("%d links, current (%g, %g) m/s, ", job->snake.robot.links, job->snake.current[0], job->snake.current[1]);
+    char links[MORAY_LINKS_TEXT];
+    printf("%s, current (%g, %g) m/s, ", moray_snake_links_text(&job->snake.robot, links), job->snake.current[0],
+           job->snake.current[1]);
     program->headline(job, stdout);
     printf("\n\n");
     moray_tables_print(report->tables, report->n_tables, stdout);
@@ -226,8 +228,9 @@ moray_status steer_report(steer_job *job)
     say_missing(job, text, sizeof text);
     job->program->explain(job, why, sizeof why);
     const bool pass = certify(job, certificates, sizeof certificates);
-    snprintf(asked, sizeof asked, "A robot of %d links in a current of (%g, %g) m/s.", job->snake.robot.links,
-             job->snake.current[0], job->snake.current[1]);
+    char links[MORAY_LINKS_TEXT];
+    snprintf(asked, sizeof asked, "A robot of %s in a current of (%g, %g) m/s.",
+             moray_snake_links_text(&job->snake.robot, links), job->snake.current[0], job->snake.current[1]);
     scene.scene.title = "The robot swimming";
     scene.scene.text = "Simulated on the first-principles model, every way of steering on the same water.";
     job->scene = &scene;

@@ -11,8 +11,7 @@
 
 enum { MOST = 4200 }; // bytes of a value: a path, at most
 
-// A number in the row's unit that reads back as the same stored double.
-static void show_exactly(const moray_option *row, double value, char text[32])
+void moray_option_show_exactly(const moray_option *row, double value, char text[32])
 {
     const double scale = moray_option_scale(row), shown = value / scale;
     double next = shown;
@@ -40,8 +39,8 @@ static void show_reals(const moray_option *row, const void *at, char text[MOST])
     double value[2] = {0, 0};
     char one[32], other[32];
     memcpy(value, at, row->size < sizeof value ? row->size : sizeof value);
-    show_exactly(row, value[0], one);
-    show_exactly(row, value[1], other);
+    moray_option_show_exactly(row, value[0], one);
+    moray_option_show_exactly(row, value[1], other);
     if (row->type == MORAY_OPTION_REAL || row->type == MORAY_OPTION_LIMIT)
         snprintf(text, MOST, "%s", one);
     else
@@ -116,8 +115,12 @@ static void write_section(FILE *file, const moray_options *options, int first, c
         const moray_option *row = &options->row[i];
         if (!has_key(row) || strcmp(row->section, options->row[first].section) != 0)
             continue;
-        given[i] = show(row, settings, text);
-        if (given[i])
+        const double *list = (const double *)((const char *)settings + row->offset);
+        const bool listed = row->type == MORAY_OPTION_LIST;
+        given[i] = listed ? moray_list_length(list, 1) > 0 : show(row, settings, text);
+        if (given[i] && listed)
+            moray_list_write(row, list, file);
+        else if (given[i])
             fprintf(file, "%s = %s\n", row->key, text);
         else
             fprintf(file, "; %s: not given\n", row->key);

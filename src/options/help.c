@@ -42,7 +42,7 @@ const char *moray_option_argument(const moray_option *row)
         [MORAY_OPTION_LIMIT] = "X|none",   [MORAY_OPTION_INT] = "N",       [MORAY_OPTION_REAL] = "X",
         [MORAY_OPTION_BOOL] = "yes|no",    [MORAY_OPTION_CHOICE] = "NAME", [MORAY_OPTION_TEXT] = "TEXT",
         [MORAY_OPTION_RANGE] = "LOW:HIGH", [MORAY_OPTION_PAIR] = "X,Y",    [MORAY_OPTION_INI] = "FILE",
-        [MORAY_OPTION_IPOPT] = "VALUE",
+        [MORAY_OPTION_IPOPT] = "VALUE",    [MORAY_OPTION_LIST] = "X,...",
     };
     return row->argument ? row->argument : by_type[row->type];
 }

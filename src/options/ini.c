@@ -7,13 +7,17 @@
 
 #include "base/text.h"
 
+enum { LIST_SIZE = 32768 };
+
 typedef struct ini_state {
     moray_text text;
     const moray_options *options;
     void *settings;
-    int *set_in_line;       // of each row; 0: not yet
-    moray_ipopt_list ipopt; // what this file has set
-    bool words_given;       // before it was read
+    int *set_in_line;         // of each row; 0: not yet
+    const moray_option *open; // the list that goes on in the next line; NULL: none
+    char list[LIST_SIZE];     // of it, so far
+    moray_ipopt_list ipopt;   // what this file has set
+    bool words_given;         // before it was read
     moray_status status;
 } ini_state;
 
@@ -26,12 +30,15 @@ static char *next_line(char *line, int size, void *self)
         return NULL;
     const char *from = text->line[text->at++];
     from += strspn(from, " \t");
-    if (strlen(from) >= (size_t)size) {
+    const bool more = state->open && *from && !strchr(";#\r\n", *from);
+    const char *key = more ? state->open->key : "", *is = more ? "=" : "";
+    if (strlen(key) + strlen(is) + strlen(from) >= (size_t)size) {
         state->status =
             moray_text_error(text, text->at, moray_error(MORAY_INPUT, "longer than %d characters", size - 1));
         return NULL;
     }
-    return strcpy(line, from);
+    snprintf(line, (size_t)size, "%s%s%s", key, is, from);
+    return line;
 }
 
 static moray_status set_ipopt(ini_state *state, const char *key, const char *value)
@@ -65,6 +72,17 @@ static moray_status set_run(ini_state *state, const char *key, const char *value
     return moray_ok();
 }
 
+// One line of a list; the last one has no comma behind it.
+static moray_status set_list(ini_state *state, const moray_option *row, const char *value)
+{
+    const size_t length = state->open ? strlen(state->list) : 0, added = strlen(value);
+    if (length + added >= sizeof state->list)
+        return moray_error(MORAY_INPUT, "%s: longer than %zu characters", row->key, sizeof state->list - 1);
+    memcpy(state->list + length, value, added + 1);
+    state->open = added > 0 && value[added - 1] == ',' ? row : NULL;
+    return state->open ? moray_ok() : moray_option_read(row, row->key, state->list, state->settings);
+}
+
 static moray_status set_key(ini_state *state, const char *section, const char *key, const char *value)
 {
     if (strcmp(section, "ipopt") == 0)
@@ -76,10 +94,14 @@ static moray_status set_key(ini_state *state, const char *section, const char *k
         return moray_option_unknown(state->options, key);
     if (strcmp(section, row->section) != 0)
         return moray_error(MORAY_INPUT, "%s belongs in section [%s], not in [%.60s]", key, row->section, section);
+    if (state->open)
+        return set_list(state, row, value);
     int *set_in_line = &state->set_in_line[row - state->options->row];
     if (*set_in_line)
         return moray_error(MORAY_INPUT, "%s is given twice, first in line %d", key, *set_in_line);
     *set_in_line = state->text.at;
+    if (row->type == MORAY_OPTION_LIST)
+        return set_list(state, row, value);
     return moray_option_read(row, key, value, state->settings);
 }
 
@@ -104,6 +126,9 @@ static moray_status parse(ini_state *state)
         return moray_text_error(&state->text, bad_line, moray_error(MORAY_INPUT, "neither [section] nor KEY = VALUE"));
     if (!moray_failed(state->status) && bad_line < 0)
         return moray_error(MORAY_MEMORY, "%s: no memory to read it", moray_path_tail(state->text.path));
+    if (!moray_failed(state->status) && state->open)
+        return moray_text_error(&state->text, state->text.at,
+                                moray_error(MORAY_INPUT, "%s: a list ends without a comma", state->open->key));
     return state->status;
 }
 

@@ -48,6 +48,14 @@ moray_status moray_option_read(const moray_option *row, const char *name, const 
 void moray_option_bounds(const moray_option *row, double *min, double *max);
 double moray_option_scale(const moray_option *row);
 
+// A number in the row's unit that reads back as the same stored double.
+void moray_option_show_exactly(const moray_option *row, double value, char text[32]);
+
+// Lists. Reading is false where the text is none; writing gives lines of an INI file that read back as the same.
+bool moray_list_read(const moray_option *row, const char *text, double *to);
+int moray_list_length(const double *list, int most);
+void moray_list_write(const moray_option *row, const double *list, FILE *file);
+
 enum { MORAY_SHOWN_SIZE = 200 };
 
 // What is allowed, as in "must be ..."; and the present value, false when there is none to show.

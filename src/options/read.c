@@ -144,6 +144,8 @@ static bool read_value(const moray_option *row, const char *text, char *to)
     case MORAY_OPTION_IPOPT:
     case MORAY_OPTION_INI:
         return *text != 0;
+    case MORAY_OPTION_LIST:
+        return moray_list_read(row, text, (double *)to);
     case MORAY_OPTION_REAL:
     case MORAY_OPTION_LIMIT:
     case MORAY_OPTION_RANGE:

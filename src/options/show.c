@@ -84,6 +84,10 @@ void moray_option_allowed(const moray_option *row, char text[MORAY_SHOWN_SIZE])
     case MORAY_OPTION_PAIR:
         snprintf(text, MORAY_SHOWN_SIZE, "X,Y, each %s", number);
         return;
+    case MORAY_OPTION_LIST:
+        snprintf(text, MORAY_SHOWN_SIZE, "at most %zu numbers by commas, k*X for k alike, each %s",
+                 row->size / sizeof(double), number);
+        return;
     }
 }
 
@@ -144,6 +148,7 @@ bool moray_option_default(const moray_option *row, const void *settings, char te
     case MORAY_OPTION_RANGE:
     case MORAY_OPTION_PAIR:
         return show_reals(row, at, text);
+    case MORAY_OPTION_LIST:
     case MORAY_OPTION_IPOPT:
     case MORAY_OPTION_INI:
         break;

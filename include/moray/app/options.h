@@ -25,6 +25,8 @@ typedef enum {
     MORAY_OPTION_LIMIT,  // double; "none" is max, so infinite where max is
     MORAY_OPTION_RANGE,  // double[2] from "low:high"; "none" is the end of what is allowed; one number is both ends
     MORAY_OPTION_PAIR,   // double[2] from "x,y"
+    MORAY_OPTION_LIST,   // double[] from "x,k*y,...", k times y; what is behind the last one is NaN; in an INI file a
+                         // list that ends with a comma goes on in the next line
     MORAY_OPTION_IPOPT,  // moray_ipopt_list: one more of it
     MORAY_OPTION_INI     // path of an INI file, read before the command line; stored nowhere; a flag alone
 } moray_option_type;
@@ -131,7 +133,8 @@ MORAY_API moray_status moray_app_help(const moray_program *program, const void *
 
 // The same for programs that read it (manual pages, completion of command lines; --help=list): a line for each thing,
 // fields by tabs, the last one is what --help says:
-//   program NAME TEXT;  word NAME TEXT;  flag NAME ARGUMENT VALUES TEXT;  key SECTION NAME ARGUMENT VALUES TEXT;  note TEXT
+//   program NAME TEXT;  word NAME TEXT;  flag NAME ARGUMENT VALUES TEXT;  key SECTION NAME ARGUMENT VALUES TEXT;  note
+//   TEXT
 // ARGUMENT is empty where a flag takes none; VALUES are what may be given, by blanks, where those are words.
 // Error: MORAY_MEMORY, MORAY_IO.
 MORAY_API moray_status moray_app_help_list(const moray_program *program, const void *settings, FILE *file);

@@ -33,7 +33,19 @@ MORAY_API moray_hydrodynamics moray_hydrodynamics_consistent(void);
 
 enum { MORAY_MOST_LINKS = 1000 };
 
-// The robot. Every field is set; moray_robot_check says whether they make sense.
+// A link that differs from the others. l to lambda_3 are those of moray_robot; cm and cb are how far the centre of mass
+// and that of buoyancy, at which the water acts, lie from the link's middle towards the head [m]; a fin at fin_at from
+// there, which may be beyond the link's end, adds drag and added mass of its own.
+typedef struct moray_link {
+    double l, m, J, c_t, c_n, mu_n, lambda_1, lambda_2, lambda_3;
+    double cm, cb;
+    double fin_c_t, fin_c_n, fin_mu_n, fin_at;
+} moray_link;
+
+// The robot. Every field is set; moray_robot_check says whether they make sense. Where the links are not equal, the
+// fields of a link are those of the nearest equal robot, the means over all links (so that length, mass and
+// coefficients in all are the robot's), which is what the control-oriented model swims; `link` then has each one
+// relative to these.
 typedef struct moray_robot {
     int links;                           // N = 2..MORAY_MOST_LINKS
     double l;                            // half a link [m]; L = 2l (erratum E2)
@@ -44,7 +56,16 @@ typedef struct moray_robot {
     double rot_damping, rot_gain;        // lambda~_1 [1/s], lambda~_2 [1/(m^2 s)] of (20), control-oriented model only
     double k_p, k_d;                     // joint controller (34) [1/s^2], [1/s]
     moray_hydrodynamics hydro;
+    const moray_link *link; // [links], borrowed, from link 1, the tail, on: its fields over those of the robot (a fin's
+                            // over c_t, c_n, mu_n; cm, cb, fin_at over the link's own l); NULL: all links are equal
 } moray_robot;
+
+// Link i = 0..links-1 with units; of equal links all alike, without a fin.
+MORAY_API moray_link moray_robot_link(const moray_robot *robot, int i);
+
+// Makes the robot of links with units, link[robot->links]: sets its l, m, J, c_t, c_n, mu_n, lambda_1..3 to the means
+// and turns link[] into the ratios, which it refers to from then on; not where all links are equal to the last bit.
+MORAY_API void moray_robot_from_links(moray_robot *robot, moray_link *link);
 
 // An elliptic-cylinder link in a fluid, from which the coefficients of moray_robot follow (Sec. V-A).
 typedef struct moray_link_geometry {

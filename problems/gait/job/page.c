@@ -10,8 +10,9 @@ static void ask(const gait_job *job, gait_job_page *page)
 {
     const moray_snake_options *snake = &job->snake;
     const stage *at = last_stage(job);
-    snprintf(page->asked, sizeof page->asked, "A robot of %d links in a current of (%g, %g) m/s, course %g deg",
-             snake->robot.links, snake->current[0], snake->current[1], snake->course / DEG);
+    char links[MORAY_LINKS_TEXT];
+    snprintf(page->asked, sizeof page->asked, "A robot of %s in a current of (%g, %g) m/s, course %g deg",
+             moray_snake_links_text(&snake->robot, links), snake->current[0], snake->current[1], snake->course / DEG);
     if (isfinite(at->power))
         moray_text_add(page->asked, sizeof page->asked, "; mean joint power at most %.4g W on the %s model", at->power,
                        moray_model_name(at->model));

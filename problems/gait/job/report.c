@@ -193,8 +193,9 @@ static void print_demand(const gait_job *job, const char *what, const double by[
 void gait_job_print_head(const gait_job *job)
 {
     const moray_snake_options *snake = &job->snake;
-    printf("%d links, current (%g, %g) m/s, course %g deg", snake->robot.links, snake->current[0], snake->current[1],
-           snake->course / DEG);
+    char links[MORAY_LINKS_TEXT];
+    printf("%s, current (%g, %g) m/s, course %g deg", moray_snake_links_text(&snake->robot, links), snake->current[0],
+           snake->current[1], snake->course / DEG);
 }
 
 static void print_demands(const gait_job *job)

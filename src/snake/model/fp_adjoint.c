@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "snake/model/fp_adjoint.h"
 
+#include <stddef.h>
 #include <tgmath.h>
 
 #define REAL double

@@ -7,8 +7,8 @@ typedef struct TYPED(fp_vector) {
     REAL x, y;
 } TYPED(fp_vector);
 
-// Link i: cosine and sine of theta_i; position relative to (p_x, p_y), velocity and acceleration of its centre; fluid
-// force (2) without its first term, in the plane and along and across the link; fluid torque (4) likewise.
+// Link i: cosine and sine of theta_i; position relative to (p_x, p_y), velocity and acceleration of its centre of mass;
+// fluid force (2) without its first term, in the plane and along and across the link; fluid torque (4) likewise.
 typedef struct TYPED(fp_link) {
     REAL c, s;
     TYPED(fp_vector) r, v, a, f;
@@ -21,8 +21,8 @@ typedef struct TYPED(fp_drag) {
     REAL aa, ab, bb;
 } TYPED(fp_drag);
 
-// At rel_n and theta' of a link; fp_drag.inc has the formulas.
-TYPED(fp_drag) TYPED(moray_fp_drag_slopes)(const fp_robot *robot, REAL rel_n, REAL w);
+// At the velocity a across, and b = theta' times half the length that the drag acts on; fp_drag.inc has the formulas.
+TYPED(fp_drag) TYPED(moray_fp_drag_slopes)(const fp_robot *robot, REAL a, REAL b);
 
 // theta_1..N and their rates, velocity of (p_x, p_y), and phi''[N-1].
 typedef struct TYPED(fp_motion) {

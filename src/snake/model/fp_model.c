@@ -5,7 +5,6 @@
 
 #include "snake/model/circle.h"
 #include "snake/model/model.h"
-#include "snake/model/shape.h"
 
 #define REAL double
 #define TYPED(name) name##_d
@@ -21,9 +20,22 @@
 #undef REAL
 #undef TYPED
 
+typedef struct fp_scratch {
+    fp_robot robot;
+    fp_part *part;
+    fp_link_d link[]; // [N], with the parts behind
+} fp_scratch;
+
 static size_t scratch_bytes(int N)
 {
-    return (size_t)N * sizeof(fp_link_d);
+    return sizeof(fp_scratch) + (size_t)N * (sizeof(fp_link_d) + sizeof(fp_part));
+}
+
+static void prepare(const moray_robot *robot, void *memory)
+{
+    fp_scratch *scratch = memory;
+    scratch->part = (fp_part *)(scratch->link + robot->links);
+    scratch->robot = moray_fp_robot_of(robot, scratch->part);
 }
 
 static void rest(int N, double theta, double p_x, double p_y, double *x)
@@ -67,17 +79,18 @@ static void assemble(int N, const double *phi, const double *v_phi, const double
 }
 
 static bool rates(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
-                  double *u, void *scratch)
+                  double *u, void *memory)
 {
     const int N = robot->links, half = N + 2;
-    const fp_robot made = moray_fp_robot_of(robot);
+    fp_scratch *scratch = memory;
     const fp_motion_d motion = {
         .theta = x, .dtheta = x + half, .v_x = x[half + N], .v_y = x[half + N + 1], .ubar = ubar};
     for (int i = 0; i < half; i++)
         dx[i] = x[half + i];
-    const bool regular = moray_fp_accelerations_d(&made, current, &motion, scratch, dx + half, dx + half + N);
+    const bool regular =
+        moray_fp_accelerations_d(&scratch->robot, current, &motion, scratch->link, dx + half, dx + half + N);
     if (u != NULL)
-        moray_fp_torques_d(&made, &motion, scratch, dx + half, u);
+        moray_fp_torques_d(&scratch->robot, &motion, scratch->link, dx + half, u);
     return regular;
 }
 
@@ -97,21 +110,26 @@ static moray_pose pose(const moray_robot *robot, const double *x)
                         .link_angle = largest};
 }
 
-// x - p_x e = -l Dbar A cos(theta), and y likewise; y_i and angle_i first hold the products with A.
+// From the tail on, then all moved so that their common centre of mass is (p_x, p_y).
 static void links(const moray_robot *robot, const double *x, double *x_i, double *y_i, double *angle_i)
 {
     const int N = robot->links;
-    for (int i = 0; i < N - 1; i++) {
-        y_i[i] = -robot->l * (cos(x[i]) + cos(x[i + 1]));
-        angle_i[i] = -robot->l * (sin(x[i]) + sin(x[i + 1]));
-    }
-    moray_shape_dbar(N, y_i, x_i);
-    moray_shape_dbar(N, angle_i, y_i);
+    double tip[2] = {0, 0}, mean[2] = {0, 0};
     for (int i = 0; i < N; i++) {
-        x_i[i] += x[N];
-        y_i[i] += x[N + 1];
+        const moray_link link = moray_robot_link(robot, i);
+        const double c = cos(x[i]), s = sin(x[i]), share = link.m / (N * robot->m);
         angle_i[i] = x[i];
+        x_i[i] = tip[0] + link.l * c;
+        y_i[i] = tip[1] + link.l * s;
+        mean[0] += share * (x_i[i] + link.cm * c);
+        mean[1] += share * (y_i[i] + link.cm * s);
+        tip[0] += 2 * link.l * c;
+        tip[1] += 2 * link.l * s;
+    }
+    for (int i = 0; i < N; i++) {
+        x_i[i] += x[N] - mean[0];
+        y_i[i] += x[N + 1] - mean[1];
     }
 }
 
-const snake_model moray_fp_model = {scratch_bytes, rest, joints, body, assemble, rates, pose, links};
+const snake_model moray_fp_model = {scratch_bytes, prepare, rest, joints, body, assemble, rates, pose, links};

@@ -9,7 +9,8 @@
 #include "moray/snake/model.h"
 
 typedef struct snake_model {
-    size_t (*scratch_bytes)(int N); // of the scratch space that rates needs
+    size_t (*scratch_bytes)(int N);                           // of the scratch space that rates needs
+    void (*prepare)(const moray_robot *robot, void *scratch); // once, before; NULL: nothing
     void (*rest)(int N, double theta, double p_x, double p_y, double *x);
     void (*joints)(int N, const double *x, double *phi, double *v_phi);
     void (*body)(int N, const double *x, double body[MORAY_BODY_STATES]);

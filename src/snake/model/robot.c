@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "snake/model/links.h"
+
 const char *moray_model_name(moray_model model)
 {
     return model == MORAY_CONTROL_ORIENTED ? "control-oriented" : "first-principles";
@@ -113,5 +115,6 @@ moray_status moray_robot_check(const moray_robot *robot)
             return moray_error(MORAY_INPUT, "%s = %g: must be finite and %s 0", fields[i].name, value,
                                fields[i].may_be_zero ? "at least" : "above");
     }
+    MORAY_TRY(moray_links_check(robot));
     return check_hydrodynamics(&robot->hydro);
 }

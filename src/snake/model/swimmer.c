@@ -35,6 +35,8 @@ moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot
         moray_swimmer_free(made);
         return moray_error(MORAY_MEMORY, "a swimmer of %d links: no memory", robot->links);
     }
+    if (made->model->prepare)
+        made->model->prepare(&made->robot, made->scratch);
     *swimmer = made;
     return moray_ok();
 }

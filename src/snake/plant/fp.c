@@ -38,6 +38,7 @@ typedef struct fp_plant {
     fp_setting of;
     fp_gait_d real;
     fp_gait_z stepped;
+    fp_part *part;
     double *rows, *weight; // of the Jacobian, n_out x n_in; n_out
     int n_in, n_out;
     moray_pattern jac, hess; // the latter by columns
@@ -231,6 +232,7 @@ static void plant_free(fp_plant *plant)
     moray_pattern_free(&plant->hess);
     gait_free_d(&plant->real);
     gait_free_z(&plant->stepped);
+    free(plant->part);
     free(plant->rows);
     free(plant);
 }
@@ -243,9 +245,11 @@ static void release(moray_map *map)
 static moray_status plant_new(fp_plant **result, const moray_plant_spec *spec)
 {
     fp_plant *plant = calloc(1, sizeof *plant);
-    bool made = plant != NULL;
+    if (plant)
+        plant->part = calloc((size_t)moray_fp_parts(&spec->robot), sizeof *plant->part);
+    bool made = plant && plant->part;
     if (made) {
-        plant->of = (fp_setting){*spec, moray_fp_robot_of(&spec->robot), moray_plant_sizes(spec)};
+        plant->of = (fp_setting){*spec, moray_fp_robot_of(&spec->robot, plant->part), moray_plant_sizes(spec)};
         made = gait_new_d(&plant->real, &plant->of) && gait_new_z(&plant->stepped, &plant->of);
         const moray_plant_size *size = &plant->of.size;
         plant->n_in = size->nx + size->nu + size->ns + 1;

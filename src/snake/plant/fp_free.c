@@ -33,6 +33,7 @@ typedef struct free_plant {
     free_setting of;
     fp_free_d real;
     fp_free_z stepped;
+    fp_part *part;
     double *weight; // [n_out]
 } free_plant;
 
@@ -174,6 +175,7 @@ static void plant_free(free_plant *plant)
         return;
     free_free_d(&plant->real);
     free_free_z(&plant->stepped);
+    free(plant->part);
     free(plant->weight);
     free(plant);
 }
@@ -192,7 +194,13 @@ static free_plant *plant_new(const moray_plant_spec *spec)
         return NULL;
     const int N = spec->robot.links, n = N - 1;
     const moray_plant_size size = moray_plant_sizes(spec);
-    plant->of = (free_setting){*spec, moray_fp_robot_of(&spec->robot), size, N, n, size.nx + size.nu + 1, 2 * n + 6};
+    plant->part = calloc((size_t)moray_fp_parts(&spec->robot), sizeof *plant->part);
+    if (!plant->part) {
+        plant_free(plant);
+        return NULL;
+    }
+    plant->of = (free_setting){
+        *spec, moray_fp_robot_of(&spec->robot, plant->part), size, N, n, size.nx + size.nu + 1, 2 * n + 6};
     plant->weight = calloc((size_t)(size.nx + size.nc + 1), sizeof *plant->weight);
     if (free_new_d(&plant->real, &plant->of) && free_new_z(&plant->stepped, &plant->of) && plant->weight)
         return plant;

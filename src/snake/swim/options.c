@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "snake/swim/options_links.h"
+
 static const char *const models[] = {
     [MORAY_CONTROL_ORIENTED] = "control", [MORAY_FIRST_PRINCIPLES] = "fp|complex", NULL};
 static const char *const hydrodynamics[] = {[MORAY_PAPER] = "paper", [MORAY_CONSISTENT] = "consistent", NULL};
@@ -23,11 +25,14 @@ _Static_assert(sizeof(moray_model) == sizeof(int), "choices are stored as int");
     .section = where, .key = name, .type = MORAY_OPTION_REAL, MORAY_AT(moray_snake_options, field)
 #define ROBOT(name, field) REAL("robot", name, robot.field)
 #define LINK(name, field) REAL("robot", name, geometry.field)
+#define EACH(name, field)                                                                                              \
+    .section = "links", .key = name, .type = MORAY_OPTION_LIST, MORAY_AT(moray_snake_options, lists.field)
 #define HYDRO(name, list)                                                                                              \
     .section = "robot", .key = #name, .type = MORAY_OPTION_CHOICE, MORAY_AT(moray_snake_options, robot.hydro.name),    \
     .choices = list
 #define BY_WORD "; by --hydrodynamics unless given"
 #define AS_TUNED "; unless given that which the authors tuned for their robot, refused where another one turns"
+#define FROM_TAIL ", from link 1, the tail, to link N, the head; for all links where a key of [robot] stands for it"
 #define FROM_GEOMETRY "; from the geometry unless given"
 
 static const moray_option robot_rows[] = {
@@ -84,6 +89,33 @@ static const moray_option robot_rows[] = {
     {HYDRO(frame, frames), .help = "form of (15) where the robot turns, control-oriented model" BY_WORD},
     MORAY_ROW(INT, moray_snake_options, robot.hydro.pieces, "robot", "pieces", SPAN(1, 1000),
               .help = "rigid pieces a link is cut into for drag and added mass, fp model without strips"),
+    {EACH("link_length_m", length), ABOVE(0), .unit = "m", .help = "length of each link" FROM_TAIL},
+    {EACH("link_a_e_m", a_e), ABOVE(0), .unit = "m", .help = "semi-axis of each link in the plane of motion"},
+    {EACH("link_b_e_m", b_e), ABOVE(0), .unit = "m", .help = "vertical semi-axis of each link"},
+    {EACH("link_m_kg", m), ABOVE(0), .unit = "kg", .help = "mass of each link" FROM_GEOMETRY},
+    {EACH("link_J_kg_m2", J), ABOVE(0), .unit = "kg m^2",
+     .help = "moment of inertia of each link about its centre of mass; from mass and geometry unless given"},
+    {EACH("link_c_t", c_t), AT_LEAST(0), .unit = "kg/s", .help = "tangential drag of each link" FROM_GEOMETRY},
+    {EACH("link_c_n", c_n), AT_LEAST(0), .unit = "kg/s", .help = "normal drag of each link" FROM_GEOMETRY},
+    {EACH("link_mu_n", mu_n), AT_LEAST(0), .unit = "kg", .help = "normal added mass of each link" FROM_GEOMETRY},
+    {EACH("link_lambda_1", lambda_1), AT_LEAST(0), .unit = "kg m^2",
+     .help = "lambda_1 of (4) of each link" FROM_GEOMETRY},
+    {EACH("link_lambda_2", lambda_2), AT_LEAST(0), .unit = "kg m^2/s",
+     .help = "lambda_2 of (4) of each link" FROM_GEOMETRY},
+    {EACH("link_lambda_3", lambda_3), AT_LEAST(0), .unit = "kg m^2",
+     .help = "lambda_3 of (4) of each link" FROM_GEOMETRY},
+    {EACH("link_cm_m", cm), .unit = "m",
+     .help = "centre of mass of each link, from its middle towards the head; 0 unless given"},
+    {EACH("link_cb_m", cb), .unit = "m",
+     .help = "centre of buoyancy of each link, at which the water acts, likewise; 0 unless given"},
+    {EACH("fin_c_t", fin_c_t), AT_LEAST(0), .unit = "kg/s",
+     .help = "tangential drag of a fin on each link; none unless given"},
+    {EACH("fin_c_n", fin_c_n), AT_LEAST(0), .unit = "kg/s",
+     .help = "normal drag of a fin on each link; none unless given"},
+    {EACH("fin_mu_n", fin_mu_n), AT_LEAST(0), .unit = "kg",
+     .help = "normal added mass of a fin on each link; none unless given"},
+    {EACH("fin_at_m", fin_at), .unit = "m",
+     .help = "place of the fin of each link, from its middle towards the head; at the middle unless given"},
 };
 
 moray_snake_options moray_snake_options_default(void)
@@ -94,6 +126,7 @@ moray_snake_options moray_snake_options_default(void)
     r->l = r->m = r->J = r->c_t = r->c_n = r->mu_n = r->lambda_1 = r->lambda_2 = r->lambda_3 = NAN;
     r->rot_damping = r->rot_gain = NAN;
     memset(&r->hydro, -1, offsetof(moray_hydrodynamics, pieces)); // not given
+    moray_links_none(&options.lists);
     return options;
 }
 
@@ -120,7 +153,7 @@ static bool is_the_papers(const moray_robot *robot)
     for (unsigned i = 0; i < sizeof one / sizeof *one; i++)
         if (!(fabs(one[i] - other[i]) <= rounding * other[i]))
             return false;
-    return robot->links == paper.links;
+    return robot->links == paper.links && !robot->link;
 }
 
 // The constants of (20) where they are not given.
@@ -150,16 +183,13 @@ static moray_status make_robot(void *settings)
 {
     moray_snake_options *options = settings;
     moray_robot *given = &options->robot, made = options->robot;
-    moray_robot_from_geometry(&made, &options->geometry);
-    double *const to[] = {&made.l,    &made.m,        &made.J,        &made.c_t,     &made.c_n,
-                          &made.mu_n, &made.lambda_1, &made.lambda_2, &made.lambda_3};
-    const double from[] = {given->l,    given->m,        given->J,        given->c_t,     given->c_n,
-                           given->mu_n, given->lambda_1, given->lambda_2, given->lambda_3};
-    if (!isnan(given->m))
-        made.J *= given->m / made.m; // of the same shape
-    for (unsigned i = 0; i < sizeof from / sizeof *from; i++)
-        if (!isnan(from[i]))
-            *to[i] = from[i];
+    const moray_link_lists *lists = &options->lists;
+    if (moray_links_listed(lists)) {
+        MORAY_TRY(moray_links_make(lists, &options->geometry, given, options->link));
+        moray_robot_from_links(&made, options->link);
+    } else {
+        moray_link_of_geometry(&made, &options->geometry, given);
+    }
     make_hydrodynamics(&made.hydro, options->hydrodynamics);
     options->not_tuned = !make_turning(&made);
     *given = made;
@@ -168,10 +198,3 @@ static moray_status make_robot(void *settings)
 
 const moray_option_table moray_snake_option_table = {
     .rows = robot_rows, .n = sizeof robot_rows / sizeof *robot_rows, .finish = make_robot};
-
-void moray_snake_to_json(moray_json *json, const moray_snake_options *options)
-{
-    moray_json_text(json, "model", moray_model_key(options->model));
-    moray_json_object(json, "robot", MORAY_MEMBERS({"links", options->robot.links}));
-    moray_json_numbers(json, "current_m_s", options->current, 2);
-}

@@ -222,7 +222,8 @@ enum { MAX_OUT = 2 * MAX_LINKS + 2 };
 static void outputs_d(const scene *s, const double *x, const double *ubar, double *out)
 {
     const int N = s->robot.links;
-    const fp_robot robot = moray_fp_robot_of(&s->robot);
+    fp_part part[MAX_LINKS];
+    const fp_robot robot = moray_fp_robot_of(&s->robot, part);
     fp_link_d links[MAX_LINKS];
     const fp_motion_d motion = {x, x + N + 2, x[2 * N + 2], x[2 * N + 3], ubar};
     moray_fp_accelerations_d(&robot, s->V, &motion, links, out, out + N);
@@ -232,7 +233,8 @@ static void outputs_d(const scene *s, const double *x, const double *ubar, doubl
 static void outputs_z(const scene *s, const double complex *x, const double complex *ubar, double complex *out)
 {
     const int N = s->robot.links;
-    const fp_robot robot = moray_fp_robot_of(&s->robot);
+    fp_part part[MAX_LINKS];
+    const fp_robot robot = moray_fp_robot_of(&s->robot, part);
     fp_link_z links[MAX_LINKS];
     const fp_motion_z motion = {x, x + N + 2, x[2 * N + 2], x[2 * N + 3], ubar};
     moray_fp_accelerations_z(&robot, s->V, &motion, links, out, out + N);

@@ -59,7 +59,8 @@ static void reference(void *self, const num *in, num *out)
     num theta[MAX_LINKS], ddtheta[MAX_LINKS], ddp[2], u[MAX_LINKS], mean = 0;
     moray_fp_angles_z(N, in[j.angle], j.phi[0], theta);
     moray_fp_angles_z(N, in[j.rate], j.phi[1], dtheta);
-    const fp_robot robot = moray_fp_robot_of(&spec->robot);
+    fp_part part[MAX_LINKS];
+    const fp_robot robot = moray_fp_robot_of(&spec->robot, part);
     const fp_motion_z motion = {theta, dtheta, in[j.rate + 1], in[j.rate + 2], j.phi[2]};
     moray_fp_accelerations_z(&robot, spec->current, &motion, links, ddtheta, ddp);
     const num power = moray_fp_torques_z(&robot, &motion, links, ddtheta, u);

@@ -56,8 +56,54 @@ static void test_robot(void)
     write_file("[robot]\nlinks=3\nl_m=0.1\nm_kg=1\nJ_kg_m2=2\nc_t=3\nc_n=4\nmu_n=5\nlambda_1=6\nlambda_2=7\n"
                "lambda_3=8\nrot_damping=9\nrot_gain=10\nk_p=11\nk_d=12\n");
     CHECK_OK(PARSE(&s, "--robot", path), "all direct keys");
-    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, {.pieces = 1}};
+    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, {.pieces = 1}, NULL};
     CHECK(same_robot(&s.snake.robot, &direct), "each direct key reaches its field");
+}
+
+static void check_refused(const char *says, const char *one, const char *other)
+{
+    settings s;
+    const moray_status status = PARSE(&s, "--links", "3", "--set", one, "--set", other);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, says), "%s", status.text);
+}
+
+static void test_links(void)
+{
+    settings s;
+    const moray_robot paper = moray_robot_paper();
+    CHECK_OK(
+        PARSE(&s, "--set", "link_length_m=10*0.14", "--set", "link_b_e_m=0.03,8*0.03,0.03", "--set", "fin_c_n=10*0"),
+        "equal links as lists");
+    CHECK(same_robot(&s.snake.robot, &paper) && !s.snake.robot.link, "are the equal robot");
+    write_file("[robot]\nlinks=3\nC_D=1\n[links]\nlink_length_m = 0.1, ; tail\n  ; and\n  0.14,\n\n  0.2\n"
+               "link_m_kg=1,2,3\nlink_cm_m=2*0,-0.05\nfin_c_n=7,2*0\nfin_at_m=-0.06,0,0\n");
+    CHECK_OK(PARSE(&s, "--robot", path), "lists, one over several lines");
+    const moray_link tail = moray_robot_link(&s.snake.robot, 0), head = moray_robot_link(&s.snake.robot, 2);
+    CHECK_NEAR(tail.l, 0.05, 1e-15, "half the tail");
+    CHECK_NEAR(head.l, 0.1, 1e-15, "half the head");
+    CHECK_NEAR(head.m, 3, 1e-14, "its mass");
+    CHECK_NEAR(head.J, 3 * (0.2 * 0.2 / 12 + 0.05 * 0.05 / 4), 1e-15, "its inertia from mass and geometry");
+    CHECK_NEAR(head.c_n, 1000 * 1 * 2 * 0.03 * 0.1, 1e-14, "its drag from the geometry");
+    CHECK_NEAR(head.cm, -0.05, 1e-15, "its centre of mass");
+    CHECK_NEAR(tail.fin_c_n, 7, 1e-14, "the tail's fin");
+    CHECK_NEAR(tail.fin_at, -0.06, 1e-15, "and its place");
+    CHECK_NEAR(s.snake.robot.m, 2, 1e-15, "the equal robot has the mean mass");
+    CHECK(s.snake.not_tuned, "the constants of (20) are not tuned for it");
+    check_refused("link_c_n: 2 numbers where the robot has links = 3", "link_c_n=1,2", "c_t=1");
+    check_refused("link_c_n: is given for all links by c_n, too", "link_c_n=1,2,3", "c_n=1");
+    check_refused("link_length_m = 0,1,2: must be at most 1000 numbers by commas", "link_length_m=0,1,2", "c_t=1");
+    check_refused("link_m_kg = 1,-2,3: must be", "link_m_kg=1,-2,3", "c_t=1");
+    check_refused("link_m_kg = 1,,3: must be", "link_m_kg=1,,3", "c_t=1");
+    check_refused("link_m_kg = 0*1,3: must be", "link_m_kg=0*1,3", "c_t=1");
+    check_refused("link_m_kg = 1,nan,3: must be", "link_m_kg=1,nan,3", "c_t=1");
+    check_refused("link 2: cm = 0.08 m from its middle: must be within its ends, -0.07 to 0.07 m", "link_cm_m=0,0.08,0",
+                  "c_t=1");
+    check_refused("link 1: fin_at = -0.3 m from its middle: must be within two lengths", "fin_at_m=-0.3,0,0",
+                  "fin_c_n=1,0,0");
+    write_file("[robot]\nlinks=2\n[links]\nlink_m_kg=1,\n");
+    CHECK(PARSE(&s, "--robot", path).code == MORAY_INPUT, "a list that does not end");
+    write_file("[robot]\nlinks=2\n[links]\nlink_m_kg=1,\n2\nlink_m_kg=1,2\n");
+    CHECK(PARSE(&s, "--robot", path).code == MORAY_INPUT, "a list given twice");
 }
 
 static void test_hydrodynamics(void)
@@ -133,6 +179,7 @@ int main(void)
         return 1;
     close(file);
     test_robot();
+    test_links();
     test_hydrodynamics();
     test_turning();
     test_words();
