@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The gait of least joint work per distance along a course, at or above a speed: optimised on the control-oriented
+// The gait of least work per distance along a course, of the joints or, with [motor] and [battery], of motors and what
+// the robot draws besides, at or above a speed: optimised on the control-oriented
 // model, from there on the first-principles model, and proved by simulating both.
 #include "gait/job/job.h"
 
@@ -10,16 +11,16 @@ static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W", "mean joint power"),
 };
 
-static const gait_program program = {.name = "min_energy",
-                                     .summary =
-                                         "Optimises the gait of an underwater snake robot for the least joint work per "
-                                         "distance along a course, at or above a speed, and proves it on the "
-                                         "first-principles model.",
-                                     .goal = MORAY_GAIT_THRIFTIEST,
-                                     .options = options,
-                                     .n_options = sizeof options / sizeof *options,
-                                     .power = INFINITY,
-                                     .speed = NAN};
+static const gait_program program = {
+    .name = "min_energy",
+    .summary = "Optimises the gait of an underwater snake robot for the least work per distance "
+               "along a course, of the joints or all told, at or above a speed, and proves "
+               "it on the first-principles model.",
+    .goal = MORAY_GAIT_THRIFTIEST,
+    .options = options,
+    .n_options = sizeof options / sizeof *options,
+    .power = INFINITY,
+    .speed = NAN};
 
 int main(int argc, char **argv)
 {

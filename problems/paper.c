@@ -64,8 +64,19 @@ static moray_status check_write_ini(const paper_settings *settings)
 }
 
 // --as-printed; delta, which by Assumption 2 is 2 pi/(N-1).
+// The paper's robot has equal links, and so have its equations in all studies but the fit.
+static moray_status check_links(const paper_settings *settings)
+{
+    for (int i = 0; i < (int)N_STUDIES && settings->snake.robot.link; i++)
+        if (settings->chosen[i] && studies[i].run != paper_fit)
+            return moray_error(MORAY_INPUT, "[links]: %s is of the paper's equations, which know equal links only",
+                               studies[i].name);
+    return moray_ok();
+}
+
 static moray_status complete(paper_settings *settings)
 {
+    MORAY_TRY(check_links(settings));
     if (settings->as_printed)
         settings->reading = PAPER_PRINTED;
     const int N = settings->snake.robot.links;

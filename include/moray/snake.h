@@ -4,6 +4,7 @@
 #ifndef MORAY_SNAKE_H
 #define MORAY_SNAKE_H
 
+#include "moray/snake/budget.h"
 #include "moray/snake/closed_loop.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/gait_input.h"
@@ -15,6 +16,7 @@
 #include "moray/snake/instruments.h"
 #include "moray/snake/ladder.h"
 #include "moray/snake/model.h"
+#include "moray/snake/motor.h"
 #include "moray/snake/navigator.h"
 #include "moray/snake/options.h"
 #include "moray/snake/orbit.h"

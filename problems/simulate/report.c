@@ -35,11 +35,11 @@ static void describe(const simulate *run, const simulate_results *results, char 
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
-enum { MEAN_ROWS = 10, RUN_ROWS = 8 };
+enum { MEAN_ROWS = 10, BUDGET_ROWS = 5, RUN_ROWS = 8 };
 
 struct tables {
     moray_table table[2];
-    moray_table_row mean[MEAN_ROWS], run[RUN_ROWS];
+    moray_table_row mean[MEAN_ROWS + BUDGET_ROWS], run[RUN_ROWS];
     char title[120], integrator[60];
 };
 
@@ -51,6 +51,27 @@ static void tidy(moray_table_row *rows, int n)
             rows[i].value[0] = 0;
 }
 
+// What the whole robot costs, and how near its motors are to what their supply allows. Returns how many rows.
+static int budget_rows(const simulate *run, const simulate_results *r, moray_table_row *rows)
+{
+    const moray_robot *robot = &run->snake.robot;
+    int n = 0;
+    if (robot->motor.lines > 0 && !is_control(run))
+        rows[n++] = (moray_table_row){
+            .label = "largest share of what the motors give", .value = {100 * r->peak_load}, .unit = "%"};
+    if (!moray_budget_tells(robot))
+        return n;
+    rows[n++] = (moray_table_row){
+        .label = "whole power, with electronics and hotel load", .value = {r->budget.whole}, .unit = "W"};
+    rows[n++] =
+        (moray_table_row){.label = "whole work along the course", .value = {r->budget.over_ground}, .unit = "J/m"};
+    if (!(robot->supply.battery > 0))
+        return n;
+    rows[n++] = (moray_table_row){.label = "endurance of the battery", .value = {r->budget.endurance}, .unit = "h"};
+    rows[n++] = (moray_table_row){.label = "range along the course", .value = {r->budget.range / 1000}, .unit = "km"};
+    return n;
+}
+
 static void fill_means(const simulate *run, const simulate_results *r, struct tables *t)
 {
     const char *effort_unit = is_control(run) ? "N" : "N m";
@@ -59,7 +80,7 @@ static void fill_means(const simulate *run, const simulate_results *r, struct ta
         {.label = "mean velocity v_y", .value = {r->v_y}, .unit = "m/s"},
         {.label = "speed through the water", .value = {r->speed}, .unit = "m/s"},
         {.label = "speed along the course", .value = {r->course_speed}, .unit = "m/s"},
-        {.label = "mean joint power", .value = {r->power}, .unit = "W"},
+        {.label = moray_power_label(&run->snake.robot, run->snake.model), .value = {r->power}, .unit = "W"},
         {.label = "cost of transport", .value = {r->cost_of_transport}, .unit = "J/m"},
         {.label = is_control(run) ? "peak joint force" : "peak joint torque",
          .value = {r->peak_effort},
@@ -69,14 +90,15 @@ static void fill_means(const simulate *run, const simulate_results *r, struct ta
         {.label = "peak effort of the whole run", .value = {r->peak_effort_of_run}, .unit = effort_unit},
     };
     memcpy(t->mean, rows, sizeof rows);
-    tidy(t->mean, MEAN_ROWS);
+    const int n = MEAN_ROWS + budget_rows(run, r, t->mean + MEAN_ROWS);
+    tidy(t->mean, n);
     if (r->window.periods > 0)
         snprintf(t->title, sizeof t->title, "Last %d period%s, %.5g s to %.5g s", r->window.periods,
                  r->window.periods > 1 ? "s" : "", r->window.from, r->window.to);
     else
         snprintf(t->title, sizeof t->title, "%.5g s to %.5g s, less than a period of the last gait", r->window.from,
                  r->window.to);
-    t->table[0] = (moray_table){.title = t->title, .n_columns = 1, .rows = t->mean, .n_rows = MEAN_ROWS};
+    t->table[0] = (moray_table){.title = t->title, .n_columns = 1, .rows = t->mean, .n_rows = n};
 }
 
 static void fill_run(const simulate *run, const simulate_results *r, struct tables *t)
@@ -170,6 +192,11 @@ static void summarise(const void *found, moray_json *json)
     const simulate_results *results = found;
     json_head(json, results->run, results);
     json_mean(json, results->run, results);
+    moray_budget_to_json(json, &results->run->snake.robot, &results->budget);
+    if (results->run->snake.robot.motor.fitted)
+        moray_json_text(json, "power_is", moray_power_label(&results->run->snake.robot, results->run->snake.model));
+    if (results->peak_load > 0)
+        moray_json_number(json, "motor_load", results->peak_load);
     json_run(json, results->run, results);
 }
 

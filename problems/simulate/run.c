@@ -75,8 +75,21 @@ typedef struct {
     int next, n_joints;
     double last_t, last_heading, heading_sum, start_energy; // of the window
     moray_pose start;
-    double peak_effort, peak_link_angle, peak_effort_of_run;
+    double peak_effort, peak_link_angle, peak_effort_of_run, peak_load;
+    double *phi; // room for joints and their rates
 } lookout;
+
+static double load_of(const lookout *at, const moray_swim_sample *sample)
+{
+    const moray_motor *motor = &moray_swimmer_robot(at->plan->swimmer)->motor;
+    double load = 0;
+    if (motor->lines == 0 || moray_swimmer_model(at->plan->swimmer) != MORAY_FIRST_PRINCIPLES)
+        return 0;
+    moray_swimmer_joints(at->plan->swimmer, sample->x, at->phi, at->phi + at->n_joints);
+    for (int i = 0; i < at->n_joints; i++)
+        load = fmax(load, moray_motor_load(motor, sample->u[i], at->phi[at->n_joints + i]));
+    return load;
+}
 
 static void look_in_window(lookout *at, const moray_swim_sample *sample, double effort)
 {
@@ -90,6 +103,7 @@ static void look_in_window(lookout *at, const moray_swim_sample *sample, double 
     at->last_t = sample->t;
     at->last_heading = pose->heading;
     at->peak_effort = fmax(at->peak_effort, effort);
+    at->peak_load = fmax(at->peak_load, load_of(at, sample));
     at->peak_link_angle = fmax(at->peak_link_angle, pose->link_angle);
 }
 
@@ -142,13 +156,19 @@ static void conclude(const simulate *run, const lookout *seen, simulate_results 
     results->cost_of_transport = results->speed > 0 ? results->power / results->speed : INFINITY;
     results->heading = seen->heading_sum / span;
     results->peak_effort = seen->peak_effort;
+    results->peak_load = seen->peak_load;
+    results->budget = moray_budget_of(&run->snake.robot, results->power, results->speed, results->course_speed);
     results->peak_link_angle = seen->peak_link_angle;
     results->peak_effort_of_run = seen->peak_effort_of_run;
 }
 
 static moray_status swim(const simulate *run, simulate_results *results, double *times, bool *kept, int n, int divided)
 {
-    lookout seen = {.plan = results, .track = &results->track, .kept = kept, .n_joints = run->snake.robot.links - 1};
+    lookout seen = {.plan = results,
+                    .track = &results->track,
+                    .kept = kept,
+                    .n_joints = run->snake.robot.links - 1,
+                    .phi = times + n + 2 + moray_swimmer_states(results->swimmer)};
     const moray_swim_plan plan = {.t1 = results->t1,
                                   .schedule = results->schedule,
                                   .n_changes = results->n_changes,
@@ -177,7 +197,7 @@ static moray_status allot(const simulate *run, simulate_results *results)
                            run->output_step, results->t1, PER_PERIOD, steps * divided, MOST_SAMPLES);
     const int n = (int)ceil(results->t1 / run->output_step * divided * (1 - 1e-12));
     MORAY_TRY(moray_swim_track_new(&results->track, results->swimmer, (n + divided - 1) / divided + 1));
-    double *times = malloc((size_t)(n + 2 + moray_swimmer_states(results->swimmer)) * sizeof *times);
+    double *times = malloc((size_t)(n + 2 + 2 * moray_swimmer_states(results->swimmer)) * sizeof *times);
     bool *kept = malloc((size_t)(n + 2) * sizeof *kept);
     const moray_status status = times && kept ? swim(run, results, times, kept, n, divided)
                                               : moray_error(MORAY_MEMORY, "no memory for %d samples", n);

@@ -97,11 +97,11 @@
   }
 
   function drawBody(b, p) {
-    const half = b.body.length / 2;
     b.links.forEach((link, i) => {
+      const length = b.body.lengths ? b.body.lengths[i] : b.body.length, half = length / 2;
       const x = mix(b.body.at, p, 3 * i), y = mix(b.body.at, p, 3 * i + 1), angle = mix(b.body.at, p, 3 * i + 2);
       const c = half * Math.cos(angle), s = half * Math.sin(angle);
-      const inner = Math.max(0, 1 - b.body.width / b.body.length); // the round ends are part of the link
+      const inner = Math.max(0, 1 - b.body.width / length); // the round ends are part of the link
       link.setAttribute("x1", x - inner * c); link.setAttribute("y1", -(y - inner * s));
       link.setAttribute("x2", x + inner * c); link.setAttribute("y2", -(y + inner * s));
       if (i === b.links.length - 1) { b.eye.setAttribute("cx", x + 0.6 * c); b.eye.setAttribute("cy", -(y + 0.6 * s)); }

@@ -43,6 +43,10 @@ static void write_body(FILE *page, const moray_scene *scene, const moray_scene_b
     fputs("{\"name\":", page);
     write_string(page, body->name);
     fprintf(page, ",\"length\":%.4f,\"width\":%.4f", body->length, body->width);
+    if (body->lengths) {
+        fputs(",\"lengths\":", page);
+        write_numbers(page, body->lengths, body->links, 4);
+    }
     write_rows(page, "at", body->at, scene->frames, 3 * body->links);
     if (body->effort)
         write_rows(page, "effort", body->effort, scene->frames, body->links - 1);

@@ -145,10 +145,11 @@ MORAY_API moray_status moray_output_figure(moray_output *output, const moray_fig
 typedef struct moray_scene_body {
     const char *name;
     int links;
-    double length, width; // of a link
-    const double *at;     // [frames][links][3]: centre x, y and angle
-    const double *effort; // [frames][links - 1], in the joints; NULL: none
-    const double *force;  // [frames][links][2], of the surroundings on the links; NULL: none
+    double length, width;  // of a link
+    const double *lengths; // [links], where these differ; NULL: they do not
+    const double *at;      // [frames][links][3]: centre x, y and angle
+    const double *effort;  // [frames][links - 1], in the joints; NULL: none
+    const double *force;   // [frames][links][2], of the surroundings on the links; NULL: none
 } moray_scene_body;
 
 typedef struct moray_channel { // a number over time, told beside the picture

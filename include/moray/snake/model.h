@@ -9,6 +9,7 @@
 #include "moray/export.h"
 #include "moray/map.h"
 #include "moray/ode.h"
+#include "moray/snake/motor.h"
 
 MORAY_BEGIN
 
@@ -58,6 +59,9 @@ typedef struct moray_robot {
     moray_hydrodynamics hydro;
     const moray_link *link; // [links], borrowed, from link 1, the tail, on: its fields over those of the robot (a fin's
                             // over c_t, c_n, mu_n; cm, cb, fin_at over the link's own l); NULL: all links are equal
+    moray_motor motor; // of every joint of the first-principles model, at whose terminals power is counted where it is
+                       // fitted; the control-oriented model's joints, which are not rotary, have none
+    moray_supply supply;
 } moray_robot;
 
 // Link i = 0..links-1 with units; of equal links all alike, without a fin.
@@ -201,6 +205,10 @@ MORAY_API void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_g
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
 MORAY_API bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
 
+// Power of the joints at efforts u and rates v_phi: at the terminals of its motors where the model has them, else sum
+// u_i v_phi,i [W].
+MORAY_API double moray_swimmer_power(const moray_swimmer *swimmer, const double *u, const double *v_phi);
+
 // (34): ubar[N-1] that steers the state to the gait at time t.
 MORAY_API void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
                                      double *ubar);
@@ -211,6 +219,9 @@ typedef struct moray_pose {
     double heading, p_x, p_y, v_x, v_y, link_angle;
 } moray_pose;
 MORAY_API moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x);
+
+// Half the length of link i = 0..N-1 as the model has it [m].
+MORAY_API double moray_swimmer_half_length(const moray_swimmer *swimmer, int i);
 
 // Centres and orientations of the N links in the plane, for drawing: x_i[N], y_i[N], angle_i[N]. For the
 // control-oriented model the centres of (8) and theta + (12).

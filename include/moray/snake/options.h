@@ -21,6 +21,13 @@ typedef struct moray_link_lists {
     moray_link_list fin_c_t, fin_c_n, fin_mu_n, fin_at;
 } moray_link_lists;
 
+// The keys of [motor] and [battery]; NaN: not given.
+typedef struct moray_motor_options {
+    double speed[MORAY_MOTOR_LINES + 1], torque[MORAY_MOTOR_LINES + 1]; // lists
+    double efficiency, back_efficiency, friction, viscous, constant, rate, smooth_rate, smooth_power;
+    double idle, hotel, battery; // [W] of each motor, [W], [Wh]
+} moray_motor_options;
+
 typedef struct moray_snake_options {
     moray_robot robot; // before parsing l, m, J, c_t, c_n, mu_n and lambda_1..3 are NaN: from the geometry,
                        // the choices of its hydro -1: from hydrodynamics; rot_damping and rot_gain NaN: the paper's
@@ -30,6 +37,7 @@ typedef struct moray_snake_options {
     double current[2]; // V_x, V_y [m/s]
     double course;     // direction of travel over ground [rad]
     moray_link_lists lists;
+    moray_motor_options motor;
     moray_link link[MORAY_MOST_LINKS]; // after parsing: to which robot.link refers, where the links are not equal
     bool not_tuned; // after parsing: rot_damping or rot_gain is the paper's, and the robot is another one
 } moray_snake_options;

@@ -31,6 +31,8 @@ typedef struct moray_plant_spec {
     moray_joints joints;
     double current[2];             // V_x, V_y [m/s]
     bool path_forces, path_angles; // blocks of c wanted
+    bool path_supply;              // and, with the motors of the first-principles model, behind the efforts u_m + slope
+                                   // phi_i' of every line of these, all joints of one line after the other
     bool path_rates;               // and, joints on a series only, behind them the joint rates phi_i' (N-1)
     int harmonics;                 // of a series, 1..MORAY_SERIES_HARMONICS
 } moray_plant_spec;

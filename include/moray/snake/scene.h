@@ -18,13 +18,13 @@ typedef struct moray_swim_scene {
     moray_scene_body body[MORAY_SCENE_BODIES];
     moray_channel channel[MORAY_SCENE_CHANNELS];
     char name[MORAY_SCENE_BODIES + MORAY_SCENE_CHANNELS][80], effort[80];
-    double *kept[5 * MORAY_SCENE_BODIES];
+    double *kept[6 * MORAY_SCENE_BODIES];
     int n_kept;
 } moray_swim_scene;
 
-// Adds the robot of a track, moved aside by so much [m]; the first one sets the times. With linear drag the
-// first-principles model shows it on the links: (2) without the added mass. `width` of a link [m]. What has no room is
-// left out. Error: MORAY_MEMORY.
+// Adds the robot of a track, moved aside by so much [m]; the first one sets the times. With linear drag and equal links
+// the first-principles model shows it on the links: (2) without the added mass. `width` of a link [m]. What has no room
+// is left out. Error: MORAY_MEMORY.
 MORAY_API moray_status moray_swim_scene_add(moray_swim_scene *scene, const char *name, const moray_swim_track *track,
                                             moray_swimmer *swimmer, double width, const double aside[2]);
 

@@ -68,19 +68,20 @@ MORAY_API moray_gait_gain moray_gait_gain_over(const moray_test_rig *rig, const 
                                                const moray_gait_trial *baseline);
 
 // The blocks of design.md's schema: gait; and speed_m_s to max_link_angle_deg of one model (key validated or
-// predicted).
+// predicted), with where power is counted and what it all costs where the robot has motors, a constant load or a
+// battery.
 MORAY_API void moray_gait_to_json(moray_json *json, const char *key, const moray_robot *robot,
                                   const moray_gait gait[2]);
-MORAY_API void moray_steady_to_json(moray_json *json, const char *key, moray_model model, const moray_gait_trial *trial,
-                                    double course);
+MORAY_API void moray_steady_to_json(moray_json *json, const char *key, const moray_robot *robot, moray_model model,
+                                    const moray_gait_trial *trial, double course);
 
 // Rows of a table of trials, in columns: (trial 0, trial 1, ...) of the gait, or of one model's results. Fills
 // rows[0..], returns how many (at most MORAY_TRIAL_ROWS).
-enum { MORAY_TRIAL_ROWS = 10 };
+enum { MORAY_TRIAL_ROWS = 12 };
 MORAY_API int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *trials, int n,
                               moray_table_row *rows);
-MORAY_API int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, int n, double course,
-                                moray_table_row *rows);
+MORAY_API int moray_steady_rows(const moray_robot *robot, moray_model model, const moray_gait_trial *const *trials,
+                                int n, double course, moray_table_row *rows);
 
 MORAY_END
 

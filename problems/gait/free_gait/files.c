@@ -9,8 +9,10 @@
 static void json_swum(moray_json *json, const free_gait *run, const stage *at)
 {
     if (at->model == MORAY_CONTROL_ORIENTED)
-        moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, run->job.snake.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.snake.course);
+        moray_steady_to_json(json, "simulated_control", &run->job.snake.robot, MORAY_CONTROL_ORIENTED, &at->trial,
+                             run->job.snake.course);
+    moray_steady_to_json(json, "validated", &run->job.snake.robot, MORAY_FIRST_PRINCIPLES, &at->trial,
+                         run->job.snake.course);
 }
 
 // A series in the parameters of its own and of the first-principles model.
@@ -57,7 +59,7 @@ void free_gait_summary(const void *found, moray_json *json)
     moray_json_close(json);
     moray_json_open(json, "baseline");
     moray_gait_to_json(json, "gait", &job->snake.robot, job->paper.gait);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
+    moray_steady_to_json(json, "validated", &job->snake.robot, MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
     moray_json_close(json);
 }
 

@@ -147,7 +147,7 @@ static moray_status draw_shapes(const orbit_view *v)
                             links + 2 * N);
         for (int i = 0; i < 3 * N; i++) {
             const int link = i / 3, end = i % 3; // both ends, then a gap
-            const double along = end == 2 ? NAN : (2 * end - 1) * robot->l;
+            const double along = end == 2 ? NAN : (2 * end - 1) * moray_swimmer_half_length(v->swimmer, link);
             x[i] = links[link] + along * cos(links[2 * N + link]);
             y[i] = links[N + link] + along * sin(links[2 * N + link]) - s * apart;
         }

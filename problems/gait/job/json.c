@@ -50,8 +50,9 @@ void gait_job_json_stage(moray_json *json, const gait_job *job, const stage *at)
     moray_json_number(json, "least_course_speed_m_s", at->speed);
     moray_gait_to_json(json, "gait", &job->snake.robot, at->trial.gait);
     gait_job_json_prediction(json, &at->prediction);
-    moray_steady_to_json(json, "simulated_control", MORAY_CONTROL_ORIENTED, &at->trial, job->snake.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, job->snake.course);
+    moray_steady_to_json(json, "simulated_control", &job->snake.robot, MORAY_CONTROL_ORIENTED, &at->trial,
+                         job->snake.course);
+    moray_steady_to_json(json, "validated", &job->snake.robot, MORAY_FIRST_PRINCIPLES, &at->trial, job->snake.course);
     gait_job_json_gain(json, "gain", &at->gain);
     if (at->ladder[0].model)
         gait_job_json_ladder(json, job, at);
@@ -96,8 +97,8 @@ static void json_baseline(moray_json *json, const gait_job *job)
     moray_json_open(json, "baseline");
     moray_json_text(json, "name", gait_job_baseline(job, name));
     moray_gait_to_json(json, "gait", &job->snake.robot, job->paper.gait);
-    moray_steady_to_json(json, "predicted", MORAY_CONTROL_ORIENTED, &job->paper, job->snake.course);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
+    moray_steady_to_json(json, "predicted", &job->snake.robot, MORAY_CONTROL_ORIENTED, &job->paper, job->snake.course);
+    moray_steady_to_json(json, "validated", &job->snake.robot, MORAY_FIRST_PRINCIPLES, &job->paper, job->snake.course);
     if (moray_failed(job->no_paper[MORAY_FIRST_PRINCIPLES]))
         moray_json_text(json, "left_out", job->no_paper[MORAY_FIRST_PRINCIPLES].text);
     moray_json_close(json);

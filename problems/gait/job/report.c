@@ -161,8 +161,8 @@ static void make_tables(const gait_job *job, struct tables *t)
     const double course = job->snake.course;
     const int rows[tables] = {
         moray_gait_rows(&job->snake.robot, trials, columns, t->rows[0]),
-        moray_steady_rows(MORAY_CONTROL_ORIENTED, trials, columns, course, t->rows[1]),
-        moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, course, t->rows[2]),
+        moray_steady_rows(&job->snake.robot, MORAY_CONTROL_ORIENTED, trials, columns, course, t->rows[1]),
+        moray_steady_rows(&job->snake.robot, MORAY_FIRST_PRINCIPLES, trials, columns, course, t->rows[2]),
         moray_ladder_rows(ladders, columns - 1, t->rows[3]),
     };
     const char *const titles[tables] = {"Gait", "Swum on the control-oriented model",

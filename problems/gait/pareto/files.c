@@ -29,7 +29,8 @@ static void json_point(moray_json *json, const pareto *run, const stage *at)
     moray_gait_to_json(json, "gait", &run->job.snake.robot, at->trial.gait);
     gait_job_json_prediction(json, &at->prediction);
     moray_json_number(json, "speed_per_power_m_s_W", at->prediction.power_price);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &at->trial, run->job.snake.course);
+    moray_steady_to_json(json, "validated", &run->job.snake.robot, MORAY_FIRST_PRINCIPLES, &at->trial,
+                         run->job.snake.course);
     gait_job_json_ladder(json, &run->job, at);
     moray_certificate_to_json(json, &at->certificate);
     moray_json_close(json);

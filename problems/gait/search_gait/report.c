@@ -75,7 +75,7 @@ static void make_tables(const search_gait *run, struct tables *t)
     const int rows[TABLES] = {
         moray_gait_rows(&run->spec.robot, trials, columns, t->rows[0]),
         search_rows(run, t->rows[1]),
-        moray_steady_rows(MORAY_FIRST_PRINCIPLES, trials, columns, run->spec.course, t->rows[2]),
+        moray_steady_rows(&run->job.snake.robot, MORAY_FIRST_PRINCIPLES, trials, columns, run->spec.course, t->rows[2]),
         moray_ladder_rows(ladders, run->shown, t->rows[3]),
     };
     const char *const titles[TABLES] = {"Gait", "Found", "Swum on the first-principles model",
@@ -216,7 +216,8 @@ static void summarise(const void *found, moray_json *json)
     moray_json_close(json);
     moray_json_open(json, "baseline");
     moray_gait_to_json(json, "gait", &run->spec.robot, run->job.paper.gait);
-    moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &run->job.paper, run->spec.course);
+    moray_steady_to_json(json, "validated", &run->job.snake.robot, MORAY_FIRST_PRINCIPLES, &run->job.paper,
+                         run->spec.course);
     moray_json_close(json);
 }
 

@@ -185,7 +185,8 @@ static void json_forecast(moray_json *json, const sensitivity *run)
         moray_gait_to_json(json, "gait", &run->job.snake.robot, forecast->trial[k].gait);
         moray_json_number(json, "predicted_course_speed_m_s", forecast->prediction[k].course_speed);
         moray_json_number(json, "predicted_power_W", forecast->prediction[k].power);
-        moray_steady_to_json(json, "validated", MORAY_FIRST_PRINCIPLES, &forecast->trial[k], run->job.snake.course);
+        moray_steady_to_json(json, "validated", &run->job.snake.robot, MORAY_FIRST_PRINCIPLES, &forecast->trial[k],
+                             run->job.snake.course);
         moray_json_close(json);
     }
     moray_json_close(json);

@@ -64,7 +64,7 @@ void moray_gait_ends(const moray_ends *at, moray_end_values *out, const void *da
     const moray_num dx = xf[p] - x0[p], dy = xf[p + 1] - x0[p + 1];
     const moray_num along = e->course[0] * dx + e->course[1] * dy;
     int n = 0;
-    out->objective = e->goal == MORAY_GAIT_FASTEST ? -along / T : work / along;
+    out->objective = e->goal == MORAY_GAIT_FASTEST ? -along / T : (work + e->constant * T) / along;
     for (int r = 0; r < e->nx; r++)
         if (r != p && r != p + 1)
             out->e[n++] = xf[r] - x0[r];

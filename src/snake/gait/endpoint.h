@@ -5,10 +5,11 @@
 #include "moray/snake/gait_problem.h"
 
 // The ends of the optimal-gait problem. Objective: minus the speed along the course,
-// or the joint work per distance along it. Events: periodicity of every state but the position, displacement across the
-// course [m], omega T [rad], amplitude in the middle of the body as bounded by moray_gait_amplitude_bounds, its square
-// for the last and the first link where the taper may be positive and negative; then where limited mean power [W],
-// largest rate amplitude (of the last joint, of the first), speed along the course [m/s].
+// or the work of joints or motors, and of the constant power, per distance along it. Events: periodicity of every state
+// but the position, displacement across the course [m], omega T [rad], amplitude in the middle of the body as bounded
+// by moray_gait_amplitude_bounds, its square for the last and the first link where the taper may be positive and
+// negative; then where limited mean power [W], largest rate amplitude (of the last joint, of the first), speed along
+// the course [m/s].
 struct gait_endpoint {
     int nx, position; // states; first of p_x, p_y
     double course[2]; // unit vector
@@ -19,6 +20,7 @@ struct gait_endpoint {
     bool head, tail; // a taper above and below 0 is allowed
     moray_gait_goal goal;
     bool power, rate, speed;
+    double constant; // power that is drawn whatever the joints do [W]
 };
 
 // The endpoint function of moray_ocp_spec; data is a struct gait_endpoint.
@@ -32,9 +34,9 @@ typedef char gait_name[32];
 // What the events are called, name[moray_gait_events(endpoint)]; text has room for nx names.
 void moray_gait_event_names(const struct gait_endpoint *endpoint, gait_name *text, const char **name);
 
-// What the n path outputs are called: joint efforts if any, then angles of the links, then rates of the joints. name[n]
-// into text[n].
-void moray_gait_path_names(int n, int efforts, int links, gait_name *text, const char **name);
+// What the n path outputs are called: joint efforts if any, then what the motors' supply allows by so many lines,
+// angles of the links, rates of the joints. name[n] into text[n].
+void moray_gait_path_names(int n, int efforts, int lines, int links, gait_name *text, const char **name);
 
 // Bounds of the amplitude event for a range of theta_max: (33) a / (L cos(delta/2)) = sin theta_max, or
 // (27) alpha / (2 sin(delta/2)) = theta_max.

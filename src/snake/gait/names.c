@@ -27,12 +27,12 @@ void moray_gait_event_names(const struct gait_endpoint *e, gait_name *text, cons
         *name++ = "course speed";
 }
 
-void moray_gait_path_names(int n, int efforts, int links, gait_name *text, const char **name)
+void moray_gait_path_names(int n, int efforts, int lines, int links, gait_name *text, const char **name)
 {
     const struct {
         const char *what;
         int count;
-    } kinds[] = {{"joint effort", efforts}, {"link angle", links}, {"joint rate", n}};
+    } kinds[] = {{"joint effort", efforts}, {"supply", lines * (links - 1)}, {"link angle", links}, {"joint rate", n}};
     int i = 0;
     for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds; kind++)
         for (int k = 0; k < kinds[kind].count && i < n; k++, i++) {

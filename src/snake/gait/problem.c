@@ -70,6 +70,18 @@ static bool by_link_angles(const moray_gait_problem *problem)
     return on_series(problem) || problem->spec.limits.link_angles;
 }
 
+static int supply_lines(const moray_gait_problem *problem)
+{
+    return problem->spec.model == MORAY_FIRST_PRINCIPLES ? problem->spec.robot.motor.lines : 0;
+}
+
+// The joints' own limit, or that of their motors.
+static double most_rate(const moray_gait_problem *problem)
+{
+    const double limit = problem->spec.limits.joint_rate, rate = problem->spec.robot.supply.rate;
+    return problem->spec.model == MORAY_FIRST_PRINCIPLES && rate > 0 ? fmin(limit, rate) : limit;
+}
+
 static moray_status make_plant(moray_gait_problem *problem)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
@@ -77,10 +89,11 @@ static moray_status make_plant(moray_gait_problem *problem)
                                     .joints = spec->joints,
                                     .current = {spec->current[0], spec->current[1]},
                                     .path_forces = limited(spec->limits.joint_effort),
+                                    .path_supply = supply_lines(problem) > 0,
                                     .path_angles = by_link_angles(problem) ||
                                                    (spec->model == MORAY_CONTROL_ORIENTED &&
                                                     (spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0)),
-                                    .path_rates = on_series(problem) && limited(spec->limits.joint_rate),
+                                    .path_rates = on_series(problem) && limited(most_rate(problem)),
                                     .harmonics = spec->harmonics};
     problem->size = moray_plant_sizes(&plant);
     return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&problem->plant, &plant)
@@ -103,8 +116,9 @@ static void make_endpoint(moray_gait_problem *problem)
                                                .course = {cos(spec->course), sin(spec->course)},
                                                .goal = spec->goal,
                                                .power = limited(spec->limits.power),
-                                               .rate = !series && limited(spec->limits.joint_rate),
-                                               .speed = least_speed(spec) > 0};
+                                               .rate = !series && limited(most_rate(problem)),
+                                               .speed = least_speed(spec) > 0,
+                                               .constant = spec->robot.supply.constant};
 }
 
 static int path_efforts(const moray_gait_problem *problem)
@@ -115,11 +129,14 @@ static int path_efforts(const moray_gait_problem *problem)
 static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
 {
     const moray_gait_limits *limits = &problem->spec.limits;
-    const int efforts = path_efforts(problem), angles = efforts + problem->spec.robot.links;
+    const int joints = problem->spec.robot.links - 1, efforts = path_efforts(problem);
+    const int supply = efforts + supply_lines(problem) * joints;
+    const int angles = supply + problem->spec.robot.links;
     for (int i = 0; i < problem->size.nc; i++) {
         const double most = i < efforts  ? limits->joint_effort
+                            : i < supply ? problem->spec.robot.motor.torque[(i - efforts) / joints]
                             : i < angles ? limits->theta_max.upper
-                                         : limits->joint_rate;
+                                         : most_rate(problem);
         c[i] = moray_between(-most, most);
     }
 }
@@ -140,7 +157,7 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
     if (endpoint->power)
         *e++ = moray_at_most(limits->power);
     for (int k = 0; k < (endpoint->head && endpoint->tail ? 2 : 1) && endpoint->rate; k++)
-        *e++ = moray_at_most(limits->joint_rate);
+        *e++ = moray_at_most(most_rate(problem));
     if (endpoint->speed)
         *e++ = moray_at_least(least_speed(&problem->spec));
 }
@@ -192,8 +209,8 @@ static moray_status describe(moray_gait_problem *problem)
     fill_event_bounds(problem, e);
     fill_parameter_bounds(problem, s);
     moray_gait_event_names(&problem->endpoint, problem->path_names + nc, problem->names);
-    moray_gait_path_names(nc, path_efforts(problem), problem->spec.robot.links, problem->path_names,
-                          problem->names + ne);
+    moray_gait_path_names(nc, path_efforts(problem), supply_lines(problem), problem->spec.robot.links,
+                          problem->path_names, problem->names + ne);
     problem->phase = (moray_phase_spec){
         .name = "period",
         .nx = nx,

@@ -37,6 +37,8 @@ static moray_status check(const moray_gait_problem_spec *spec)
     if (spec->limits.taper.lower != 0 || spec->limits.taper.upper != 0)
         return moray_error(MORAY_INPUT, "taper = %g:%g: a search knows gaits without one", spec->limits.taper.lower,
                            spec->limits.taper.upper);
+    if (spec->model == MORAY_FIRST_PRINCIPLES && spec->robot.motor.lines > 0)
+        return moray_error(MORAY_INPUT, "motor_torque_N_m: a search knows no limits of what motors give");
     if (!flows(spec) && (offset.lower > 0 || offset.upper < 0))
         return moray_error(MORAY_INPUT, "phi0 = %g:%g: in still water the heading returns at 0 only", offset.lower,
                            offset.upper);
@@ -159,7 +161,8 @@ static void write_limits(const moray_gait_search *search, const double *x, const
 static double write_goal(const moray_gait_search *search, const double *x, const moray_orbit_result *at,
                          const moray_orbit_gradient *by, double *gradient)
 {
-    const double speed = moray_course_speed(&at->steady, search->spec.course), power = at->steady.power;
+    const double speed = moray_course_speed(&at->steady, search->spec.course),
+                 power = at->steady.power + search->spec.robot.supply.constant;
     double thrift[VARIABLES];
     if (search->spec.goal == MORAY_GAIT_FASTEST) {
         by_variables(search, x, by->course_speed, -1, gradient);

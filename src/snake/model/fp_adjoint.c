@@ -6,12 +6,14 @@
 
 #define REAL double
 #define TYPED(name) name##_d
+#include "snake/model/fp_motor.inc"
 #include "snake/model/fp_adjoint.inc"
 #undef REAL
 #undef TYPED
 
 #define REAL double complex
 #define TYPED(name) name##_z
+#include "snake/model/fp_motor.inc"
 #include "snake/model/fp_adjoint.inc"
 #undef REAL
 #undef TYPED

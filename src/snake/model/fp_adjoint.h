@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Gradients of the first-principles model, all at once, by hand: of a weighted sum
-//     F = lambda . (mean theta'', p_x'', p_y'') + rho . u + pi sum u_i phi_i'
+//     F = lambda . (mean theta'', p_x'', p_y'') + rho . u + sigma . (supply of moray_fp_supply) + pi (power)
 // of what the joints' motion brings about. In real numbers a unit weight gives a row of the Jacobian; one complex step
 // through it is a row of the Hessian.
 #ifndef SRC_SNAKE_MODEL_FP_ADJOINT_H
@@ -12,6 +12,7 @@
 typedef struct fp_weights {
     const double *lambda; // [3]
     const double *rho;    // [N-1]; NULL for zeros
+    const double *sigma;  // [lines (N-1)]; NULL for zeros
     double pi;
 } fp_weights;
 

@@ -44,7 +44,10 @@ bool TYPED(moray_fp_accelerations)(const fp_robot *robot, const double V[2], con
 // mean theta'' and p_x'', p_y''. Needs c, s, r of the links. False where they are singular.
 bool TYPED(moray_fp_balances)(const fp_robot *robot, const TYPED(fp_link) * links, REAL h[3]);
 
-// Joint torques u[N-1] of (5a) by inverse dynamics, after fp_accelerations; returns the joint power
-// sum u_i phi_i'.
+// Joint torques u[N-1] of (5a) by inverse dynamics, after fp_accelerations; returns the power at the motors' terminals,
+// or sum u_i phi_i' without motors.
 REAL TYPED(moray_fp_torques)(const fp_robot *robot, const TYPED(fp_motion) * motion, const TYPED(fp_link) * links,
                              const REAL *ddtheta, REAL *u);
+
+// What the supply allows, of every line of the motors and then of every joint: u_m + slope phi', out[lines (N-1)].
+void TYPED(moray_fp_supply)(const fp_robot *robot, const TYPED(fp_motion) * motion, const REAL *u, REAL *out);

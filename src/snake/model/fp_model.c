@@ -8,6 +8,7 @@
 
 #define REAL double
 #define TYPED(name) name##_d
+#include "snake/model/fp_motor.inc"
 #include "snake/model/fp_drag.inc"
 #include "snake/model/fp_core.inc"
 #undef REAL
@@ -15,6 +16,7 @@
 
 #define REAL double complex
 #define TYPED(name) name##_z
+#include "snake/model/fp_motor.inc"
 #include "snake/model/fp_drag.inc"
 #include "snake/model/fp_core.inc"
 #undef REAL

@@ -69,6 +69,7 @@ fp_robot moray_fp_robot_of(const moray_robot *robot, fp_part *part)
     return (fp_robot){.links = robot->links,
                       .alike = n == 1,
                       .part = part,
+                      .motor = robot->motor,
                       .strip = hydro->rotation == MORAY_ROTATION_STRIP,
                       .invariant = hydro->added_mass == MORAY_ADDED_MASS_INVARIANT,
                       .pieces = hydro->pieces > 1 ? hydro->pieces : 1};

@@ -30,6 +30,7 @@ typedef struct fp_robot {
     bool alike;            // all links are the first part, which is plain
     const fp_part *part;   // borrowed
     bool strip, invariant; // square drag by the integral along the link; form of the added mass
+    moray_motor motor;     // behind every joint
     int pieces;            // where it is not: whose centres it acts at
 } fp_robot;
 

@@ -116,5 +116,6 @@ moray_status moray_robot_check(const moray_robot *robot)
                                fields[i].may_be_zero ? "at least" : "above");
     }
     MORAY_TRY(moray_links_check(robot));
+    MORAY_TRY(moray_motor_check(&robot->motor));
     return check_hydrodynamics(&robot->hydro);
 }

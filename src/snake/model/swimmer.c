@@ -123,6 +123,16 @@ bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *
            (u == NULL || all_finite(u, swimmer->robot.links - 1));
 }
 
+double moray_swimmer_power(const moray_swimmer *swimmer, const double *u, const double *v_phi)
+{
+    const moray_motor *motor = &swimmer->robot.motor;
+    const bool fitted = motor->fitted && swimmer->kind == MORAY_FIRST_PRINCIPLES;
+    double power = 0;
+    for (int i = 0; i < swimmer->robot.links - 1; i++)
+        power += fitted ? moray_motor_power(motor, u[i], v_phi[i]) : u[i] * v_phi[i];
+    return power;
+}
+
 void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait, double t, const double *x,
                            double *ubar)
 {
@@ -138,6 +148,12 @@ void moray_swimmer_control(const moray_swimmer *swimmer, const moray_gait *gait,
 moray_pose moray_swimmer_pose(const moray_swimmer *swimmer, const double *x)
 {
     return swimmer->model->pose(&swimmer->robot, x);
+}
+
+double moray_swimmer_half_length(const moray_swimmer *swimmer, int i)
+{
+    const moray_robot *robot = &swimmer->robot;
+    return swimmer->kind == MORAY_FIRST_PRINCIPLES ? moray_robot_link(robot, i).l : robot->l;
 }
 
 void moray_swimmer_links(const moray_swimmer *swimmer, const double *x, double *x_i, double *y_i, double *angle_i)

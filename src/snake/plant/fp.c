@@ -63,6 +63,10 @@ static void value(void *self, const double *in, double *out)
     out += plant->of.size.nx;
     for (int i = 0; i < N - 1 && spec->path_forces; i++)
         *out++ = at->u[i];
+    if (spec->path_supply) {
+        moray_fp_supply_d(&plant->of.robot, &at->motion, at->u, out);
+        out += spec->robot.motor.lines * (N - 1);
+    }
     for (int i = 0; i < N && spec->path_angles; i++)
         *out++ = at->theta[i] - in[MORAY_STATE_THETA];
     *out = at->power;
@@ -93,7 +97,7 @@ static void jacobian_row(fp_plant *plant, const double *in, int output, double *
 {
     const moray_plant_spec *spec = &plant->of.spec;
     const int input = input_of(plant, output);
-    const int angles = plant->of.size.nx + (spec->path_forces ? spec->robot.links - 1 : 0);
+    const int angles = plant->n_out - 1 - (spec->path_angles ? spec->robot.links : 0);
     if (input >= 0) {
         row[input] = 1;
     } else if (output >= angles && output < plant->n_out - 1) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The first-principles model with free joint accelerations, as a map: rows of the Jacobian by the adjoint, the Hessian
-// by complex step through it. The position and t move nothing, and all is linear in ubar.
+// by complex step through it. The position and t move nothing, and all but the power of motors is linear in ubar.
 #include "snake/plant/fp_free.h"
 
 #include <stdlib.h>
@@ -15,6 +15,8 @@ typedef struct free_setting {
     fp_robot robot;
     moray_plant_size size;
     int N, n, n_in, ubar; // links, joints, inputs, place of ubar
+    int full;             // path outputs that depend on everything, before the angles
+    int curved;           // inputs that all is not linear in: before ubar; with motors ubar, too
 } free_setting;
 
 #define REAL double
@@ -57,6 +59,10 @@ static void value(void *self, const double *in, double *out)
     out += 3;
     for (int i = 0; i < n && of->spec.path_forces; i++)
         *out++ = at->u[i];
+    if (of->spec.path_supply) {
+        moray_fp_supply_d(&of->robot, &at->motion, at->u, out);
+        out += of->spec.robot.motor.lines * n;
+    }
     for (int i = 0; i < N && of->spec.path_angles; i++)
         *out++ = at->theta[i] - in[n];
     *out = at->power;
@@ -95,7 +101,7 @@ static void jacobian(void *self, const double *in, double *values)
     move_d(&plant->real);
     for (int i = 0; i < nx - 3; i++)
         *values++ = 1;
-    for (int row = nx - 3; row < nx + (plant->of.spec.path_forces ? n : 0); row++)
+    for (int row = nx - 3; row < nx + plant->of.full; row++)
         values = full_row(plant, row, values);
     for (int i = 0; i < N && plant->of.spec.path_angles; i++)
         for (int j = 0; j < n; j++)
@@ -123,8 +129,7 @@ static int put_full_row(const free_plant *plant, moray_pattern *pattern, int at,
 // Returns the number of entries, which it lists unless the pattern is empty.
 static int jacobian_pattern(const free_plant *plant, moray_pattern *pattern)
 {
-    const int N = plant->of.N, n = plant->of.n, nx = plant->of.size.nx,
-              angles = nx + (plant->of.spec.path_forces ? n : 0);
+    const int N = plant->of.N, n = plant->of.n, nx = plant->of.size.nx, angles = nx + plant->of.full;
     int at = 0;
     for (int i = 0; i < nx - 3; i++) // (phi, mean, p)' and v_phi'
         at = put(pattern, at, i, n + 3 + i);
@@ -136,14 +141,15 @@ static int jacobian_pattern(const free_plant *plant, moray_pattern *pattern)
     return put_full_row(plant, pattern, at, nx + plant->of.size.nc);
 }
 
-// ---- Hessian: by columns, those of all that is not ubar ------------------------------------------------------------
+// ---- Hessian: by columns, those of all that is not linear
+// ------------------------------------------------------------
 
 static void hessian(void *self, const double *in, const double *weight, double *values)
 {
     const free_plant *plant = self;
     fp_free_z *at = &((free_plant *)self)->stepped;
     const double step = 1e-50;
-    for (int col = 0; col < plant->of.ubar; col++) {
+    for (int col = 0; col < plant->of.curved; col++) {
         if (is_position(plant, col))
             continue;
         for (int i = 0; i < plant->of.n_in; i++)
@@ -160,7 +166,7 @@ static void hessian(void *self, const double *in, const double *weight, double *
 static int hessian_pattern(const free_plant *plant, moray_pattern *pattern)
 {
     int at = 0;
-    for (int col = 0; col < plant->of.ubar; col++)
+    for (int col = 0; col < plant->of.curved; col++)
         for (int row = col; row < plant->of.n_in - 1; row++)
             if (!is_position(plant, row) && !is_position(plant, col))
                 at = put(pattern, at, row, col);
@@ -199,8 +205,15 @@ static free_plant *plant_new(const moray_plant_spec *spec)
         plant_free(plant);
         return NULL;
     }
-    plant->of = (free_setting){
-        *spec, moray_fp_robot_of(&spec->robot, plant->part), size, N, n, size.nx + size.nu + 1, 2 * n + 6};
+    plant->of = (free_setting){.spec = *spec,
+                               .robot = moray_fp_robot_of(&spec->robot, plant->part),
+                               .size = size,
+                               .N = N,
+                               .n = n,
+                               .n_in = size.nx + size.nu + 1,
+                               .ubar = 2 * n + 6,
+                               .curved = 2 * n + 6 + (spec->robot.motor.fitted ? n : 0),
+                               .full = size.nc - (spec->path_angles ? N : 0)};
     plant->weight = calloc((size_t)(size.nx + size.nc + 1), sizeof *plant->weight);
     if (free_new_d(&plant->real, &plant->of) && free_new_z(&plant->stepped, &plant->of) && plant->weight)
         return plant;

@@ -17,7 +17,8 @@ moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
         [MORAY_JOINTS_STEERED] = {.nx = MORAY_STEERING_STATES, .nu = 1, .ns = 3},
         [MORAY_JOINTS_SERIES] = {.nx = MORAY_BODY_STATES, .ns = 1 + (N - 1) * (1 + 2 * spec->harmonics)}};
     moray_plant_size size = forms[spec->joints];
-    size.nc = (spec->path_forces ? N - 1 : 0) + (spec->path_angles ? N : 0) + (spec->path_rates ? N - 1 : 0);
+    size.nc = (spec->path_forces ? N - 1 : 0) + (spec->path_supply ? spec->robot.motor.lines * (N - 1) : 0) +
+              (spec->path_angles ? N : 0) + (spec->path_rates ? N - 1 : 0);
     size.nq = 1;
     return size;
 }

@@ -47,10 +47,7 @@ static bool rhs(double t, const double *x, double *dx, void *self)
     if (!rates(plant, t, x, dx))
         return false;
     moray_swimmer_joints(plant->swimmer, x, plant->phi, plant->v_phi);
-    double power = 0;
-    for (int i = 0; i < plant->n_joints; i++)
-        power += plant->u[i] * plant->v_phi[i];
-    dx[plant->n_states] = power;
+    dx[plant->n_states] = moray_swimmer_power(plant->swimmer, plant->u, plant->v_phi);
     return true;
 }
 

@@ -78,9 +78,7 @@ static bool rates(on_gait *r, const moray_gait *gait, double t, const double *y,
     if (!moray_swimmer_rates(r->swimmer, r->x, r->ubar, r->dx, r->u))
         return false;
     moray_state_body(moray_swimmer_model(r->swimmer), robot->links, r->dx, dy);
-    dy[ENERGY] = 0;
-    for (int i = 0; i < r->n_joints; i++)
-        dy[ENERGY] += r->u[i] * r->v_phi[i];
+    dy[ENERGY] = moray_swimmer_power(r->swimmer, r->u, r->v_phi);
     return true;
 }
 

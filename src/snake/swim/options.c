@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "snake/swim/options_links.h"
+#include "snake/swim/options_motor.h"
 
 static const char *const models[] = {
     [MORAY_CONTROL_ORIENTED] = "control", [MORAY_FIRST_PRINCIPLES] = "fp|complex", NULL};
@@ -27,6 +28,8 @@ _Static_assert(sizeof(moray_model) == sizeof(int), "choices are stored as int");
 #define LINK(name, field) REAL("robot", name, geometry.field)
 #define EACH(name, field)                                                                                              \
     .section = "links", .key = name, .type = MORAY_OPTION_LIST, MORAY_AT(moray_snake_options, lists.field)
+#define MOTOR(kind, name, field)                                                                                       \
+    .section = "motor", .key = name, .type = MORAY_OPTION_##kind, MORAY_AT(moray_snake_options, motor.field)
 #define HYDRO(name, list)                                                                                              \
     .section = "robot", .key = #name, .type = MORAY_OPTION_CHOICE, MORAY_AT(moray_snake_options, robot.hydro.name),    \
     .choices = list
@@ -116,6 +119,33 @@ static const moray_option robot_rows[] = {
      .help = "normal added mass of a fin on each link; none unless given"},
     {EACH("fin_at_m", fin_at), .unit = "m",
      .help = "place of the fin of each link, from its middle towards the head; at the middle unless given"},
+    {MOTOR(LIST, "motor_speed_deg_s", speed), AT_LEAST(0), .unit = "deg/s",
+     .help = "speeds at the joint of the motors' torque-speed line or table, fp model, rising from 0; for all joints"},
+    {MOTOR(LIST, "motor_torque_N_m", torque), AT_LEAST(0), .unit = "N m",
+     .help = "torque at the joint that a motor gives at each of these speeds at most, falling and concave"},
+    {MOTOR(REAL, "motor_efficiency", efficiency), .min = 1e-3, .max = 1,
+     .help = "of the gear where the motor drives the joint; 1 unless given"},
+    {MOTOR(REAL, "motor_back_efficiency", back_efficiency), SPAN(0, 1),
+     .help =
+         "of the gear where the joint drives the motor, which so much of that power comes back from; unless given 0 "
+         "with motor_efficiency, 1 without"},
+    {MOTOR(REAL, "motor_friction_N_m", friction), AT_LEAST(0), .unit = "N m",
+     .help = "dry friction at the joint; none unless given"},
+    {MOTOR(REAL, "motor_viscous_N_m_s", viscous), AT_LEAST(0), .unit = "N m s/rad",
+     .help = "viscous friction at the joint; none unless given"},
+    {MOTOR(LIMIT, "motor_constant", constant), ABOVE(0), .unit = "N m/sqrt(W)",
+     .help = "torque at the joint for the square root of the winding's loss; none: no loss"},
+    {MOTOR(LIMIT, "motor_rate_deg_s", rate), ABOVE(0), .unit = "deg/s",
+     .help = "speed of the joints at most, fp model"},
+    {MOTOR(REAL, "motor_idle_W", idle), AT_LEAST(0), .unit = "W", .help = "what the electronics of each motor draw"},
+    {MOTOR(REAL, "motor_smooth_deg_s", smooth_rate), ABOVE(0), .unit = "deg/s",
+     .help = "speed within which dry friction changes its sign smoothly"},
+    {MOTOR(REAL, "motor_smooth_W", smooth_power), ABOVE(0), .unit = "W",
+     .help = "power within which the gear changes its direction smoothly"},
+    {REAL("battery", "hotel_W", motor.hotel), AT_LEAST(0), .unit = "W",
+     .help = "what the robot draws besides its motors"},
+    {REAL("battery", "battery_Wh", motor.battery), ABOVE(0), .unit = "Wh",
+     .help = "energy of the battery; none unless given"},
 };
 
 moray_snake_options moray_snake_options_default(void)
@@ -127,6 +157,7 @@ moray_snake_options moray_snake_options_default(void)
     r->rot_damping = r->rot_gain = NAN;
     memset(&r->hydro, -1, offsetof(moray_hydrodynamics, pieces)); // not given
     moray_links_none(&options.lists);
+    options.motor = moray_motor_options_default();
     return options;
 }
 
@@ -191,6 +222,7 @@ static moray_status make_robot(void *settings)
         moray_link_of_geometry(&made, &options->geometry, given);
     }
     make_hydrodynamics(&made.hydro, options->hydrodynamics);
+    MORAY_TRY(moray_motor_make(&options->motor, &made));
     options->not_tuned = !make_turning(&made);
     *given = made;
     return moray_robot_check(&made);

@@ -22,13 +22,12 @@ static int count_robots(const moray_swim_track *track, const moray_robot *robot)
 // The links of sample k as strokes, each interrupted by a NaN: the prismatic joints leave gaps between them.
 static void trace_links(const moray_swimmer *swimmer, const double *state, double *scratch, double *x, double *y)
 {
-    const moray_robot *robot = moray_swimmer_robot(swimmer);
-    const int N = robot->links;
+    const int N = moray_swimmer_robot(swimmer)->links;
     double *x_i = scratch, *y_i = scratch + N, *angle = scratch + 2 * N;
     moray_swimmer_links(swimmer, state, x_i, y_i, angle);
     for (int i = 0; i < N; i++)
         for (int point = 0; point < 3; point++) {
-            const double along = point == 0 ? -robot->l : point == 1 ? robot->l : NAN;
+            const double l = moray_swimmer_half_length(swimmer, i), along = point == 0 ? -l : point == 1 ? l : NAN;
             x[3 * i + point] = x_i[i] + along * cos(angle[i]);
             y[3 * i + point] = y_i[i] + along * sin(angle[i]);
         }

@@ -90,11 +90,11 @@ static bool shows_drag(const moray_swimmer *swimmer)
 {
     const moray_hydrodynamics *hydro = &moray_swimmer_robot(swimmer)->hydro;
     return moray_swimmer_model(swimmer) == MORAY_FIRST_PRINCIPLES && hydro->drag == MORAY_DRAG_LINEAR &&
-           hydro->rotation == MORAY_ROTATION_PAPER;
+           hydro->rotation == MORAY_ROTATION_PAPER && !moray_swimmer_robot(swimmer)->link;
 }
 
 struct frames {
-    double *at, *effort, *force, *scratch; // force NULL: none
+    double *at, *effort, *force, *scratch, *lengths; // force NULL: none
 };
 
 static void fill(const moray_scene *scene, const moray_swim_track *track, const moray_swimmer *swimmer,
@@ -143,16 +143,20 @@ moray_status moray_swim_scene_add(moray_swim_scene *made, const char *name, cons
     const struct frames to = {.at = keep(made, frames * 3 * links),
                               .effort = keep(made, frames * (links - 1)),
                               .force = shows_drag(swimmer) ? keep(made, frames * 2 * links) : NULL,
+                              .lengths = keep(made, links),
                               .scratch = keep(made, 3 * (size_t)track->n_states + 9 * links)};
-    if (!to.at || !to.effort || !to.scratch || (shows_drag(swimmer) && !to.force))
+    if (!to.at || !to.effort || !to.scratch || !to.lengths || (shows_drag(swimmer) && !to.force))
         return no_memory();
     fill(&made->scene, track, swimmer, aside, &to);
+    for (int i = 0; i < N; i++)
+        to.lengths[i] = 2 * moray_swimmer_half_length(swimmer, i);
     const size_t settled = frames / 2; // the first push from rest is left out of the scale
     say_effort(made, swimmer, to.effort + settled * (links - 1), (frames - settled) * (links - 1));
     snprintf(made->name[body], sizeof *made->name, "%s", name);
     made->body[body] = (moray_scene_body){.name = made->name[body],
                                           .links = N,
                                           .length = 2 * robot->l,
+                                          .lengths = robot->link ? to.lengths : NULL,
                                           .width = fmin(width, 1.6 * robot->l),
                                           .at = to.at,
                                           .effort = to.effort,

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "moray/angle.h"
+#include "moray/snake/budget.h"
 #include "moray/snake/trial.h"
 
 static double theta_max_of(const moray_robot *robot, const moray_gait *gait)
@@ -31,8 +32,13 @@ static double course_cost(const moray_steady *steady, bool held, double course)
     return held ? steady->power / moray_course_speed(steady, course) : NAN;
 }
 
-void moray_steady_to_json(moray_json *json, const char *key, moray_model model, const moray_gait_trial *trial,
-                          double course)
+static moray_budget budget_of(const moray_robot *robot, const moray_steady *steady, bool held, double course)
+{
+    return moray_budget_of(robot, steady->power, steady->speed, held ? moray_course_speed(steady, course) : NAN);
+}
+
+void moray_steady_to_json(moray_json *json, const char *key, const moray_robot *robot, moray_model model,
+                          const moray_gait_trial *trial, double course)
 {
     const moray_steady *steady = &trial->steady[model];
     const bool control = model == MORAY_CONTROL_ORIENTED;
@@ -45,6 +51,10 @@ void moray_steady_to_json(moray_json *json, const char *key, moray_model model, 
                             {"course_cost_J_m", course_cost(&trial->steady[model], trial->held[model], course)},
                             {control ? "peak_force_N" : "peak_torque_N_m", steady->peak_effort},
                             {"max_link_angle_deg", steady->peak_link_angle / MORAY_DEGREE}));
+    const moray_budget budget = budget_of(robot, steady, trial->held[model], course);
+    if (robot->motor.fitted)
+        moray_json_text(json, "power_is", moray_power_label(robot, model));
+    moray_budget_to_json(json, robot, &budget);
     if (!trial->held[model])
         moray_json_text(json, "course_not_held", trial->why[model].text);
     moray_json_close(json);
@@ -87,14 +97,34 @@ int moray_gait_rows(const moray_robot *robot, const moray_gait_trial *const *tri
     return tapers ? count : count - 3;
 }
 
-// The last row only where a current makes a difference.
-int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, int n, double course,
-                      moray_table_row *rows)
+// What the whole robot costs, behind the rows of its joints; returns how many.
+static int budget_rows(const moray_robot *robot, moray_model model, const moray_gait_trial *const *trials, int n,
+                       double course, moray_table_row *rows)
+{
+    const int count = moray_budget_tells(robot) ? robot->supply.battery > 0 ? 4 : 2 : 0;
+    const char *const labels[][2] = {{"whole power, with electronics and hotel load", "W"},
+                                     {"whole work along the course", "J/m"},
+                                     {"endurance of the battery", "h"},
+                                     {"range along the course", "km"}};
+    for (int i = 0; i < count; i++)
+        rows[i] = (moray_table_row){.label = labels[i][0], .unit = labels[i][1]};
+    for (int k = 0; k < n; k++) {
+        const moray_budget budget = budget_of(robot, &trials[k]->steady[model], trials[k]->held[model], course);
+        const double values[] = {budget.whole, budget.over_ground, budget.endurance, budget.range / 1000};
+        for (int i = 0; i < count; i++)
+            rows[i].value[k] = values[i];
+    }
+    return count;
+}
+
+// The row of the work along the course only where a current makes a difference.
+int moray_steady_rows(const moray_robot *robot, moray_model model, const moray_gait_trial *const *trials, int n,
+                      double course, moray_table_row *rows)
 {
     const bool control = model == MORAY_CONTROL_ORIENTED;
     const char *const labels[][2] = {{"speed through the water", "m/s"},
                                      {"speed along the course", "m/s"},
-                                     {"mean joint power", "W"},
+                                     {moray_power_label(robot, model), "W"},
                                      {"cost of transport", "J/m"},
                                      {control ? "peak joint force" : "peak joint torque", control ? "N" : "N m"},
                                      {"largest link angle from heading", "deg"},
@@ -117,5 +147,6 @@ int moray_steady_rows(moray_model model, const moray_gait_trial *const *trials, 
             rows[i].value[k] = values[i];
         drifts = drifts || (held && fabs(values[1] - values[0]) > 1e-6);
     }
-    return drifts ? count : count - 1;
+    const int own = drifts ? count : count - 1;
+    return own + budget_rows(robot, model, trials, n, course, rows + own);
 }

@@ -56,7 +56,7 @@ static void test_robot(void)
     write_file("[robot]\nlinks=3\nl_m=0.1\nm_kg=1\nJ_kg_m2=2\nc_t=3\nc_n=4\nmu_n=5\nlambda_1=6\nlambda_2=7\n"
                "lambda_3=8\nrot_damping=9\nrot_gain=10\nk_p=11\nk_d=12\n");
     CHECK_OK(PARSE(&s, "--robot", path), "all direct keys");
-    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, {.pieces = 1}, NULL};
+    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, {.pieces = 1}, NULL, {0}, {0}};
     CHECK(same_robot(&s.snake.robot, &direct), "each direct key reaches its field");
 }
 
@@ -104,6 +104,34 @@ static void test_links(void)
     CHECK(PARSE(&s, "--robot", path).code == MORAY_INPUT, "a list that does not end");
     write_file("[robot]\nlinks=2\n[links]\nlink_m_kg=1,\n2\nlink_m_kg=1,2\n");
     CHECK(PARSE(&s, "--robot", path).code == MORAY_INPUT, "a list given twice");
+}
+
+static void check_motor_refused(const char *says, const char *one, const char *other)
+{
+    settings s;
+    const moray_status status = PARSE(&s, "--set", one, "--set", other);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, says), "%s", status.text);
+}
+
+static void test_motor(void)
+{
+    settings s;
+    CHECK_OK(PARSE(&s, "--set", "hotel_W=2", "--set", "motor_idle_W=0.1", "--set", "battery_Wh=30"), "a battery");
+    CHECK(!s.snake.robot.motor.fitted, "is no motor");
+    CHECK_NEAR(s.snake.robot.supply.constant, 2.9, 1e-15, "hotel load and the electronics of nine motors");
+    CHECK_OK(PARSE(&s, "--set", "motor_efficiency=0.8"), "a gear");
+    const moray_motor *motor = &s.snake.robot.motor;
+    CHECK(motor->fitted && motor->forward == 0.8 && motor->backward == 0, "gives nothing back unless it is said");
+    CHECK_OK(PARSE(&s, "--set", "motor_friction_N_m=0.1"), "friction alone");
+    CHECK(motor->fitted && motor->forward == 1 && motor->backward == 1, "has the joints' power otherwise");
+    CHECK_OK(PARSE(&s, "--set", "motor_speed_deg_s=0,180", "--set", "motor_torque_N_m=3,0"), "a line");
+    CHECK_NEAR(motor->slope[0], 3 / M_PI, 1e-15, "by speeds in deg/s");
+    check_motor_refused("2 and 1 numbers: must be as many", "motor_speed_deg_s=0,1", "motor_torque_N_m=1");
+    check_motor_refused("must have 2 to 9", "motor_speed_deg_s=0", "motor_torque_N_m=1");
+    check_motor_refused("must be concave", "motor_speed_deg_s=0,1,2", "motor_torque_N_m=3,1,0");
+    check_motor_refused("motor_efficiency = 1.5: must be", "motor_efficiency=1.5", "hotel_W=1");
+    check_motor_refused("motor_back_efficiency = -1: must be", "motor_back_efficiency=-1", "hotel_W=1");
+    check_motor_refused("battery_Wh = 0: must be", "battery_Wh=0", "hotel_W=1");
 }
 
 static void test_hydrodynamics(void)
@@ -180,6 +208,7 @@ int main(void)
     close(file);
     test_robot();
     test_links();
+    test_motor();
     test_hydrodynamics();
     test_turning();
     test_words();
