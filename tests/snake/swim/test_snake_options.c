@@ -56,7 +56,21 @@ static void test_robot(void)
     write_file("[robot]\nlinks=3\nl_m=0.1\nm_kg=1\nJ_kg_m2=2\nc_t=3\nc_n=4\nmu_n=5\nlambda_1=6\nlambda_2=7\n"
                "lambda_3=8\nrot_damping=9\nrot_gain=10\nk_p=11\nk_d=12\n");
     CHECK_OK(PARSE(&s, "--robot", path), "all direct keys");
-    const moray_robot direct = {3, 0.1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, {.pieces = 1}, NULL, {0}, {0}};
+    const moray_robot direct = {.links = 3,
+                                .l = 0.1,
+                                .m = 1,
+                                .J = 2,
+                                .c_t = 3,
+                                .c_n = 4,
+                                .mu_n = 5,
+                                .lambda_1 = 6,
+                                .lambda_2 = 7,
+                                .lambda_3 = 8,
+                                .rot_damping = 9,
+                                .rot_gain = 10,
+                                .k_p = 11,
+                                .k_d = 12,
+                                .hydro = {.pieces = 1}};
     CHECK(same_robot(&s.snake.robot, &direct), "each direct key reaches its field");
 }
 
