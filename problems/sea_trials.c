@@ -49,6 +49,8 @@ static const moray_option options[] = {
     SEA_NUMBER(INT, first_seed, "trials", "first_seed", 0, 1000000, NULL, "of them; the same seed is the same draw"),
     MORAY_ROW(TEXT, sea_job, results, "trials", "results",
               .help = "file to which every trial is added; a run that was ended goes on from it"),
+    MORAY_ROW(TEXT, sea_job, tuned, "trials", "tuned",
+              .help = "file of the numbers that the rivals are tuned to: read where it is there, else written"),
     {.flag = "jobs",
      .argument = "N",
      .type = MORAY_OPTION_INT,

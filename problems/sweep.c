@@ -4,11 +4,27 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "moray/app/program.h"
 #include "moray/app/run.h"
+#include "sweep/measure.h"
 #include "sweep/point.h"
 #include "sweep/report.h"
+
+// Of a file that is named, what is in it, as a sum (FNV-1a): a robot that was changed makes another sweep.
+static void add_contents(FILE *to, const char *name)
+{
+    uint64_t sum = 14695981039346656037u;
+    struct stat about;
+    FILE *file = stat(name, &about) == 0 && S_ISREG(about.st_mode) ? fopen(name, "r") : NULL;
+    if (!file)
+        return;
+    for (int c; (c = getc(file)) != EOF;)
+        sum = (sum ^ (uint64_t)c) * 1099511628211u;
+    fclose(file);
+    fprintf(to, " (%016llx)", (unsigned long long)sum);
+}
 
 // The program and its own arguments, as one text: what they are decides what a point is.
 static char *configuration_of(const sweep_arguments *a)
@@ -19,8 +35,14 @@ static char *configuration_of(const sweep_arguments *a)
     if (!file)
         return NULL;
     fprintf(file, "%s", a->program->name);
-    for (int k = 0; k < a->rest_n; k++)
+    for (int k = 0; k < a->rest_n; k++) {
+        const char *equals = strchr(a->rest[k], '=');
         fprintf(file, " %s", a->rest[k]);
+        add_contents(file, equals ? equals + 1 : a->rest[k]);
+    }
+    for (int k = 0; k < a->axes; k++)
+        for (int i = 0; a->axis[k].word && i < a->axis[k].n; i++)
+            add_contents(file, a->axis[k].word[i]);
     fclose(file);
     return text;
 }
@@ -60,6 +82,9 @@ static moray_status run(sweep_arguments *a, int argc, char **argv)
                                    .point_seconds = a->point_seconds,
                                    .point_megabytes = a->point_megabytes,
                                    .silent_seconds = a->silent_seconds,
+                                   .page = a->page,
+                                   .keep = a->keep,
+                                   .keeps = a->kept,
                                    .quiet = a->quiet,
                                    .stop = moray_interrupted};
     moray_sweep_result result;
@@ -77,7 +102,8 @@ int main(int argc, char **argv)
     if (!sweep_arguments_read(argc, argv, &arguments, &exit_code))
         return exit_code;
     moray_interrupt_begin();
-    const moray_status status = run(&arguments, argc, argv);
+    const moray_status status =
+        arguments.program->main ? run(&arguments, argc, argv) : sweep_measure(&arguments, argc, argv);
     moray_interrupt_end();
     sweep_arguments_free(&arguments);
     if (moray_failed(status))

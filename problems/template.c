@@ -2,7 +2,7 @@
 //
 // A textbook problem as a program: copy this file, change it, and build it anywhere with
 //   cc mine.c -o mine $(pkg-config --cflags --libs moray)
-// README.md beside it explains every part.
+// README.md beside it explains every part. Over many settings of its constants, on all cores: docs/sweeps.md.
 //
 // Here: the problem of Bryson and Denham. Turn a moving mass around with the least effort, and no further than l.
 //   minimise  integral of u^2 / 2 dt,   x' = v,  v' = u,  x <= l,   (x, v) from (0, 1) to (0, -1) in 1 s

@@ -54,6 +54,28 @@ show() {
     done
 }
 
+# swept NAME PROGRAM ...: a sweep, which goes on where it was interrupted and begins anew where it had ended.
+swept() {
+    ! grep -q ' finished$' "build/$1.nc.journal" 2>/dev/null || case $wanted in
+    *" $1 "* | "  ") rm -f "build/$1".* ;;
+    esac
+    name=$1
+    program=$2
+    shift 2
+    show "$name" sweep "$program" --file "build/$name.nc" "$@"
+}
+# studied NAME SCRIPT [ARGUMENT...]: a study of tests/studies, which prints its table.
+studied() {
+    runner=tests/studies/$2.sh
+    name=$1
+    shift 2
+    files=
+    quiet=
+    show "$name" "$@"
+    runner=problems/run.sh
+    quiet=--quiet
+    files=yes
+}
 # picture NAME: its page as it opens, where Chromium is installed.
 picture() {
     case $wanted in
@@ -99,6 +121,16 @@ show sea_trials_known sea_trials $few $none
 show sea_trials_consistent sea_trials $few --rung consistent
 show sea_trials_control sea_trials $few --model control
 show paper paper all
+show sweep sweep measure
+swept atlas max_speed --grid hydrodynamics=consistent --grid links=4:16:7 --grid current_speed=0:0.15:4 --grid current_deg=-135:180:8 \
+    --show gait.delta_deg --show gait.omega_deg_s --show gain.speed_percent_at_equal_power --show 'ladder.*.gain_percent_at_equal_power' \
+    --show validated.speed_m_s --show validated.course_speed_m_s --show validated.power_W --show validated.course_cost_J_m --mirror current_deg
+swept sea_sweep sea_trials --grid first_seed=1:40:40 --grid seeds=1 --grid tuned=build/sea_sweep.tuned \
+    --grid training=5 --grid starts=3 --grid evaluations=6 \
+    --quantiles --show laws_PID_and_rate__ahead_rms_deg_median --show laws_receding__told_rms_deg_median \
+    --show laws_receding__believing_rms_deg_median --show laws_receding__estimating_rms_deg_median \
+    --show laws_plan_and_feedback_rms_deg_median
+studied sweep_kills kills build/problems/sweep 50 1
 show classics classics all
 print benchmark_s1 benchmark --part s1 --set repeats=9
 print benchmark_horizon benchmark --part horizon --set repeats=3

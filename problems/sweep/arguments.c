@@ -25,7 +25,12 @@ enum {
     KEY_SILENT,
     KEY_OBJECTIVE,
     KEY_SHOW,
+    KEY_KEEP,
+    KEY_MIRROR,
+    KEY_PAGE,
+    KEY_POINTS,
     KEY_COLD,
+    KEY_QUANTILES,
     KEY_QUIET,
     KEY_JSON,
     KEY_VERSION
@@ -42,7 +47,14 @@ static const struct argp_option options[] = {
     {"file", KEY_FILE, "FILE", 0, "results, NetCDF-4 [PROGRAM.nc]; an unfinished one is gone on with", 2},
     {"out", KEY_OUT, "DIR", 0, "figures and a report", 2},
     {"show", KEY_SHOW, "NUMBER", 0,
-     "a number of the program's summary to draw, as gain.speed_percent_at_equal_power; again for further ones", 2},
+     "a number of the program's summary to list and draw, as gain.speed_percent_at_equal_power; of a pattern as "
+     "ladder.*.power_W the least and the most; again for further ones",
+     2},
+    {"mirror", KEY_MIRROR, "KEY", 0, "compare the numbers shown between opposite values of this key", 2},
+    {"quantiles", KEY_QUANTILES, NULL, 0,
+     "medians and 90th percentiles over all points of the numbers shown, and of their differences to the first", 2},
+    {"keep", KEY_KEEP, "NUMBER", 0, "the file has only these numbers, or patterns of them; again for further ones", 2},
+    {"page", KEY_PAGE, "FILE", 0, "an HTML page that shows the grid as it fills", 2},
     {"jobs", KEY_JOBS, "N", 0, "processes [one a processor]; with mpirun or srun, one a rank instead", 3},
     {"time", KEY_TIME, "SECONDS", 0, "most for one point [no limit]", 3},
     {"memory", KEY_MEMORY, "MB", 0, "most for one point [no limit]", 3},
@@ -50,6 +62,7 @@ static const struct argp_option options[] = {
      "silence after which a rank is taken for dead, where mpirun --enable-recovery lets the others live [30]", 3},
     {"objective", KEY_OBJECTIVE, "NUMBER", 0,
      "number that tells the better of two solutions, the lower one [the solver's objective]", 3},
+    {"points", KEY_POINTS, "N", 0, "most points of no cost for measure [100000]", 3},
     {"cold", KEY_COLD, NULL, 0, "every point from its own start, not from a solved neighbour", 3},
     {"quiet", KEY_QUIET, NULL, 0, "no progress", 4},
     {"json", KEY_JSON, NULL, 0, "what came of it as one JSON object", 4},
@@ -73,12 +86,11 @@ static moray_status whole(const char *flag, const char *text, double high, doubl
                                    : moray_error(MORAY_INPUT, "--%s %.60s: must be a whole number", flag, text);
 }
 
-static moray_status add_show(sweep_arguments *a, const char *name)
+static moray_status add_name(const char *flag, const char **list, int *n, const char *name)
 {
-    const int most = (int)(sizeof a->show / sizeof *a->show);
-    if (a->shown == most)
-        return moray_error(MORAY_INPUT, "more than %d numbers to draw", most);
-    a->show[a->shown++] = name;
+    if (*n == SWEEP_MOST_SHOWN)
+        return moray_error(MORAY_INPUT, "--%s: at most %d times", flag, SWEEP_MOST_SHOWN);
+    list[(*n)++] = name;
     return moray_ok();
 }
 
@@ -101,6 +113,17 @@ static moray_status take_name(reading *r, const char *name)
     return r->a->program ? moray_ok() : moray_error(MORAY_INPUT, "no program %.60s to sweep; --help lists them", name);
 }
 
+// Where an argument that is a text goes, or NULL.
+static const char **text_of(sweep_arguments *a, int key)
+{
+    return key == KEY_FILE        ? &a->file
+           : key == KEY_OUT       ? &a->out
+           : key == KEY_OBJECTIVE ? &a->objective
+           : key == KEY_MIRROR    ? &a->mirror
+           : key == KEY_PAGE      ? &a->page
+                                  : NULL;
+}
+
 static moray_status take(reading *r, int key, char *value)
 {
     sweep_arguments *a = r->a;
@@ -108,6 +131,10 @@ static moray_status take(reading *r, int key, char *value)
     moray_status status = moray_ok();
     if (key != ARGP_KEY_ARG)
         r->listing = key == KEY_LIST;
+    if (text_of(a, key)) {
+        *text_of(a, key) = value;
+        return status;
+    }
     switch (key) {
     case ARGP_KEY_ARG:
         return take_name(r, value);
@@ -118,7 +145,13 @@ static moray_status take(reading *r, int key, char *value)
     case KEY_RANGE:
         return sweep_add_range(a, value);
     case KEY_SHOW:
-        return add_show(a, value);
+        return add_name("show", a->show, &a->shown, value);
+    case KEY_KEEP:
+        return add_name("keep", a->keep, &a->kept, value);
+    case KEY_POINTS:
+        status = whole("points", value, 1e7, &x);
+        a->most = (long)x;
+        return status;
     case KEY_RANDOM:
         status = whole("random", value, 1e9, &x);
         a->draws = (long)x;
@@ -137,17 +170,11 @@ static moray_status take(reading *r, int key, char *value)
         return number("memory", value, 1, 1e9, &a->point_megabytes);
     case KEY_SILENT:
         return number("silent", value, 0.5, 1e6, &a->silent_seconds);
-    case KEY_FILE:
-        a->file = value;
-        return status;
-    case KEY_OUT:
-        a->out = value;
-        return status;
-    case KEY_OBJECTIVE:
-        a->objective = value;
-        return status;
     case KEY_COLD:
         a->cold = true;
+        return status;
+    case KEY_QUANTILES:
+        a->quantiles = true;
         return status;
     case KEY_QUIET:
         a->quiet = true;
@@ -216,7 +243,7 @@ bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *ex
         NULL,
         list_programs,
         NULL};
-    *found = (sweep_arguments){.seed = 1};
+    *found = (sweep_arguments){.seed = 1, .most = 100000};
     reading r = {.a = found, .status = moray_ok()};
     int own = argc;
     for (int k = 1; k < argc && own == argc; k++)

@@ -7,6 +7,8 @@
 #include "moray/app/sweep.h"
 #include "sweep/programs.h"
 
+enum { SWEEP_MOST_SHOWN = 16 };
+
 typedef struct sweep_arguments {
     const sweepable *program;
     int rest_n; // the program's own arguments
@@ -19,11 +21,14 @@ typedef struct sweep_arguments {
     const char *file, *out; // out: NULL for none
     char **owned;           // [n_owned]: texts to be freed
     int n_owned;
-    const char *objective; // NULL: the program's
-    const char *show[8];   // numbers to draw
-    int shown, jobs;
+    const char *objective;              // NULL: the program's
+    const char *show[SWEEP_MOST_SHOWN]; // numbers, or patterns of them, to be told and drawn
+    const char *keep[SWEEP_MOST_SHOWN]; // patterns of the numbers that the file is to have
+    const char *mirror, *page;          // key whose opposite values are compared; file; NULL: none
+    long most;                          // points that measure goes up to
+    int shown, kept, jobs;
     double point_seconds, point_megabytes, silent_seconds;
-    bool cold, quiet, json;
+    bool cold, quantiles, quiet, json;
 } sweep_arguments;
 
 // Reads argv with argp; answers --help and --version. False: the program is to end with *exit_code, what is to be said

@@ -2,11 +2,13 @@
 #define _GNU_SOURCE // asprintf
 #include "sweep/point.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "moray/app/program.h"
+#include "moray/app/results.h"
 
 typedef struct command {
     char **argv; // ends with NULL
@@ -36,18 +38,45 @@ static const char *setting(const moray_sweep_point *point, const char *key)
     return NULL;
 }
 
-static void add_settings(command *c, const moray_sweep_point *point)
+static double number(const moray_sweep_point *point, const char *key)
+{
+    for (int k = 0; k < point->n; k++)
+        if (strcmp(point->setting[k].key, key) == 0)
+            return point->value[k];
+    return 0;
+}
+
+// The current by its two components, or by its speed and where it flows to.
+static const char *const current_keys[] = {"current_x", "current_y", "current_speed", "current_deg", NULL};
+
+static void add_current(command *c, const moray_sweep_point *point)
 {
     const char *x = setting(point, "current_x"), *y = setting(point, "current_y");
-    for (int k = 0; k < point->n; k++) {
-        const char *key = point->setting[k].key, *value = point->setting[k].value;
-        if (strcmp(key, "robot") == 0)
-            add(c, "--%s=%s", key, value);
-        else if (strcmp(key, "current_x") != 0 && strcmp(key, "current_y") != 0)
-            add(c, "--set=%s=%s", key, value);
+    char text[2][32];
+    if (setting(point, "current_speed")) {
+        const double speed = number(point, "current_speed"), angle = number(point, "current_deg");
+        // Whole quarters without rounding, so that a current along the course has nothing across it.
+        const double quarter = angle / 90, turn = angle * M_PI / 180;
+        const bool whole = quarter == floor(quarter);
+        const int q = whole ? (int)(quarter - 4 * floor(quarter / 4)) : 0;
+        x = moray_number_text(speed * (whole ? (double[]){1, 0, -1, 0}[q] : cos(turn)), text[0]);
+        y = moray_number_text(speed * (whole ? (double[]){0, 1, 0, -1}[q] : sin(turn)), text[1]);
     }
     if (x || y)
         add(c, "--current=%s,%s", x ? x : "0", y ? y : "0");
+}
+
+static void add_settings(command *c, const moray_sweep_point *point)
+{
+    for (int k = 0; k < point->n; k++) {
+        const char *key = point->setting[k].key;
+        bool of_current = false;
+        for (int i = 0; current_keys[i]; i++)
+            of_current = of_current || strcmp(key, current_keys[i]) == 0;
+        if (!of_current)
+            add(c, strcmp(key, "robot") == 0 ? "--%s=%s" : "--set=%s=%s", key, point->setting[k].value);
+    }
+    add_current(c, point);
 }
 
 // Exit codes of the programs; why, each says on standard error.

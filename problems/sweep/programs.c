@@ -13,6 +13,7 @@
     X(min_energy, "solver.objective", "continue", true)                                                                \
     X(min_time_turn, NULL, NULL, false)                                                                                \
     X(path_following, NULL, NULL, false)                                                                               \
+    X(sea_trials, NULL, NULL, true)                                                                                    \
     X(search_gait, NULL, NULL, true)                                                                                   \
     X(sensitivity, NULL, NULL, true)                                                                                   \
     X(simulate, NULL, NULL, false)                                                                                     \
@@ -21,7 +22,7 @@
 #define DECLARE(name, objective, guess, jobs) program_main program_##name;
 #define ROW(name, objective, guess, jobs) {#name, program_##name, objective, guess, jobs},
 PROGRAMS(DECLARE)
-const sweepable sweepables[] = {PROGRAMS(ROW){0}};
+const sweepable sweepables[] = {PROGRAMS(ROW){.name = "measure"}, {0}};
 
 const sweepable *sweepable_find(const char *name)
 {

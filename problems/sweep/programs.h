@@ -10,7 +10,7 @@ typedef int program_main(int argc, char **argv);
 
 typedef struct sweepable {
     const char *name;
-    program_main *main;
+    program_main *main;    // NULL: the sweep itself, which is measured
     const char *objective; // number of its summary that is the lower the better, of two solutions of one problem
     const char *guess;     // option that starts from a solution which --solution left; NULL: it has none
     bool jobs;             // has --jobs, which a sweep sets to 1: its points are the jobs

@@ -7,8 +7,9 @@
 
 #include "moray/app/options.h"
 #include "moray/app/results.h"
+#include "sweep/figures.h"
 
-enum { ROWS = 9, MOST_CURVES = 8 };
+enum { ROWS = 11 };
 
 static int rows(const moray_sweep_result *r, moray_table_row row[ROWS])
 {
@@ -20,6 +21,8 @@ static int rows(const moray_sweep_result *r, moray_table_row row[ROWS])
                                        {.label = "begun from a solved neighbour", .value = {(double)r->warm}},
                                        {.label = "of these, solved so", .value = {(double)r->held}},
                                        {.label = "bettered from a neighbour's branch", .value = {(double)r->improved}},
+                                       {.label = "ranks lost", .value = {r->lost}},
+                                       {.label = "cores", .value = {workers}},
                                        {.label = "time", .value = {r->seconds}, .unit = "s"},
                                        {.label = "share of it that the processes spent on points",
                                         .value = {capacity > 0 ? 100 * r->busy / capacity : NAN},
@@ -42,144 +45,56 @@ static void summarise(const sweep_arguments *a, const moray_sweep_result *r, mor
                                            {"saving_s", r->saving}));
 }
 
-// Axes that are numbers: at most two, the others stay at their first values.
-typedef struct slice {
-    const moray_sweep_axis *across, *curves; // curves: NULL, one curve
-    long step[2], n_curves;
-} slice;
-
-static bool slice_of(const sweep_arguments *a, slice *s)
-{
-    long step = 1;
-    *s = (slice){.n_curves = 1};
-    for (int k = a->axes - 1; k >= 0; k--) {
-        const moray_sweep_axis *axis = &a->axis[k];
-        if (axis->value && axis->n > 1) {
-            s->curves = s->across;
-            s->step[1] = s->step[0];
-            s->across = axis;
-            s->step[0] = step;
-        }
-        step *= axis->n;
-    }
-    if (s->curves)
-        s->n_curves = s->curves->n < MOST_CURVES ? s->curves->n : MOST_CURVES;
-    return s->across;
-}
-
-// Of the curves' axis, spread over its values.
-static int place_of(const slice *s, long k)
-{
-    return s->n_curves > 1 ? (int)(k * (s->curves->n - 1) / (s->n_curves - 1)) : 0;
-}
-
-static moray_status draw(moray_output *output, const slice *s, const char *name, const double *value)
-{
-    moray_curve curve[MOST_CURVES];
-    char label[MOST_CURVES][80], file[128];
-    double *y = calloc((size_t)(s->n_curves * s->across->n), sizeof *y);
-    if (!y)
-        return moray_error(MORAY_MEMORY, "no memory for a figure");
-    for (long k = 0; k < s->n_curves; k++) {
-        const int place = place_of(s, k);
-        double *of = y + k * s->across->n;
-        for (int i = 0; i < s->across->n; i++)
-            of[i] = value[i * s->step[0] + place * s->step[1]];
-        label[k][0] = 0;
-        if (s->curves)
-            snprintf(label[k], sizeof label[k], "%s %.4g", s->curves->key, s->curves->value[place]);
-        curve[k] = (moray_curve){.label = s->curves ? label[k] : name,
-                                 .x = s->across->value,
-                                 .y = of,
-                                 .n = s->across->n,
-                                 .style = MORAY_CURVE_MARKED};
-    }
-    snprintf(file, sizeof file, "%.100s", name);
-    for (char *c = file; *c; c++)
-        *c = *c == '.' ? '_' : *c;
-    const moray_status status = moray_output_figure(output, &(moray_figure){.name = file,
-                                                                            .title = name,
-                                                                            .x_label = s->across->key,
-                                                                            .y_label = name,
-                                                                            .curves = curve,
-                                                                            .n_curves = (int)s->n_curves});
-    free(y);
-    return status;
-}
-
-static moray_status draw_all(const sweep_arguments *a, moray_output *output)
-{
-    slice s;
-    if (!slice_of(a, &s))
-        return moray_ok();
-    for (int k = 0; k < a->shown; k++) {
-        double *value;
-        long n;
-        MORAY_TRY(moray_sweep_numbers(a->file, a->show[k], &value, &n));
-        const moray_status status = draw(output, &s, a->show[k], value);
-        free(value);
-        MORAY_TRY(status);
-    }
-    return moray_ok();
-}
-
-static moray_status write_folder(const sweep_arguments *a, const moray_sweep_result *result, const moray_json *json,
-                                 int argc, char **argv)
+moray_status sweep_write_folder(const char *out, const moray_report *report, const moray_json *json, const shown *s)
 {
     moray_output *output;
-    moray_table_row row[ROWS];
-    const moray_table table = {.rows = row, .n_rows = rows(result, row), .n_columns = 1};
-    const moray_report report = {.title = "sweep", .tables = &table, .n_tables = 1, .argc = argc, .argv = argv};
     FILE *file;
-    MORAY_TRY(moray_output_open(&output, a->out));
+    MORAY_TRY(moray_output_open(&output, out));
     moray_status status = moray_output_file(output, "summary.json", &file);
     if (!moray_failed(status))
         status = moray_json_write(json, file);
+    if (s && !moray_failed(status))
+        status = moray_output_file(output, "points.csv", &file);
+    if (s && !moray_failed(status))
+        shown_csv(s, file);
+    if (s && !moray_failed(status))
+        status = sweep_draw(s, output);
     if (!moray_failed(status))
-        status = draw_all(a, output);
-    if (!moray_failed(status))
-        status = moray_output_report(output, &report);
+        status = moray_output_report(output, report);
     if (!moray_failed(status))
         status = moray_output_commit(output);
     moray_output_free(output);
     return status;
 }
 
-// One character a point where two axes are numbers: the grid as a whole.
-static void print_map(const sweep_arguments *a)
-{
-    static const char mark[] = ".#x"; // untried, solved, failed
-    enum { widest = 120, tallest = 60 };
-    double *state;
-    long n;
-    slice s;
-    if (a->axes != 2 || a->draws > 0 || !slice_of(a, &s) || !s.curves || s.curves->n > widest ||
-        s.across->n > tallest || moray_failed(moray_sweep_numbers(a->file, "sweep_state", &state, &n)))
-        return;
-    printf("%s down, %s across; # solved, x failed\n", s.across->key, s.curves->key);
-    for (int i = 0; i < s.across->n; i++) {
-        printf("%10.4g ", s.across->value[i]);
-        for (int k = 0; k < s.curves->n; k++)
-            putchar(mark[(int)state[i * s.step[0] + k * s.step[1]]]);
-        putchar('\n');
-    }
-    free(state);
-}
-
 moray_status sweep_report(const sweep_arguments *a, const moray_sweep_result *result, int argc, char **argv)
 {
-    moray_table_row row[ROWS];
-    const moray_table table = {.rows = row, .n_rows = rows(result, row), .n_columns = 1};
+    moray_table_row row[ROWS], quantile_row[2 * SWEEP_MOST_SHOWN];
+    moray_table tables[2] = {{.rows = row, .n_rows = rows(result, row), .n_columns = 1}};
+    const int n_tables = a->quantiles ? 2 : 1;
+    const moray_report report = {.title = "sweep", .tables = tables, .n_tables = n_tables, .argc = argc, .argv = argv};
     moray_json *json = moray_json_new();
+    shown s = {0};
     summarise(a, result, json);
-    moray_status status = a->out ? write_folder(a, result, json, argc, argv) : moray_ok();
+    moray_status status =
+        result->solved > 0
+            ? shown_read(a, &s)
+            : moray_error(MORAY_NOT_SOLVED, "no point is solved; sweep_reason in %.200s tells why", a->file);
+    if (!moray_failed(status) && a->quantiles)
+        status = shown_quantiles(&s, quantile_row, &tables[1]);
+    if (!moray_failed(status) && a->out)
+        status = sweep_write_folder(a->out, &report, json, &s);
     if (!moray_failed(status) && a->json) {
         status = moray_json_write(json, stdout);
     } else if (!moray_failed(status)) {
-        moray_table_print(&table, stdout);
-        print_map(a);
-        printf("%s\n", a->file);
+        moray_tables_print(tables, n_tables, stdout);
+        if (!a->quantiles)
+            shown_table(&s, stdout);
+        shown_mirror(&s, stdout);
+        if (!a->quiet)
+            printf("%s\n", a->file);
     }
+    shown_free(&s);
     moray_json_free(json);
     return status;
 }

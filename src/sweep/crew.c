@@ -17,10 +17,12 @@ moray_status moray_crew_new(struct crew *crew, const struct grid *grid)
 {
     const struct ranks ranks = moray_ranks_begin();
     const int jobs = grid->spec->jobs < 1 ? moray_processors() : grid->spec->jobs;
-    *crew =
-        (struct crew){.grid = grid, .ranks = ranks.size, .rank = ranks.rank, .n_workers = ranks.size > 1 ? 1 : jobs};
-    crew->worker = calloc((size_t)crew->n_workers, sizeof *crew->worker);
-    crew->poll = calloc(3 * (size_t)crew->n_workers, sizeof *crew->poll);
+    // With many to serve, the first one solves nothing itself: to begin a process takes it longer the more it knows.
+    enum { many = 16 };
+    const int own = ranks.size == 1 ? jobs : ranks.rank == 0 && ranks.size > many ? 0 : 1;
+    *crew = (struct crew){.grid = grid, .ranks = ranks.size, .rank = ranks.rank, .n_workers = own};
+    crew->worker = calloc((size_t)crew->n_workers + 1, sizeof *crew->worker);
+    crew->poll = calloc(3 * (size_t)crew->n_workers + 1, sizeof *crew->poll);
     crew->other = calloc((size_t)crew->ranks, sizeof *crew->other);
     crew->orphan = calloc((size_t)crew->ranks, sizeof *crew->orphan);
     for (int k = 0; crew->other && k < crew->ranks; k++)

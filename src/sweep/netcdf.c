@@ -3,6 +3,8 @@
 // The file, to the disk and back.
 #include <errno.h>
 #include <fcntl.h>
+#include <fnmatch.h>
+#include <math.h>
 #include <netcdf.h>
 #include <netcdf_mem.h>
 #include <stdlib.h>
@@ -82,6 +84,15 @@ static int read_numbers(int file, const char *name, double **value, size_t *n)
     return error == NC_NOERR ? nc_get_var_double(file, id, *value) : error;
 }
 
+static moray_status tell(int error, const char *path, const char *name)
+{
+    if (error == NC_NOERR)
+        return moray_ok();
+    if (error == NC_ENOTVAR)
+        return moray_error(MORAY_INPUT, "%.200s has no number %.60s", path, name);
+    return moray_error(error == NC_ENOMEM ? MORAY_MEMORY : MORAY_IO, "%.200s: %s", path, nc_strerror(error));
+}
+
 moray_status moray_sweep_numbers(const char *path, const char *name, double **value, long *n)
 {
     int file;
@@ -89,15 +100,72 @@ moray_status moray_sweep_numbers(const char *path, const char *name, double **va
     *value = NULL;
     int error = nc_open(path, NC_NOWRITE, &file);
     if (error != NC_NOERR)
-        return moray_error(MORAY_IO, "%.200s: %s", path, nc_strerror(error));
+        return tell(error, path, name);
     error = read_numbers(file, name, value, &count);
     nc_close(file);
     *n = (long)count;
+    if (error != NC_NOERR) {
+        free(*value);
+        *value = NULL;
+    }
+    return tell(error, path, name);
+}
+
+static void widen(double *least, double *most, const double *value, size_t n)
+{
+    for (size_t k = 0; k < n; k++) { // NaN gives way to any number
+        least[k] = fmin(least[k], value[k]);
+        most[k] = fmax(most[k], value[k]);
+    }
+}
+
+// Takes in variable `id` where its long name, the path of the number, matches.
+static int match(int file, int id, const char *pattern, double **least, double **most, size_t *n)
+{
+    char path[NETCDF_NAME] = "", name[NETCDF_NAME];
+    size_t length = 0, count = 0;
+    double *value = NULL;
+    if (nc_inq_attlen(file, id, "long_name", &length) != NC_NOERR || length >= sizeof path ||
+        nc_get_att_text(file, id, "long_name", path) != NC_NOERR || fnmatch(pattern, path, 0) != 0)
+        return NC_NOERR;
+    int error = nc_inq_varname(file, id, name);
     if (error == NC_NOERR)
+        error = read_numbers(file, name, &value, &count);
+    if (error != NC_NOERR || (*least && count != *n)) { // of another shape: no result
+        free(value);
+        return error;
+    }
+    if (*least) {
+        widen(*least, *most, value, count);
+        free(value);
+        return NC_NOERR;
+    }
+    *least = value;
+    *n = count;
+    *most = malloc(count * sizeof **most);
+    if (!*most)
+        return NC_ENOMEM;
+    memcpy(*most, value, count * sizeof *value);
+    return NC_NOERR;
+}
+
+moray_status moray_sweep_extremes(const char *path, const char *pattern, double **least, double **most, long *n)
+{
+    int file, variables = 0;
+    size_t count = 0;
+    *least = *most = NULL;
+    int error = nc_open(path, NC_NOWRITE, &file);
+    if (error != NC_NOERR)
+        return tell(error, path, pattern);
+    error = nc_inq_nvars(file, &variables);
+    for (int id = 0; error == NC_NOERR && id < variables; id++)
+        error = match(file, id, pattern, least, most, &count);
+    nc_close(file);
+    *n = (long)count;
+    if (error == NC_NOERR && *least)
         return moray_ok();
-    free(*value);
-    *value = NULL;
-    if (error == NC_ENOTVAR)
-        return moray_error(MORAY_INPUT, "%.200s has no number %.60s", path, name);
-    return moray_error(error == NC_ENOMEM ? MORAY_MEMORY : MORAY_IO, "%.200s: %s", path, nc_strerror(error));
+    free(*least);
+    free(*most);
+    *least = *most = NULL;
+    return tell(error == NC_NOERR ? NC_ENOTVAR : error, path, pattern);
 }

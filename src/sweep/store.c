@@ -2,6 +2,7 @@
 #include "sweep/sweep.h"
 
 #include <cjson/cJSON.h>
+#include <fnmatch.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +103,14 @@ typedef struct walk {
     bool no_memory;
 } walk;
 
+static bool is_kept(const moray_sweep_spec *spec, const char *path)
+{
+    bool kept = spec->keeps == 0;
+    for (int k = 0; !kept && k < spec->keeps; k++)
+        kept = fnmatch(spec->keep[k], path, 0) == 0;
+    return kept;
+}
+
 static void put(walk *w, const char *path, double value)
 {
     if (!w->write) {
@@ -109,6 +118,8 @@ static void put(walk *w, const char *path, double value)
             w->found = value;
         return;
     }
+    if (!is_kept(w->store->grid->spec, path))
+        return;
     const int i = column(w->store, path, &w->last);
     w->no_memory = w->no_memory || i < 0;
     if (i >= 0)

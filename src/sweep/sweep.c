@@ -22,6 +22,7 @@ typedef struct run {
     moray_ticker ticker;
     moray_sweep_result *result;
     double begun, saved, saving; // clock; of the last saving; what that took
+    double paged, paging;        // the same of the page
     long fresh, refused;         // attempts of this run; of all, those that were bad input
     bool all_refused;
 } run;
@@ -72,13 +73,31 @@ static moray_status save_at_times(run *r)
     return moray_clock() - r->saved > fmax(least, 50 * r->saving) ? save(r, false) : moray_ok();
 }
 
-static void tell(const run *r)
+static void progress(const run *r, char *text, size_t size)
 {
     const double seconds = moray_clock() - r->begun, rate = (double)r->fresh / seconds;
     const long left = r->plan.expected - r->plan.answered;
+    snprintf(text, size, "%ld of %ld, %ld failed", r->plan.answered, r->plan.expected, r->result->failed);
+    if (r->fresh > 0 && left > 0)
+        moray_text_add(text, size, ", %.3g a second, %.0f s left", rate, (double)left / rate);
+    if (r->crew.lost > 0)
+        moray_text_add(text, size, ", %d ranks lost", r->crew.lost);
+}
+
+// On the terminal at once; on the page, which takes time where points are many, every few seconds.
+static moray_status tell(run *r, bool ended)
+{
+    char text[200];
+    const double begun = moray_clock();
+    progress(r, text, sizeof text);
     if (r->fresh > 0)
-        moray_ticker_show(&r->ticker, "sweep: %ld of %ld, %ld failed, %.3g a second, %.0f s left", r->plan.answered,
-                          r->plan.expected, r->result->failed, rate, (double)left / rate);
+        moray_ticker_show(&r->ticker, "sweep: %s", text);
+    if (!r->spec->page || (!ended && begun - r->paged < fmax(2, 50 * r->paging)))
+        return moray_ok();
+    const moray_status status = moray_page_write(&r->store, text, ended);
+    r->paged = moray_clock();
+    r->paging = r->paged - begun;
+    return status;
 }
 
 // A key that the program has not is no matter of a point, and refusals are quick.
@@ -114,7 +133,7 @@ static moray_status wait_for_one(run *r)
         moray_record_free(&record);
         MORAY_TRY(status);
     }
-    tell(r);
+    MORAY_TRY(tell(r, false));
     return save_at_times(r);
 }
 
@@ -163,9 +182,9 @@ static moray_status finish(run *r, moray_status status)
         return status;
     }
     const bool finished = !moray_failed(status);
-    const moray_status saved = save(r, finished);
+    const moray_status saved = save(r, finished), told = tell(r, true);
     if (finished)
-        status = saved;
+        status = moray_failed(saved) ? saved : told;
     if (!moray_failed(status) && !r->journal.finished)
         status = moray_journal_add(&r->journal, NULL);
     if (!moray_failed(status))
@@ -200,6 +219,8 @@ static moray_status lead(run *r)
     free(identity);
     MORAY_TRY(status);
     status = make_folder(r->spec);
+    if (!moray_failed(status))
+        status = tell(r, false);
     if (!moray_failed(status))
         status = save(r, false); // before hours of work: whether it can be written at all
     if (!moray_failed(status))

@@ -127,6 +127,11 @@ enum { NETCDF_NAME = 257 };                                                   //
 void moray_netcdf_name(const char *path, char name[NETCDF_NAME]);             // of a number, in the file
 int moray_netcdf_content(int file, const struct store *store, bool finished); // all of it; an error of NetCDF, or 0
 
+// ---- Page ----------------------------------------------------------------------------------------------------------
+
+// Writes the page spec->page, at once; `progress` is a line above the map. Error: MORAY_IO.
+moray_status moray_page_write(const struct store *store, const char *progress, bool ended);
+
 // ---- Plan ----------------------------------------------------------------------------------------------------------
 
 // What is to be done next, from what is known. The same answers give the same plan, in whatever order they come.

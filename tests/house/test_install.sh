@@ -33,7 +33,7 @@ for header in $(sed 's|^\./||' installed); do
 done
 
 share=$prefix/share/moray
-for file in LICENSE guide.md howto.md template.c robots/paper.ini schedules/turning.csv python/moray.py python/brachistochrone.py; do
+for file in LICENSE guide.md howto.md sweeps.md template.c robots/paper.ini schedules/turning.csv python/moray.py python/brachistochrone.py; do
     check "share/moray has $file" [ -s "$share/$file" ]
 done
 check "a robot from there swims" eval '"$prefix/bin/moray" simulate --robot "$share/robots/paper.ini" --duration 1 --json --quiet | grep -q v_x_m_s'
@@ -72,5 +72,9 @@ sed -n '/^```c/,/^```$/p' "$source/src/control/README.md" | grep -v '^```' >loop
 # shellcheck disable=SC2046
 check "the example of src/control builds" "$@" loop.c -o loop $(pkg-config --cflags --libs moray)
 check "and prints what it says: $(./loop)" grep -qF "// $(./loop):" loop.c
+sed -n '/^```c/,/^```$/p' "$share/sweeps.md" | grep -v '^```' >swept.c
+# shellcheck disable=SC2046
+check "the example of sweeps.md builds" "$@" swept.c -o swept $(pkg-config --cflags --libs moray-sweep moray)
+check "and prints what it says: $(./swept)" grep -qF "prints \`$(./swept)\`" "$share/sweeps.md"
 check "a limit that is out of reach is not solved: exit 1" eval './mine --set max_iterations=2; [ $? -eq 1 ]'
 tap_done

@@ -26,7 +26,22 @@ run simulate --grid links=4,7 --file a.nc
 check "another sweep may not have the file: $(cat err)" eval '[ $code -eq 2 ] && grep -q "another sweep" err'
 
 run simulate --grid links=4,6 --grid current_x=-0.1:0.1:3 --file cold.nc --quiet --out drawn --show robot.links
-check "a figure of a number: $(cat err)" eval '[ $code -eq 0 ] && [ -s drawn/robot_links.svg ] && [ -s drawn/report.html ]'
+check "a figure of a number: $(cat err)" eval '[ $code -eq 0 ] && [ -s drawn/robot_links_1.svg ] && [ -s drawn/report.html ]'
+check "the numbers of every point: $(sed -n 2p drawn/points.csv)" [ "$(sed -n 2p drawn/points.csv)" = "4,-0.10000000000000001,4" ]
+run simulate --grid current_speed=0.1 --grid current_deg=-90,0,90,180 --file turned.nc --page turned.html --quiet \
+    --keep 'simulated.*' --keep 'current_m_s.*' --show simulated.speed_m_s --show 'current_m_s.*' --mirror current_deg --quantiles
+check "a current by its direction: $(values current_m_s_0 turned.nc | tr '\n' ' ')" [ "$(values current_m_s_0 turned.nc | tr '\n' ' ')" = "0 0.1 0 -0.1 " ]
+check "opposite directions: $(grep simulated.speed_m_s out | tail -n 1)" awk \
+    '/simulated.speed_m_s .* of / { seen = 1; good = $2 < 1e-6 * $4 } END { exit !(seen && good) }' out
+check "the least and the most of a pattern" grep -q 'most current_m_s.* 4 *0.05 *0.1' out
+check "the page is whole, and of a sweep that has ended" eval 'grep -q "</html>" turned.html && ! grep -q refresh turned.html'
+check "numbers that were not to be kept are not there" eval '! ncdump -h turned.nc | grep -q robot_links'
+cp "$2/problems/robots/paper.ini" mine.ini
+run simulate --grid omega_deg_s=100,120 --file given.nc --quiet -- --robot mine.ini
+check "a robot for all: $(cat err)" [ $code -eq 0 ]
+echo "# changed" >>mine.ini
+run simulate --grid omega_deg_s=100,120 --file given.nc --quiet -- --robot mine.ini
+check "whose file was changed is another one: $(cat err)" eval '[ $code -eq 2 ] && grep -q "configuration" err'
 run simulate --list "$2/problems/robots/*.ini" --file robots.nc --json
 check "a list of robots: $(number points)" eval '[ $code -eq 0 ] && [ "$(number points)" -ge 1 ] && [ "$(number failed)" = 0 ]'
 cp "$2/problems/robots/paper.ini" "my robot.ini"
@@ -77,11 +92,19 @@ else
 fi
 
 if thorough; then
+    # Rivals tuned once serve all points, and trials apart are those of one run.
+    tiny="--grid first_seed=1,2 --grid seeds=1 --grid training=1 --grid starts=1 --grid evaluations=1 --grid duration_s=20"
+    # shellcheck disable=SC2086
+    run sea_trials $tiny --grid tuned=sea.tuned --file sea.nc --json --jobs 1
+    check "sea trials: $(number solved) $(cat err)" eval '[ "$(number solved)" = 2 ] && [ -s sea.tuned ]'
     sh "$2/tests/studies/kills.sh" "$program" 3 5 >kills 2>&1
     check "killed at random times: $(tail -n 1 kills)" grep -q ' 0 of the files differ' kills
 fi
 ln -s /dev/zero zero.nc.journal
 refuse 'not a regular file' simulate --grid links=4,6 --file zero.nc
+
+run max_speed --grid links=4,5 --grid current_y=0.3 --file none.nc --quiet --jobs 1
+check "no point solved: exit $code: $(cat err)" eval '[ $code -eq 1 ] && one_line && grep -q "no point is solved" err'
 
 refuse 'no program nothing' nothing --grid links=4,5
 refuse 'which program' --grid links=4,5

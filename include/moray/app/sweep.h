@@ -58,13 +58,16 @@ typedef struct moray_sweep_spec {
     uint64_t seed;
     moray_sweep_fn *solve;
     void *self;
-    const char *objective;  // number, by its path in the summary, that tells the better of two solutions: the lower
-    bool warm;              // starts from solved neighbours; and once more where a neighbour's branch is better
-    int jobs;               // processes without mpirun; < 1: one a processor
-    double point_seconds;   // of the clock, for one point; 0: no limit
-    double point_megabytes; // of address space, for one point; 0: no limit
-    double silent_seconds;  // with mpirun --enable-recovery: silence by which a rank is lost; 0: 30
-    double save_seconds;    // at least so long between two savings of the file; 0: 30
+    const char *objective;   // number, by its path in the summary, that tells the better of two solutions: the lower
+    bool warm;               // starts from solved neighbours; and once more where a neighbour's branch is better
+    int jobs;                // processes without mpirun; < 1: one a processor
+    double point_seconds;    // of the clock, for one point; 0: no limit
+    double point_megabytes;  // of address space, for one point; 0: no limit
+    double silent_seconds;   // with mpirun --enable-recovery: silence by which a rank is lost; 0: 30
+    double save_seconds;     // at least so long between two savings of the file; 0: 30
+    const char *page;        // an HTML page that shows the grid as it fills, written anew every few seconds; NULL: none
+    const char *const *keep; // [keeps]: numbers that the file is to have, patterns as gain.*; none: all
+    int keeps;
     bool quiet;
     bool (*stop)(void); // asked between points; true: ends early, and can be gone on with. NULL: never
 } moray_sweep_spec;
@@ -94,6 +97,11 @@ MORAY_API moray_status moray_sweep_values(char *text, double **value, const char
 // The numbers of a result over all points, by its path in the summary, read from the file of a sweep: (*value)[*n], to
 // be freed. Error: MORAY_IO, MORAY_INPUT (no such number), MORAY_MEMORY.
 MORAY_API moray_status moray_sweep_numbers(const char *file, const char *name, double **value, long *n);
+
+// The least and the most, at every point, of the numbers that a pattern such as ladder.*.gain matches: (*least)[*n] and
+// (*most)[*n], to be freed. Error: MORAY_IO, MORAY_INPUT (nothing matches), MORAY_MEMORY.
+MORAY_API moray_status moray_sweep_extremes(const char *file, const char *pattern, double **least, double **most,
+                                            long *n);
 
 // The rank of this process where mpirun or srun started several, else 0. MPI begins with the first call and ends with
 // the process.

@@ -112,6 +112,10 @@ moray_status sea_tune(sea_job *job)
     int left = 0;
     for (int law = 0; law < n; law++)
         left += laws[law].tuned != 0;
+    bool found;
+    MORAY_TRY(sea_tuned_read(job, &found));
+    if (found)
+        return moray_ok();
     for (int law = 0; law < n; law++) {
         if (!laws[law].tuned)
             continue;
@@ -121,13 +125,13 @@ moray_status sea_tune(sea_job *job)
         moray_ticker_note(&job->ticker, "sea_trials: %s tuned on %d draws by %d settings: cost %.5g", laws[law].name,
                           job->training, job->tuned_by[law], job->tuned_cost[law]);
     }
-    return moray_ok();
+    return sea_tuned_write(job);
 }
 
 // ---- The file of trials --------------------------------------------------------------------------------------------
 
 // One line that is the same only for runs whose trials mean the same.
-static void signature(const sea_job *job, char *text, size_t size)
+void sea_signature(const sea_job *job, char *text, size_t size)
 {
     const moray_sensors *s = &job->sensors;
     const moray_robot *robot = &job->snake.robot;
@@ -197,7 +201,7 @@ static moray_status open_results(sea_job *job, FILE **file)
     *file = NULL;
     if (!*job->results)
         return status;
-    signature(job, expected, sizeof expected);
+    sea_signature(job, expected, sizeof expected);
     FILE *before = fopen(job->results, "r");
     if (before) {
         status = read_lines(job, before, expected);

@@ -72,6 +72,7 @@ struct sea_job {
     double replan_periods, look_ahead_periods, weight_steering;
     char results[MORAY_PATH_SIZE]; // file of trials done; empty: none
     steer_clock clock;
+    char tuned[MORAY_PATH_SIZE]; // file of what the rivals are tuned to; empty: none
     // found along the way
     moray_path path;
     moray_steering_plan plan; // of it, on the robot believed
@@ -114,6 +115,14 @@ moray_path_spec sea_path_spec(const sea_job *job, double speed);
 // moray_path_plan_make.
 moray_status sea_plan_heading(sea_job *job, sea_draw *draw);
 moray_status sea_plan_path(sea_job *job);
+
+// What the numbers of the rivals and the trials rest on, on one line.
+void sea_signature(const sea_job *job, char *text, size_t size);
+
+// The numbers of the rivals from the file `tuned` and into it; nothing where none is named. *found: they were there.
+// Error: MORAY_INPUT (of other settings, damaged), MORAY_IO.
+moray_status sea_tuned_read(sea_job *job, bool *found);
+moray_status sea_tuned_write(const sea_job *job);
 
 // Gain, forward and integral numbers of a law by collocation over the training draws; those it began with where that
 // does not solve, told. Error: those of moray_robust_gains.

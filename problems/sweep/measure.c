@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE // mkdtemp
+#include "sweep/measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "moray/app/results.h"
+#include "moray/app/run.h"
+#include "sweep/point.h"
+
+static double seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double size_of(const char *file, const char *end)
+{
+    char path[300];
+    struct stat about;
+    snprintf(path, sizeof path, "%s%s", file, end);
+    return stat(path, &about) == 0 ? (double)about.st_size : NAN;
+}
+
+static void fill(cost *c, const moray_sweep_spec *spec)
+{
+    struct rusage own;
+    getrusage(RUSAGE_SELF, &own);
+    c->processor = (double)(own.ru_utime.tv_sec + own.ru_stime.tv_sec) +
+                   1e-6 * (double)(own.ru_utime.tv_usec + own.ru_stime.tv_usec);
+    c->megabytes = (double)own.ru_maxrss / 1024;
+    c->file = size_of(spec->file, "");
+    c->journal = size_of(spec->file, ".journal");
+}
+
+// In a process of its own, whose times and memory are then those of this sweep.
+static moray_status sweep_apart(const moray_sweep_spec *spec, cost *c)
+{
+    int to[2];
+    *c = (cost){0};
+    if (pipe(to) != 0)
+        return moray_error(MORAY_IO, "no pipe for a measurement");
+    fflush(NULL);
+    const pid_t pid = fork();
+    if (pid == 0) {
+        const moray_status status = moray_sweep(spec, &c->result);
+        fill(c, spec);
+        const bool told = write(to[1], c, sizeof *c) == (ssize_t)sizeof *c;
+        if (moray_failed(status))
+            fprintf(stderr, "sweep: %s\n", status.text);
+        _exit(moray_failed(status) || !told);
+    }
+    close(to[1]);
+    const bool read_all = read(to[0], c, sizeof *c) == (ssize_t)sizeof *c;
+    close(to[0]);
+    int ended = 1;
+    if (pid > 0)
+        waitpid(pid, &ended, 0);
+    return read_all && ended == 0 ? moray_ok() : moray_error(MORAY_NOT_SOLVED, "a sweep that was measured failed");
+}
+
+static moray_status costs_nothing(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    (void)self;
+    fprintf(summary, "{\"objective\": %.17g", point->value[0]);
+    for (int k = 1; k < NUMBERS; k++)
+        fprintf(summary, ", \"number_%d\": %.17g", k, point->value[0] / (1 + k));
+    fprintf(summary, "}\n");
+    return moray_ok();
+}
+
+static moray_status grow(measured *m, int k)
+{
+    const long n = m->size[k];
+    double *x = calloc((size_t)n, sizeof *x);
+    if (!x)
+        return moray_error(MORAY_MEMORY, "no memory for %ld points", n);
+    for (long i = 0; i < n; i++)
+        x[i] = (double)i / 3;
+    const moray_sweep_axis axis = {.key = "x", .value = x, .n = (int)n};
+    const moray_sweep_spec spec = {.file = "grown.nc",
+                                   .axis = &axis,
+                                   .axes = 1,
+                                   .solve = costs_nothing,
+                                   .jobs = 2,
+                                   .quiet = true,
+                                   .stop = moray_interrupted};
+    moray_status status = sweep_apart(&spec, &m->made[k]);
+    if (!moray_failed(status))
+        status = sweep_apart(&spec, &m->read[k]);
+    free(x);
+    unlink("grown.nc");
+    unlink("grown.nc.journal");
+    return status;
+}
+
+// The same points by a loop in one process, without a sweep.
+static moray_status loop(const moray_sweep_axis *axis, sweep_arguments *a, double *taken)
+{
+    fflush(NULL);
+    const double begun = seconds();
+    const pid_t pid = fork();
+    if (pid == 0) {
+        FILE *null = fopen("/dev/null", "w");
+        int failed = !null || !freopen("/dev/null", "w", stderr);
+        for (int k = 0; !failed && k < axis->n; k++) {
+            char text[32];
+            const moray_key_value setting = {axis->key, moray_number_text(axis->value[k], text)};
+            const moray_sweep_point point = {
+                .index = k, .n = 1, .setting = &setting, .value = &axis->value[k], .solution = "left"};
+            failed = moray_failed(sweep_run_program(&point, null, a));
+        }
+        _exit(failed);
+    }
+    int ended = 1;
+    if (pid > 0)
+        waitpid(pid, &ended, 0);
+    *taken = seconds() - begun;
+    return ended == 0 ? moray_ok() : moray_error(MORAY_NOT_SOLVED, "the plain loop failed");
+}
+
+static moray_status sweep_real(const moray_sweep_axis *axis, sweep_arguments *a, int jobs, bool warm, cost *c)
+{
+    a->cold = !warm;
+    const moray_sweep_spec spec = {.file = "real.nc",
+                                   .axis = axis,
+                                   .axes = 1,
+                                   .solve = sweep_run_program,
+                                   .self = a,
+                                   .objective = a->program->objective,
+                                   .warm = warm,
+                                   .jobs = jobs,
+                                   .quiet = true,
+                                   .stop = moray_interrupted};
+    const moray_status status = sweep_apart(&spec, c);
+    unlink("real.nc");
+    unlink("real.nc.journal");
+    return status;
+}
+
+// The better of two measurements: what disturbs a machine makes it slower only.
+static moray_status compare(measured *m, sweep_arguments *a)
+{
+    double x[REAL_POINTS];
+    for (int k = 0; k < REAL_POINTS; k++)
+        x[k] = 0.1 * k / (REAL_POINTS - 1);
+    const moray_sweep_axis axis = {.key = "current_x", .value = x, .n = REAL_POINTS};
+    m->loop = m->one.result.seconds = m->two.result.seconds = INFINITY;
+    for (int repeat = 0; repeat < 2; repeat++) {
+        double taken;
+        cost one, two;
+        a->cold = true;
+        MORAY_TRY(loop(&axis, a, &taken));
+        MORAY_TRY(sweep_real(&axis, a, 1, false, &one));
+        MORAY_TRY(sweep_real(&axis, a, 2, false, &two));
+        m->loop = fmin(m->loop, taken);
+        if (one.result.seconds < m->one.result.seconds)
+            m->one = one;
+        if (two.result.seconds < m->two.result.seconds)
+            m->two = two;
+    }
+    return sweep_real(&axis, a, 2, true, &m->warm);
+}
+
+static moray_status measure_all(measured *m, sweep_arguments *a)
+{
+    for (int k = SIZES - 1; k >= 0; k--)
+        m->size[k] = k == SIZES - 1 ? a->most : (m->size[k + 1] + 9) / 10;
+    for (int k = 0; k < SIZES; k++)
+        MORAY_TRY(grow(m, k));
+    return compare(m, a);
+}
+
+moray_status sweep_measure(sweep_arguments *a, int argc, char **argv)
+{
+    static char consistent[] = "--hydrodynamics=consistent", *rest[] = {consistent};
+    static measured m;
+    char folder[] = "/tmp/moray-measure-XXXXXX", here[4096];
+    sweep_arguments real = *a;
+    real.program = sweepable_find("max_speed");
+    real.rest = rest;
+    real.rest_n = 1;
+    if (!getcwd(here, sizeof here) || !mkdtemp(folder) || chdir(folder) != 0)
+        return moray_error(MORAY_IO, "no folder to measure in");
+    moray_status status = measure_all(&m, &real);
+    unlink("left");
+    if (chdir(here) != 0 && !moray_failed(status))
+        status = moray_error(MORAY_IO, "%.200s is no longer there", here);
+    rmdir(folder);
+    return moray_failed(status) ? status : measured_tell(&m, a, argc, argv);
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#ifndef PROBLEMS_SWEEP_MEASURE_H
+#define PROBLEMS_SWEEP_MEASURE_H
+
+#include "sweep/arguments.h"
+
+// What a sweep itself costs, as `sweep measure`: against the plain loop, on two cores, with starts from neighbours, and
+// up to a->most points that cost nothing; from these, a million points on a thousand cores on paper. A table, or JSON
+// with --json, on standard output; with --out a report. Error: MORAY_IO, MORAY_MEMORY, MORAY_NOT_SOLVED.
+moray_status sweep_measure(sweep_arguments *a, int argc, char **argv);
+
+enum { REAL_POINTS = 6, SIZES = 3, NUMBERS = 20 };
+
+// One sweep in a process of its own.
+typedef struct cost {
+    moray_sweep_result result;
+    double processor, megabytes; // of the process that hands out; its largest memory
+    double file, journal;        // bytes
+} cost;
+
+typedef struct measured {
+    double loop;                   // seconds
+    cost one, two, warm;           // of the same points
+    long size[SIZES];              // points of no cost
+    cost made[SIZES], read[SIZES]; // and the same files once more, where nothing is left to do
+} measured;
+
+moray_status measured_tell(const measured *m, const sweep_arguments *a, int argc, char **argv);
+
+#endif

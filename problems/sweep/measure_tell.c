@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+//
+// What was measured of a sweep, as tables, and what follows from it on paper.
+#include <string.h>
+
+#include "moray/app/options.h"
+#include "moray/app/results.h"
+#include "sweep/measure.h"
+#include "sweep/report.h"
+
+// What the rank that hands out does for a point: it takes in an answer and writes a line.
+static double handing(const measured *m)
+{
+    const cost *made = &m->made[SIZES - 1], *read = &m->read[SIZES - 1];
+    return (read->processor + made->result.saving) / (double)m->size[SIZES - 1];
+}
+
+// Memory by the line through the first and the last size.
+static double memory_of(const measured *m, double points)
+{
+    const int last = SIZES - 1;
+    const double slope = (m->made[last].megabytes - m->made[0].megabytes) / (double)(m->size[last] - m->size[0]);
+    return m->made[0].megabytes + slope * points;
+}
+
+enum { WORK = 10, PAPER = 8 };
+
+static void tell_work(const measured *m, moray_table_row row[WORK])
+{
+    const double n = REAL_POINTS;
+    const moray_table_row all[WORK] = {
+        {.label = "points", .value = {n}},
+        {.label = "plain loop, one core", .value = {m->loop / n}, .unit = "s a point"},
+        {.label = "sweep, one core", .value = {m->one.result.seconds / n}, .unit = "s a point"},
+        {.label = "overhead", .value = {100 * (m->one.result.seconds / m->loop - 1)}, .unit = "%"},
+        {.label = "sweep, two cores", .value = {m->two.result.seconds / n}, .unit = "s a point"},
+        {.label = "efficiency", .value = {50 * m->one.result.seconds / m->two.result.seconds}, .unit = "%"},
+        {.label = "the same from neighbours", .value = {m->warm.result.seconds / n}, .unit = "s a point"},
+        {.label = "begun from a neighbour", .value = {(double)m->warm.result.warm}},
+        {.label = "of these, solved so", .value = {(double)m->warm.result.held}},
+        {.label = "bettered from a neighbour's branch", .value = {(double)m->warm.result.improved}}};
+    memcpy(row, all, sizeof all);
+}
+
+enum { GROWTH = 9 };
+
+static void tell_growth(const measured *m, moray_table_row row[GROWTH])
+{
+    static const char *const labels[GROWTH] = {"points",
+                                               "clock, both cores",
+                                               "processor, the process that hands out",
+                                               "of it, on taking in an answer",
+                                               "journal and file, on the clock",
+                                               "results file",
+                                               "journal",
+                                               "memory of the process that hands out",
+                                               "writing the file once"};
+    static const char *const units[GROWTH] = {
+        NULL, "ms a point", "ms a point", "ms a point", "ms a point", "bytes a point", "bytes a point", "MB", "s"};
+    for (int i = 0; i < GROWTH; i++)
+        row[i] = (moray_table_row){.label = labels[i], .unit = units[i]};
+    for (int k = 0; k < SIZES; k++) {
+        const double n = (double)m->size[k], values[GROWTH] = {n,
+                                                               1e3 * m->made[k].result.seconds / n,
+                                                               1e3 * m->made[k].processor / n,
+                                                               1e3 * m->read[k].processor / n,
+                                                               1e3 * m->made[k].result.saving / n,
+                                                               m->made[k].file / n,
+                                                               m->made[k].journal / n,
+                                                               m->made[k].megabytes,
+                                                               m->read[k].result.saving / 2};
+        for (int i = 0; i < GROWTH; i++)
+            row[i].value[k] = values[i];
+    }
+}
+
+static void tell_paper(const measured *m, moray_table_row row[PAPER])
+{
+    const double points = 1e6, cores = 1000, largest = (double)m->size[SIZES - 1];
+    const double one = m->loop / REAL_POINTS, grown = points / largest, answer = handing(m);
+    const double hours = points * one / cores / 3600;
+    const moray_table_row all[PAPER] = {
+        {.label = "the points' own time, on 1,000 cores", .value = {hours}, .unit = "h"},
+        {.label = "first rank, busy of it", .value = {100 * points * answer / (3600 * hours)}, .unit = "%"},
+        {.label = "cores at which it has no time left", .value = {one / answer}},
+        {.label = "time a point below which 1,000 cores wait", .value = {answer * cores}, .unit = "s"},
+        {.label = "its memory", .value = {memory_of(m, points)}, .unit = "MB"},
+        {.label = "results file", .value = {m->made[SIZES - 1].file * grown / 1e6}, .unit = "MB"},
+        {.label = "journal, as long as max_speed's summaries",
+         .value = {m->one.journal / REAL_POINTS * points / 1e9},
+         .unit = "GB"},
+        {.label = "writing the file once", .value = {m->read[SIZES - 1].result.saving / 2 * grown}, .unit = "s"}};
+    memcpy(row, all, sizeof all);
+}
+
+static void summarise(const measured *m, moray_json *json)
+{
+    const int last = SIZES - 1;
+    moray_json_text(json, "problem", "sweep measure");
+    moray_json_text(json, "version", moray_version());
+    moray_json_members(json, MORAY_MEMBERS({"loop_s", m->loop}, {"one_core_s", m->one.result.seconds},
+                                           {"two_cores_s", m->two.result.seconds},
+                                           {"overhead_percent", 100 * (m->one.result.seconds / m->loop - 1)},
+                                           {"efficiency_percent", 50 * m->one.result.seconds / m->two.result.seconds},
+                                           {"points", (double)m->size[last]}, {"file_bytes", m->made[last].file},
+                                           {"journal_bytes", m->made[last].journal}, {"handing_s", handing(m)},
+                                           {"growth", m->read[last].processor / (double)m->size[last] /
+                                                          (m->read[last - 1].processor / (double)m->size[last - 1])}));
+}
+
+moray_status measured_tell(const measured *m, const sweep_arguments *a, int argc, char **argv)
+{
+    moray_table_row work[WORK], growth[GROWTH], paper[PAPER];
+    tell_work(m, work);
+    tell_growth(m, growth);
+    tell_paper(m, paper);
+    const moray_table tables[] = {
+        {.title = "max_speed on the consistent model", .rows = work, .n_rows = WORK, .n_columns = 1},
+        {.title = "Points of no cost, of 20 numbers each", .rows = growth, .n_rows = GROWTH, .n_columns = SIZES},
+        {.title = "On paper: a million points of that problem, 20 numbers kept of each, on 1,000 cores",
+         .rows = paper,
+         .n_rows = PAPER,
+         .n_columns = 1}};
+    moray_json *json = moray_json_new();
+    summarise(m, json);
+    const moray_report report = {.title = "sweep measure", .tables = tables, .n_tables = 3, .argc = argc, .argv = argv};
+    moray_status status = a->out ? sweep_write_folder(a->out, &report, json, NULL) : moray_ok();
+    if (!moray_failed(status) && a->json)
+        status = moray_json_write(json, stdout);
+    else if (!moray_failed(status))
+        moray_tables_print(tables, 3, stdout);
+    moray_json_free(json);
+    return status;
+}
