@@ -14,12 +14,12 @@ enum { REAL_POINTS = 6, SIZES = 3, NUMBERS = 20 };
 // One sweep in a process of its own.
 typedef struct cost {
     moray_sweep_result result;
-    double processor, megabytes; // of the process that hands out; its largest memory
-    double file, journal;        // bytes
+    double processor, points, megabytes; // seconds of the process that hands out, of the points'; its largest memory
+    double file, journal;                // bytes
 } cost;
 
 typedef struct measured {
-    double loop;                   // seconds
+    double loop, loop_processor;   // seconds, on the clock and on the processor
     cost one, two, warm;           // of the same points
     long size[SIZES];              // points of no cost
     cost made[SIZES], read[SIZES]; // and the same files once more, where nothing is left to do

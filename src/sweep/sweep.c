@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "moray/app/options.h"
@@ -56,13 +57,21 @@ static void remove_folder(const moray_sweep_spec *spec)
     rmdir(path);
 }
 
+static double processor(void)
+{
+    struct timespec used;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return (double)used.tv_sec + 1e-9 * (double)used.tv_nsec;
+}
+
 static moray_status save(run *r, bool finished)
 {
-    const double begun = moray_clock();
+    const double begun = moray_clock(), used = processor();
     const moray_status status = moray_store_write(&r->store, finished);
     r->saved = moray_clock();
     r->saving = r->saved - begun;
     r->result->saving += r->saving;
+    r->result->handing += processor() - used;
     return status;
 }
 
@@ -123,13 +132,14 @@ static moray_status wait_for_one(run *r)
     bool found;
     MORAY_TRY(moray_crew_wait(&r->crew, 0.5, &record, &found));
     if (found) {
-        const double begun = moray_clock();
+        const double begun = moray_clock(), used = processor();
         moray_status status = moray_journal_add(&r->journal, &record);
         r->result->saving += moray_clock() - begun;
         r->result->busy += record.seconds;
         r->fresh++;
         if (!moray_failed(status))
             status = take(r, &record);
+        r->result->handing += processor() - used;
         moray_record_free(&record);
         MORAY_TRY(status);
     }
