@@ -112,7 +112,7 @@ moray_status sea_tune(sea_job *job)
     int left = 0;
     for (int law = 0; law < n; law++)
         left += laws[law].tuned != 0;
-    bool found;
+    bool found, cut_short = false;
     MORAY_TRY(sea_tuned_read(job, &found));
     if (found)
         return moray_ok();
@@ -124,8 +124,9 @@ moray_status sea_tune(sea_job *job)
         MORAY_TRY(laws[law].collocated ? plan_gains(job, laws, law) : tune(job, laws, law));
         moray_ticker_note(&job->ticker, "sea_trials: %s tuned on %d draws by %d settings: cost %.5g", laws[law].name,
                           job->training, job->tuned_by[law], job->tuned_cost[law]);
+        cut_short = cut_short || steer_clock_up(&job->clock);
     }
-    return sea_tuned_write(job);
+    return cut_short ? moray_ok() : sea_tuned_write(job); // others may have more time
 }
 
 // ---- The file of trials --------------------------------------------------------------------------------------------
