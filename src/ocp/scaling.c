@@ -43,9 +43,11 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
         for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
             x_scale[layout->u_end[end] + r] = g_scale[layout->u_row[end] + r] = 1 / size[phase->nx + r];
     moray_fill_holds(layout, phase, x_scale + layout->node[1].x + phase->nx, g_scale); // collocated where any is held
-    for (int m = 0; m < phase->nq; m++)
+    for (int m = 0; m < phase->nq; m++) {
+        const double here = fabs(x[layout->q + m]);
         x_scale[layout->q + m] = g_scale[layout->integral_row + m] =
-            1 / moray_size_of_integral(t, p, m, fabs(x[layout->q + m]), size, size + phase->nx + phase->nu);
+            1 / (found && here > 0 ? here : moray_size_of_integral(t, p, m, here, size, size + phase->nx + phase->nu));
+    }
     if (layout->t0 >= 0)
         x_scale[layout->t0] = 1 / size_of_time(phase->t0, t0, tf, phase->tf.upper, found);
     if (layout->tf >= 0)

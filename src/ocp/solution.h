@@ -23,7 +23,7 @@ struct moray_solution {
 // MORAY_MEMORY.
 moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess, double *x);
 
-// Chooses x_scale and g_scale of the programme from bounds and the guess, or the durations of what was found. Error:
+// Chooses x_scale and g_scale of the programme from bounds and the guess, or durations and integrals as found. Error:
 // MORAY_MEMORY, MORAY_NUMERIC.
 moray_status moray_choose_scales(struct transcription *t, const double *x, bool found);
 

@@ -65,18 +65,25 @@ static bool can_start_warm(const moray_solution *solution, const moray_guess *gu
            !holds_controls(solution->transcription->ocp) && from->history[from->meshes - 1].error < worst_warm_error;
 }
 
-// Whether a duration that was found is far smaller than what it was scaled by: a guess of one unit of time, where
-// nothing better is known.
+static bool is_small(double scaled)
+{
+    return fabs(scaled) < out_of_scale && fabs(scaled) > nothing;
+}
+
+// Whether a duration or an integral that was found is far smaller than what it was scaled by: a guess of one unit of
+// time, where nothing better is known; bounds of controls that are far from what is used of them.
 static bool is_out_of_scale(const moray_solution *solution)
 {
     const struct transcription *t = solution->transcription;
     for (int p = 0; p < t->ocp->phases; p++) {
         double t0, tf;
-        const int column = t->layout.phase[p].tf;
+        const struct phase_layout *layout = &t->layout.phase[p];
         moray_layout_span(&t->layout, t->ocp, solution->iterate.x, p, &t0, &tf);
-        const double scaled = column >= 0 ? (tf - t0) * t->nlp.x_scale[column] : 1;
-        if (scaled < out_of_scale && scaled > nothing)
+        if (layout->tf >= 0 && is_small((tf - t0) * t->nlp.x_scale[layout->tf]))
             return true;
+        for (int m = layout->q; m < layout->q + t->ocp->phase[p].nq; m++)
+            if (is_small(solution->iterate.x[m] * t->nlp.x_scale[m]))
+                return true;
     }
     return false;
 }
