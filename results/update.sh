@@ -23,6 +23,16 @@ beside() {
     quiet=--quiet
     files=yes
 }
+# compare NAME BEFORE AFTER: iterations in two tables of textbook problems.
+compare() {
+    runner=tests/studies/iterations.sh
+    files=
+    quiet=
+    show "$@"
+    runner=problems/run.sh
+    quiet=--quiet
+    files=yes
+}
 runner=problems/run.sh
 quiet=--quiet
 files=yes
@@ -132,6 +142,7 @@ swept sea_sweep sea_trials --grid first_seed=1:40:40 --grid seeds=1 --grid tuned
     --show laws_plan_and_feedback_rms_deg_median
 studied sweep_kills kills build/problems/sweep 50 1
 show classics classics all
+compare classics_iterations results/classics_iterations/before.txt results/classics/table.txt
 print benchmark_s1 benchmark --part s1 --set repeats=9
 print benchmark_horizon benchmark --part horizon --set repeats=3
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
