@@ -171,8 +171,7 @@ static void write_names(FILE *script, const moray_figure *figure)
         quote(script, figure->y_names[i]);
         fprintf(script, " %d", i);
     }
-    fprintf(script, ")\nset yrange [%g:-0.5]\nset yzeroaxis lt 1 lw 1 lc rgb '#555555'\n",
-            figure->n_y_names - 0.5);
+    fprintf(script, ")\nset yrange [%g:-0.5]\nset yzeroaxis lt 1 lw 1 lc rgb '#555555'\n", figure->n_y_names - 0.5);
 }
 
 static void write_time_axis(FILE *script, const moray_figure *figure)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "results/results.h"
+#include "results/staging.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -21,6 +22,7 @@ typedef struct staged_file {
 struct moray_output {
     char directory[PATH_MAX - 2 * NAME_SIZE];
     char staging[PATH_MAX - NAME_SIZE]; // empty while there is none
+    int held;                           // lock of it
     size_t made;                        // length of the topmost directory that we made, as a prefix of directory; or 0
     staged_file file[MOST_FILES];
     int n;
@@ -59,7 +61,7 @@ static void remove_directories(moray_output *output)
 static void unstage(moray_output *output)
 {
     if (output->staging[0])
-        rmdir(output->staging);
+        moray_staging_end(output->staging, output->held);
     output->staging[0] = 0;
     remove_directories(output);
 }
@@ -70,8 +72,8 @@ static moray_status stage(moray_output *output)
         return moray_ok();
     int why = make_directories(output);
     snprintf(output->staging, sizeof output->staging, "%s/.moray-XXXXXX", output->directory);
-    if (why == 0 && !mkdtemp(output->staging))
-        why = errno;
+    if (why == 0)
+        why = moray_staging_new(output->staging, &output->held);
     if (why == 0)
         return moray_ok();
     output->staging[0] = 0;
@@ -90,6 +92,7 @@ moray_status moray_output_open(moray_output **output, const char *directory)
                              *directory ? "too long" : "empty");
     } else {
         strcpy(made->directory, directory);
+        moray_staging_clear(directory);
         status = stage(made);
     }
     unstage(made);

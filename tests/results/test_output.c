@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "moray/app/results.h"
@@ -121,6 +122,37 @@ static void test_abandoned(void)
     moray_output_free(output);
     CHECK(holds("old/x", "kept") && entries("old") == 1, "an earlier file survives an abandoned output");
     moray_output_free(NULL);
+}
+
+// What a killed run has left goes with the next one, what it had set aside goes back; a run under way keeps its own.
+static void test_killed(void)
+{
+    mkdir(in_root("killed"), 0777);
+    const pid_t child = fork();
+    if (child == 0) {
+        moray_output *output;
+        FILE *file;
+        if (!moray_failed(moray_output_open(&output, in_root("killed"))) &&
+            !moray_failed(moray_output_file(output, "x", &file)))
+            raise(SIGKILL);
+        _exit(0);
+    }
+    int ended = 0;
+    waitpid(child, &ended, 0);
+    CHECK(WIFSIGNALED(ended) && entries("killed") == 1, "a killed run leaves its folder: %d", entries("killed"));
+    moray_output *output = open_in("killed");
+    CHECK(entries("killed") == 0, "which the next one removes: %d", entries("killed"));
+    mkdir(in_root("killed/.moray-abcdef"), 0777);
+    put("killed/.moray-abcdef/old.y", "kept");
+    put("killed/.moray-abcdef/new.z", "lost");
+    fprintf(start(output, "x"), "mine");
+    moray_output *other = open_in("killed");
+    CHECK(holds("killed/y", "kept") && entries("killed") == 2, "killed while it put files in place: %d",
+          entries("killed"));
+    moray_output_free(other);
+    CHECK_OK(moray_output_commit(output), "a run under way keeps its own");
+    CHECK(holds("killed/x", "mine") && entries("killed") == 2, "and ends as ever");
+    moray_output_free(output);
 }
 
 // The second of three files cannot be put in place: the first goes back to what it was, the third never comes.
@@ -364,6 +396,7 @@ int main(void)
         return 1;
     test_commit();
     test_abandoned();
+    test_killed();
     test_failed_commit();
     test_full_disk();
     test_unwritable();
