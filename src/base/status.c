@@ -24,6 +24,17 @@ moray_status moray_ok(void)
     return (moray_status){.code = MORAY_OK, .text = "ok"};
 }
 
+// What a text quotes may hold anything; it is one line all the same.
+static void flatten(char *text)
+{
+    const char delete = 0x7f;
+    for (; *text; text++)
+        if ((*text >= '\t' && *text <= '\r') || *text == ' ')
+            *text = ' ';
+        else if ((*text > 0 && *text < ' ') || *text == delete)
+            *text = '?';
+}
+
 moray_status moray_error(moray_code code, const char *format, ...)
 {
     moray_status status = {.code = code};
@@ -31,6 +42,7 @@ moray_status moray_error(moray_code code, const char *format, ...)
     va_start(arguments, format);
     const int length = vsnprintf(status.text, sizeof status.text, format, arguments);
     va_end(arguments);
+    flatten(status.text);
     if (length >= (int)sizeof status.text)
         moray_cut_at_word(status.text, sizeof status.text);
     return status;

@@ -248,6 +248,15 @@ static void relax(const double *lower, const double *upper, const double *scale,
     }
 }
 
+// Whether there is memory for what Ipopt copies before it begins to watch for a shortage, which would end the program.
+static bool can_begin(const moray_nlp *nlp)
+{
+    const size_t usual = 1 << 20, vectors = 8;
+    void *trial = malloc(usual + vectors * ((size_t)nlp->n + (size_t)nlp->m) * sizeof(double));
+    free(trial);
+    return trial != NULL;
+}
+
 // bounds: [2 n + 2 m], filled.
 static IpoptProblem create(const moray_nlp *nlp, double *bounds)
 {
@@ -268,6 +277,8 @@ static moray_status solve_with(struct session *session, moray_iterate *iterate)
     enum ApplicationReturnStatus code = Internal_Error;
     moray_status status =
         moray_error(MORAY_INPUT, "Ipopt refuses a problem of %d variables and %d constraints", nlp->n, nlp->m);
+    if (!can_begin(nlp))
+        return moray_error(MORAY_MEMORY, "no memory to solve for %d variables and %d constraints", nlp->n, nlp->m);
     if (alone)
         moray_mumps_lock();
     IpoptProblem problem = create(nlp, session->bounds);

@@ -58,11 +58,8 @@ moray_status moray_solution_failure(const moray_solution *solution)
 {
     moray_status failure = moray_error(MORAY_NOT_SOLVED, "%s", solution->diagnosis);
     size_t n = strlen(failure.text);
-    while (n > 0 && failure.text[n - 1] == '\n')
+    while (n > 0 && failure.text[n - 1] == ' ')
         failure.text[--n] = 0;
-    for (size_t i = 0; i < n; i++)
-        if (failure.text[i] == '\n')
-            failure.text[i] = ' ';
     return failure;
 }
 

@@ -4,7 +4,6 @@
 #include "results/results.h"
 #include "run/versions.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
@@ -104,19 +103,11 @@ static moray_status leave_reason(const moray_program *program, const moray_commo
     return moray_failed(written) ? written : moray_output_commit(common->output);
 }
 
-static void complain(const moray_program *program, moray_status status)
-{
-    for (char *c = status.text; *c; c++)
-        if (iscntrl((unsigned char)*c))
-            *c = isspace((unsigned char)*c) ? ' ' : '?';
-    fprintf(stderr, "%s: %s\n", program->name, status.text);
-}
-
 int moray_app_certified(const moray_program *program, moray_status certified)
 {
     if (!moray_failed(certified))
         return MORAY_EXIT_SOLVED;
-    complain(program, certified);
+    fprintf(stderr, "%s: %s\n", program->name, certified.text);
     return MORAY_EXIT_CERTIFICATE;
 }
 
@@ -136,6 +127,6 @@ int moray_app_end(const moray_program *program, void *settings, moray_status sta
     uselocale(before_start);
     before_start = (locale_t)0;
     if (moray_failed(status))
-        complain(program, status);
+        fprintf(stderr, "%s: %s\n", program->name, status.text);
     return moray_exit_of(status.code);
 }

@@ -44,6 +44,15 @@ static double member(const cJSON *line, const char *key)
     return cJSON_IsNumber(item) ? item->valuedouble : NAN;
 }
 
+// Whole numbers that a long and an int hold.
+static const double MOST_POINTS = 1e15, MOST_ROUNDS = 1e9;
+
+// Whether a number is a whole one of that range; false for NaN.
+static bool within(double number, double least, double most)
+{
+    return number >= least && number <= most && number == floor(number);
+}
+
 // As it stands at the end of the line: printed anew, numbers would lose digits.
 static char *raw_found(const char *line)
 {
@@ -62,8 +71,9 @@ moray_status moray_record_read(const char *text, struct record *record)
     const cJSON *reason = cJSON_GetObjectItemCaseSensitive(line, "reason");
     const cJSON *found = cJSON_GetObjectItemCaseSensitive(line, "found");
     moray_status status = moray_ok();
-    if (!(point >= 0 && round >= 0 && start >= -1 && start_round >= 0 && code >= MORAY_OK &&
-          code <= MORAY_INTERRUPTED && seconds >= 0 && cJSON_IsString(reason) && (!found || cJSON_IsObject(found)))) {
+    if (!(within(point, 0, MOST_POINTS) && within(round, 0, MOST_ROUNDS) && within(start, -1, MOST_POINTS) &&
+          within(start_round, 0, MOST_ROUNDS) && within(code, MORAY_OK, MORAY_INTERRUPTED) && seconds >= 0 &&
+          cJSON_IsString(reason) && (!found || cJSON_IsObject(found)))) {
         status = moray_error(MORAY_INPUT, "no record of a sweep: %.60s", text);
     } else {
         record->task = (struct task){(long)point, (long)start, (int)round, (int)start_round};

@@ -26,6 +26,8 @@ int main(void)
     const char *cut = moray_error(MORAY_INPUT, "%s", lengthy).text, *end = strrchr(cut, 'x');
     CHECK(strcmp(end + 1, " ...") == 0 && (end - cut) % 4 == 2 && strlen(cut) > sizeof status.text - 9,
           "behind a whole word, and says so: %s", end - 6);
+    status = moray_error(MORAY_INPUT, "%s", "\"a\r\nb\tc\033d\177\303\251\"");
+    CHECK(strcmp(status.text, "\"a  b c?d?\303\251\"") == 0, "a text is one line: %s", status.text);
     CHECK(strcmp(moray_code_text(MORAY_INTERRUPTED), "interrupted") == 0, "texts follow the codes");
     CHECK(strcmp(moray_code_text((moray_code)99), "unknown code") == 0, "an unknown code has a text");
     return tap_done();

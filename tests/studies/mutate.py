@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The tests measured: faults planted in src one at a time, and which of them the tests find.
 
-    python3 tests/studies/mutate.py [--count 200] [--seed 1] [--under src/ocp] [--folder DIR] [--list]
+    python3 tests/studies/mutate.py [--count 200] [--seed 1] [--first 1] [--under src/ocp] [--folder DIR] [--list]
 
 Works on a copy of the source tree with a build of its own, in a folder that is left for the next run. A mutant is one
 sign, factor, index, relation, logical operator, negation, term or statement changed. It is built as far as the tests of
@@ -106,7 +106,7 @@ class Copy:
 
     def __init__(self, folder):
         self.folder, self.build = folder, os.path.join(folder, "build")
-        ignore = shutil.ignore_patterns("build*", ".git", "*.lock", "results")
+        ignore = shutil.ignore_patterns("build*", "*.lock", "__pycache__")
         for name in ["src", "tests", "problems", "include", "share", "docs"]:
             self.mirror(name, ignore)
         os.makedirs(os.path.join(folder, "results"), exist_ok=True)
@@ -197,6 +197,7 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     options.add_argument("--count", type=int, default=200)
     options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--first", type=int, default=1, help="of the sample, to go on where a run was ended")
     options.add_argument("--under", default="src")
     options.add_argument("--folder", default="/var/tmp/moray-mutants")
     options.add_argument("--list", action="store_true", help="only list what would be planted")
@@ -210,7 +211,7 @@ def main():
               if by_kind[kinds[k % len(kinds)]]]
     copy = None if asked.list else Copy(asked.folder)
     killed = survived = unbuilt = 0
-    for kind, path, number, before, after in sample:
+    for kind, path, number, before, after in sample[asked.first - 1 :]:
         what = "%s:%d %s: %s  ->  %s" % (path, number + 1, kind, before.strip(), after.strip())
         if asked.list:
             print(what)
