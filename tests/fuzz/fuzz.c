@@ -31,8 +31,8 @@ static moray_status read_spline(double *sum)
 {
     moray_spline *spline = NULL;
     const moray_status status = moray_spline_read(&spline, file_name, "x", "y", MORAY_NATURAL, MORAY_LINEAR);
-    if (!moray_failed(status))
-        *sum = moray_spline_real(spline, 0.3, NULL);
+    const double value = moray_failed(status) ? 0 : moray_spline_real(spline, 0.3, NULL);
+    *sum = isnan(value) ? 0 : value; // between numbers near the largest there is
     moray_spline_free(spline);
     return status;
 }
@@ -41,8 +41,8 @@ static moray_status read_surface(double *sum)
 {
     moray_surface *surface = NULL;
     const moray_status status = moray_surface_read(&surface, file_name, "x", "y", "z", MORAY_NATURAL, MORAY_LINEAR);
-    if (!moray_failed(status))
-        *sum = moray_surface_real(surface, 0.3, 0.4, NULL);
+    const double value = moray_failed(status) ? 0 : moray_surface_real(surface, 0.3, 0.4, NULL);
+    *sum = isnan(value) ? 0 : value; // between numbers near the largest there is
     moray_surface_free(surface);
     return status;
 }
