@@ -147,3 +147,12 @@ print benchmark_s1 benchmark --part s1 --set repeats=9
 print benchmark_horizon benchmark --part horizon --set repeats=3
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
 beside peers 5
+
+# Takes an hour: by name alone.
+case $wanted in
+*" trust "*)
+    mkdir -p results/trust || exit 1
+    echo "sh tests/studies/trust.sh build" >results/trust/command.txt
+    sh tests/studies/trust.sh build >results/trust/table.txt || exit 1
+    ;;
+esac

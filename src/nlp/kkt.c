@@ -42,14 +42,16 @@ static double row_complementarity(const moray_nlp *nlp, const moray_iterate *it,
     return fabs(bound) >= MORAY_INFINITY ? fabs(it->lambda[i]) : fabs(it->lambda[i] * (bound - g[i]));
 }
 
+// A multiplier of a bound is not negative, and none of a bound that is not there.
+static double side_complementarity(double z, double bound, double x)
+{
+    return z < 0 || fabs(bound) >= MORAY_INFINITY ? fabs(z) : z * fabs(bound - x);
+}
+
 static double bound_complementarity(const moray_nlp *nlp, const moray_iterate *it, int j)
 {
-    double worst = 0;
-    if (nlp->x_lower[j] > -MORAY_INFINITY)
-        worst = fabs(it->z_lower[j] * (it->x[j] - nlp->x_lower[j]));
-    if (nlp->x_upper[j] < MORAY_INFINITY)
-        worst = fmax(worst, fabs(it->z_upper[j] * (nlp->x_upper[j] - it->x[j])));
-    return worst;
+    return fmax(side_complementarity(it->z_lower[j], nlp->x_lower[j], it->x[j]),
+                side_complementarity(it->z_upper[j], nlp->x_upper[j], it->x[j]));
 }
 
 // gradient <- d L / d x

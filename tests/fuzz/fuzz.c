@@ -85,12 +85,6 @@ static moray_status read_record(double *sum)
     return status;
 }
 
-// The journal's clock, which stands still here.
-double moray_clock(void)
-{
-    return 0;
-}
-
 static moray_status read_journal(double *sum)
 {
     struct journal journal;

@@ -138,6 +138,86 @@ static void test_feasibility_of_large_numbers(void)
     CHECK_NEAR(kkt.feasibility, 1e3 / 2.0001e7, 1e-9, "a kilometre is not");
 }
 
+// ---- sign x^2 at x = 1 with g = x: stationary by one multiplier or another, of 2 each, which is not due ----
+
+static bool half_square(void *self, const double *x, bool is_new, double *f)
+{
+    (void)is_new;
+    *f = *(const double *)self * x[0] * x[0];
+    return true;
+}
+
+static bool half_square_gradient(void *self, const double *x, bool is_new, double *gradient)
+{
+    (void)is_new;
+    gradient[0] = *(const double *)self * 2 * x[0];
+    return true;
+}
+
+static bool same(void *self, const double *x, bool is_new, double *g)
+{
+    (void)self;
+    (void)is_new;
+    g[0] = x[0];
+    return true;
+}
+
+static bool one(void *self, const double *x, bool is_new, double *slope)
+{
+    (void)self;
+    (void)x;
+    (void)is_new;
+    slope[0] = 1;
+    return true;
+}
+
+// Each kind of multiplier by itself: where its bound is a distance away, on the side where there is none, and with the
+// wrong sign at its bound.
+static void test_complementarity(void)
+{
+    static const struct {
+        const char *what;
+        double sign, x_lower, x_upper, g_lower, g_upper, z_lower, z_upper, lambda, error;
+    } cases[] = {
+        {"a lower bound 0.5 below", 1, 0.5, 9, -9, 9, 2, 0, 0, 1},
+        {"an upper bound 3 above", -1, -9, 4, -9, 9, 0, 2, 0, 6},
+        {"the lower end of a row, 0.25 below", 1, -9, 9, 0.75, 9, 0, 0, -2, 0.5},
+        {"the upper end of a row, 2 above", -1, -9, 9, -9, 3, 0, 0, 2, 4},
+        {"no lower bound", 1, -MORAY_INFINITY, 9, -9, 9, 2, 0, 0, 2},
+        {"no upper bound", -1, -9, MORAY_INFINITY, -9, 9, 0, 2, 0, 2},
+        {"no end of a row", 1, -9, 9, -MORAY_INFINITY, 9, 0, 0, -2, 2},
+        {"the wrong sign at the lower bound", -1, 1, 9, -9, 9, -2, 0, 0, 2},
+        {"the wrong sign at the upper bound", 1, -9, 1, -9, 9, 0, -2, 0, 2},
+        {"the right sign at the lower bound", 1, 1, 9, -9, 9, 2, 0, 0, 0},
+        {"the right sign at the upper bound", -1, -9, 1, -9, 9, 0, 2, 0, 0},
+        {"the right sign at the end of a row", 1, -9, 9, 1, 9, 0, 0, -2, 0},
+    };
+    static int zero[1];
+    for (unsigned k = 0; k < sizeof cases / sizeof *cases; k++) {
+        double sign = cases[k].sign, x[] = {1}, g[] = {1}, z_lower[] = {cases[k].z_lower},
+               z_upper[] = {cases[k].z_upper}, lambda[] = {cases[k].lambda};
+        const moray_nlp nlp = {.n = 1,
+                               .m = 1,
+                               .nnz_jac = 1,
+                               .jac_row = zero,
+                               .jac_col = zero,
+                               .x_lower = &cases[k].x_lower,
+                               .x_upper = &cases[k].x_upper,
+                               .g_lower = &cases[k].g_lower,
+                               .g_upper = &cases[k].g_upper,
+                               .objective = half_square,
+                               .gradient = half_square_gradient,
+                               .constraints = same,
+                               .jacobian = one,
+                               .self = &sign};
+        const moray_iterate it = {x, z_lower, z_upper, g, lambda, sign};
+        moray_kkt kkt;
+        CHECK_OK(moray_kkt_error(&nlp, &it, &kkt), "KKT");
+        CHECK(kkt.stationarity == 0 && kkt.feasibility == 0 && fabs(kkt.error - cases[k].error) < 1e-15,
+              "%s: error %g, expected %g; stationarity %g", cases[k].what, kkt.error, cases[k].error, kkt.stationarity);
+    }
+}
+
 // What was reported up to the last iteration, and the least violated of it after the start.
 struct record {
     int last, stop;
@@ -191,6 +271,7 @@ int main(void)
     moray_nlp_info info;
     moray_kkt kkt;
     test_feasibility_of_large_numbers();
+    test_complementarity();
     CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "HS71");
     CHECK(info.outcome == MORAY_NLP_SOLVED, "outcome: %s", moray_nlp_outcome_text(info.outcome));
     CHECK_NEAR(it.objective, 17.0140173, 1e-6, "published optimum");

@@ -7,6 +7,7 @@
 #include <tgmath.h>
 
 #include "moray/ocp.h"
+#include "ocp/solution.h"
 #include "rk4.h"
 
 static const int rk4_steps = 40;
@@ -111,8 +112,51 @@ static struct found solve(const struct units *in)
     return found;
 }
 
+// ---- Rows that are no defects: divided by their largest slope where that is above 1, and else left ----
+
+static void level(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+}
+
+static void ends_of(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].xf[0];
+    out->e[0] = 40 * at->phase[0].xf[0];
+    out->e[1] = 0.25 * at->phase[0].xf[0];
+}
+
+static void test_rows(void)
+{
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .continuous = level,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x = MORAY_BOUNDS(moray_between(-1, 1)),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    moray_ocp *ocp;
+    moray_solution *solution;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1,
+                                                   .phase = &phase,
+                                                   .endpoint = ends_of,
+                                                   .ne = 2,
+                                                   .e = MORAY_BOUNDS(moray_between(-30, 30), moray_between(-9, 9))}),
+             "rows");
+    CHECK_OK(moray_solve(ocp, NULL, NULL, &solution), "solved");
+    const struct transcription *t = solution->transcription;
+    CHECK_NEAR(t->nlp.g_scale[t->layout.events], 1 / 40., 1e-12, "a slope of 40");
+    CHECK_NEAR(t->nlp.g_scale[t->layout.events + 1], 1, 0, "a slope of 1/4");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
+    test_rows();
     const struct found reference = solve(&si);
     CHECK(reference.solved, "in %s: optimum %.9g after %d iterations", si.name, reference.objective,
           reference.iterations);

@@ -253,11 +253,13 @@ void gait_job_stage_free(stage *at)
 {
     moray_solution_free(at->solution);
     moray_solution_free(at->from);
+    free(at->iterations);
     moray_gait_problem_free(at->problem);
     moray_gait_over_free(at->over);
     at->solution = at->from = NULL;
     at->problem = NULL;
     at->over = NULL;
+    at->iterations = NULL;
 }
 
 void gait_job_free(gait_job *job)

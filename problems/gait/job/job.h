@@ -24,6 +24,8 @@ typedef struct stage {
     int phase;                       // this is the one whose prediction is shown
     moray_solution *solution, *from; // from: of --continue, where it is of this stage
     int starts, agreeing;            // how many, and how many of them ended at the best solution
+    double *iterations;              // [starts] of each, NaN where it could not be begun
+    int tried;                       // of them
     moray_certificate certificate;
     moray_gait_prediction prediction;
     moray_gait_trial trial;
@@ -160,6 +162,12 @@ moray_settings gait_job_settings(gait_job *job);
 // Solves from the steady orbit of the gait on the problem's model. Error: those of moray_swim_steady and moray_solve.
 moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
                             moray_solution **solution);
+
+// Makes room for what is told of n starts. Error: MORAY_MEMORY.
+moray_status gait_job_begin_starts(stage *at, int n);
+
+// Notes a start that could not be begun.
+void gait_job_lost_start(stage *at);
 
 // Keeps the better of a solution, which it takes over, and of what the stage has; counts how many agree.
 void gait_job_keep_best(stage *at, moray_solution *solution);

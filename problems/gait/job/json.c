@@ -32,6 +32,8 @@ static void json_solver(moray_json *json, const stage *at)
     moray_solver_to_json(json, at->solution);
     moray_json_number(json, "starts", at->starts);
     moray_json_number(json, "starts_at_optimum", at->agreeing);
+    if (at->iterations)
+        moray_json_numbers(json, "iterations_of_starts", at->iterations, at->tried);
     moray_json_close(json);
     moray_certificate_to_json(json, &at->certificate);
 }

@@ -172,10 +172,12 @@ static moray_status solve_all(gait_job *job, scenario_set *set, const gait_start
 {
     moray_status first_failure = moray_ok();
     srand48(1);
-    at->starts = known->n + job->random_starts;
+    MORAY_TRY(gait_job_begin_starts(at, known->n + job->random_starts));
     for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
         const moray_gait gait = k < known->n ? known->gait[k] : gait_job_random(job, at);
         const moray_status status = solve_from(job, set, &gait, at);
+        if (moray_failed(status))
+            gait_job_lost_start(at);
         if (moray_failed(status) && !moray_failed(first_failure))
             first_failure = status;
     }

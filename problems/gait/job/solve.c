@@ -170,8 +170,28 @@ static bool better(const moray_solution *one, const moray_solution *other)
     return moray_solution_objective(one) < moray_solution_objective(other);
 }
 
+moray_status gait_job_begin_starts(stage *at, int n)
+{
+    at->starts = n;
+    at->tried = 0;
+    at->iterations = calloc((size_t)n + 1, sizeof *at->iterations);
+    return at->iterations ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d starts", n);
+}
+
+static void note_start(stage *at, double iterations)
+{
+    if (at->iterations && at->tried < at->starts)
+        at->iterations[at->tried++] = iterations;
+}
+
+void gait_job_lost_start(stage *at)
+{
+    note_start(at, NAN);
+}
+
 void gait_job_keep_best(stage *at, moray_solution *solution)
 {
+    note_start(at, moray_solution_info(solution)->iterations);
     const double same = 1e-6;
     const bool level = at->solution && solved(solution) && solved(at->solution) &&
                        fabs(moray_solution_objective(solution) - moray_solution_objective(at->solution)) < same;
@@ -225,7 +245,7 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
     const int first = at->from ? known->n : 0;
     moray_status first_failure = moray_ok();
     srand48(1);
-    at->starts = (at->from ? 1 : known->n) + random;
+    MORAY_TRY(gait_job_begin_starts(at, (at->from ? 1 : known->n) + random));
     if (at->from)
         MORAY_TRY(solve_continued(job, at));
     for (int k = first; k < known->n + random && !moray_interrupted(); k++) {
@@ -234,7 +254,9 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
         moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
         if (!moray_failed(status))
             gait_job_keep_best(at, solution);
-        else if (!moray_failed(first_failure))
+        else
+            gait_job_lost_start(at);
+        if (moray_failed(status) && !moray_failed(first_failure))
             first_failure = status;
     }
     return at->solution ? moray_ok() : first_failure;

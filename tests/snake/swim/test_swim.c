@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "moray/snake/swim.h"
+#include "moray/snake/trial.h"
 
 #include "rk4.h"
 
@@ -358,6 +359,20 @@ static void test_orbit(moray_model model)
     moray_swimmer_free(swimmer);
 }
 
+// A gait that turns so slowly that speed and power change by nearly the same from period to period is not steady
+// either.
+static void test_slow_turn(void)
+{
+    moray_swimmer *swimmer = make(MORAY_FIRST_PRINCIPLES);
+    moray_swim_setup setup = setup_of(swimmer, 0.1, 0.2);
+    moray_gait gait = gait_of(MORAY_FIRST_PRINCIPLES, 20, 40);
+    gait.offset = 5e-3 * gait.amplitude;
+    moray_steady steady;
+    const moray_status status = moray_swim_steady(&setup, &gait, 0, &steady, NULL, 0);
+    CHECK(status.code == MORAY_NOT_SOLVED, "a slow turn in a current: %s", status.text);
+    moray_swimmer_free(swimmer);
+}
+
 static void test_turning_gait(moray_model model)
 {
     moray_swimmer *swimmer = make(model);
@@ -489,6 +504,37 @@ static void test_match(moray_model model)
     moray_swimmer_free(swimmer);
 }
 
+// ---- Gains: at the baseline's power and speed, not at the gait's own ----
+
+static void test_equal_power(void)
+{
+    const moray_robot robot = moray_robot_paper();
+    const moray_model model = MORAY_FIRST_PRINCIPLES;
+    const double still[2] = {0, 0};
+    moray_test_rig rig;
+    moray_gait_trial trial = {0}, baseline = {0};
+    CHECK_OK(moray_test_rig_new(&rig, &robot, still, 0), "rig");
+    baseline.gait[model] = gait_of(model, 20, 40);
+    trial.gait[model] = gait_of(model, 15, 55);
+    trial.gait[model].omega = 90 * DEG;
+    CHECK_OK(moray_gait_trial_swim(&rig, model, &baseline), "baseline");
+    CHECK_OK(moray_gait_trial_swim(&rig, model, &trial), "gait");
+    const moray_gait_gain gain = moray_gait_gain_over(&rig, &trial, &baseline);
+    const moray_steady *base = &baseline.steady[model];
+    const moray_swim_setup setup = moray_test_rig_setup(&rig, model);
+    moray_gait gait = trial.gait[model];
+    gait.omega = gain.omega_at_equal_power;
+    moray_steady swum = steady_of(&setup, &gait, 0);
+    CHECK_NEAR(swum.power, base->power, 1e-5 * base->power, "at the omega that is told the power is the baseline's");
+    CHECK_NEAR(gain.speed_percent_at_equal_power, 100 * (swum.speed / base->speed - 1), 1e-3, "and there the gain");
+    gait.omega = gain.omega_at_equal_speed;
+    swum = steady_of(&setup, &gait, 0);
+    CHECK_NEAR(swum.speed, base->speed, 1e-5 * base->speed, "at the other omega the speed is");
+    CHECK_NEAR(gain.power_percent_at_equal_speed, 100 * (swum.power / base->power - 1), 1e-3, "and there the saving");
+    CHECK(fabs(trial.steady[model].power / base->power - 1) > 0.3, "far from the power of the gait as it is");
+    moray_test_rig_free(&rig);
+}
+
 int main(void)
 {
     test_straight_table(MORAY_FIRST_PRINCIPLES, (const double[]){0.2083, 0.2784, 0.3290, 0.3794});
@@ -500,6 +546,8 @@ int main(void)
     test_turning_manoeuvre(MORAY_CONTROL_ORIENTED, 25.3, 39.10, 23.27);
     test_plans();
     test_steady_errors();
+    test_slow_turn();
+    test_equal_power();
     for (int i = 0; i < 2; i++) {
         test_against_reference(models[i]);
         test_schedule(models[i]);

@@ -1,0 +1,21 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The figures of trust, as results/trust has them: random robots, random starts, a long run of the fuzzer and the mutation of
+# the tests, each with its command and seeds. An hour on an idle machine; runs by name alone:
+#   sh tests/studies/trust.sh BUILD [ROBOTS [STARTS [MUTANTS]]]
+root=$(CDPATH='' cd -- "$(dirname -- "$0")/../.." && pwd) || exit 1
+build=$(CDPATH='' cd -- "$1" && pwd) || exit 2
+robots=${2:-150} starts=${3:-100} mutants=${4:-200}
+cd "$root" || exit 1
+
+# part COMMAND...: what it is and what it printed.
+part() {
+    echo "\$ $*" | sed "s|$build|BUILD|g"
+    "$@"
+    echo
+}
+
+part sh tests/studies/robots.sh "$build" 1 "$robots"
+part sh tests/studies/starts.sh "$build" "$starts"
+part "$build/tests/fuzz" tests/fuzz/corpus 200000 7 | grep -v '^ok .*: ok$'
+part python3 tests/studies/mutate.py --count "$mutants" --seed 1
