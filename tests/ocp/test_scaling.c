@@ -146,7 +146,8 @@ static void test_rows(void)
                                                    .ne = 2,
                                                    .e = MORAY_BOUNDS(moray_between(-30, 30), moray_between(-9, 9))}),
              "rows");
-    CHECK_OK(moray_solve(ocp, NULL, NULL, &solution), "solved");
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
     const struct transcription *t = solution->transcription;
     CHECK_NEAR(t->nlp.g_scale[t->layout.events], 1 / 40., 1e-12, "a slope of 40");
     CHECK_NEAR(t->nlp.g_scale[t->layout.events + 1], 1, 0, "a slope of 1/4");

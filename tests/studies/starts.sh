@@ -16,9 +16,9 @@ number() { # FILE KEY: the first value of it in the JSON
     awk -v key="\"$2\"" 'index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' "$1"
 }
 
-# The block of the last stage's starts: "iterations_of_starts": [ ... ], over one line or more.
+# Of the recommended gait's starts, the first in the JSON.
 iterations() {
-    tr -d '\n\t ' <"$1" | sed 's/.*"iterations_of_starts":\[\([^]]*\)\].*/\1/; q' | tr ',' '\n'
+    tr -d '\n\t ' <"$1" | grep -o '"iterations_of_starts":\[[^]]*' | head -n 1 | sed 's/.*\[//' | tr ',' '\n'
 }
 
 worse=0
