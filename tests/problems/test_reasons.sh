@@ -42,6 +42,15 @@ run --json --quiet --links 5 --current 0.1,0.1 --set power_W=0.3
 check "five links in a cross current that the paper's gait cannot hold: $code $(cat err)" \
     eval '[ $code -eq 0 ] && [ "$(number certificate pass)" = true ] && grep -q "cannot hold the course" out'
 
+# Both optima along delta are tried, and every start tells what it cost.
+if thorough; then
+run --json --quiet --over none --links 20
+check "twenty links end in the better of two optima: $(number predicted course_speed_m_s)" \
+    eval 'near "$(number predicted course_speed_m_s)" 0.51772 1e-4'
+check "iterations of each of $(number starts) starts: $(tr -d "\n\t " <out | grep -o "iterations_of_starts[^]]*" | head -n 1)" \
+    [ "$(tr -d '\n\t ' <out | grep -o 'iterations_of_starts[^]]*' | head -n 1 | tr ',' '\n' | grep -c '[0-9]$')" = "$(number starts)" ]
+fi
+
 # An auxiliary stage that is not certified leaves the exit code to what was asked for; what was asked for does not, and
 # says so on standard error.
 run --json --quiet --over none --tol 0.01

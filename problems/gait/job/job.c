@@ -25,8 +25,11 @@ static const moray_option shared[] = {
                "complex model)"),
     MORAY_ROW(CHOICE, gait_job, joints, "problem", "joints", .choices = joint_forms,
               .help = "six states with the joints on the gait, or all states with the joint controller (34)"),
-    MORAY_ROW(INT, gait_job, random_starts, "solver", "random_starts", .min = 0, .max = 10000,
-              .help = "random gaits to start from, besides the paper's gait and the control-oriented optimum"),
+    MORAY_ROW(
+        INT, gait_job, random_starts, "solver", "random_starts", .min = 0, .max = 10000,
+        .help =
+            "random gaits to start from, besides the paper's gait, one past twice its delta and the control-oriented "
+            "optimum"),
     {.flag = "jobs",
      .argument = "N",
      .type = MORAY_OPTION_INT,
@@ -208,6 +211,19 @@ static moray_status work_on_ladder(gait_job *job)
     return moray_ok();
 }
 
+// The first-principles model has two optima along delta: one near the paper's gait, the other past twice its delta,
+// where the same power allows twice its omega.
+static moray_gait further_gait(const gait_job *job)
+{
+    const double further = 2.2;
+    moray_gait gait = job->paper.gait[MORAY_FIRST_PRINCIPLES];
+    gait.delta = fmin(fmax(further * gait.delta, job->delta[0]), job->delta[1]);
+    gait.omega = fmin(fmax(further * gait.omega, job->omega[0]), job->omega[1]);
+    gait.amplitude = moray_amplitude_from_theta_max(&job->snake.robot, MORAY_FIRST_PRINCIPLES,
+                                                    fmin(20 * DEG, job->theta_max[1]), gait.delta);
+    return gait;
+}
+
 moray_status gait_job_work(gait_job *job)
 {
     scenarios over;
@@ -216,9 +232,9 @@ moray_status gait_job_work(gait_job *job)
     MORAY_TRY(work_on_other(job));
     stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
     if (job->snake.model == MORAY_FIRST_PRINCIPLES) {
-        gait_starts known = {{job->paper.gait[MORAY_FIRST_PRINCIPLES]}, 1};
+        gait_starts known = {{job->paper.gait[MORAY_FIRST_PRINCIPLES], further_gait(job)}, 2};
         if (!control->left_out)
-            known = (gait_starts){{control->trial.gait[MORAY_FIRST_PRINCIPLES], known.gait[0]}, 2};
+            known.gait[known.n++] = control->trial.gait[MORAY_FIRST_PRINCIPLES];
         MORAY_TRY(optimise_and_prove(job, MORAY_FIRST_PRINCIPLES, &known));
         if (over.n > 0)
             MORAY_TRY(work_on_ladder(job));

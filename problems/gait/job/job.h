@@ -140,7 +140,7 @@ void gait_job_free(gait_job *job);
 
 // Known gaits of a model to start from.
 typedef struct gait_starts {
-    moray_gait gait[2];
+    moray_gait gait[3];
     int n;
 } gait_starts;
 
