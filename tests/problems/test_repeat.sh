@@ -32,7 +32,7 @@ twice() {
 }
 
 twice simulate --current 0.1,0 --links 7 --set duration_s=3 --set theta_max_deg=17.3 --set c_n=8.123456789012345
-twice simulate --robot "$2/problems/robots/head_and_fin.ini" --model fp --set duration_s=2 --set link_c_n=7,7*9.123456789012345,11 \
+twice simulate --robot "$2/problems/robots/head_and_fin.ini" --model fp --set duration_s=2 --set link_c_n=7.123456789012341,8.123456789012342,8.123456789012343,8.123456789012344,8.123456789012345,8.123456789012346,8.123456789012347,2*9.5 \
     --set motor_efficiency=0.7 --set motor_speed_deg_s=0,100,300 --set motor_torque_N_m=4,3.9,0 --set hotel_W=1.5
 twice max_speed --model control --set theta_max_deg=10:17.7 --set ipopt.mu_strategy=adaptive
 twice classics brachistochrone --set tol=1e-9

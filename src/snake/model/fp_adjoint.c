@@ -7,6 +7,7 @@
 #define REAL double
 #define TYPED(name) name##_d
 #include "snake/model/fp_motor.inc"
+#include "snake/model/fp_slopes.inc"
 #include "snake/model/fp_adjoint.inc"
 #undef REAL
 #undef TYPED
@@ -14,6 +15,7 @@
 #define REAL double complex
 #define TYPED(name) name##_z
 #include "snake/model/fp_motor.inc"
+#include "snake/model/fp_slopes.inc"
 #include "snake/model/fp_adjoint.inc"
 #undef REAL
 #undef TYPED
