@@ -44,6 +44,7 @@ near() {
 
 refuse 'unknown study mappin; did you mean mapping?' mappin
 refuse 'unknown study weather; --help lists them' mapping weather
+refuse '[links]: mapping is of the paper' mapping --set link_m_kg=1,9*0.7
 refuse 'no study is named: must be all or some of those that --help lists'
 refuse 'unknown study (empty)' ''
 refuse '--scheme: paper has no use for it' mapping --scheme gauss3

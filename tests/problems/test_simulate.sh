@@ -47,6 +47,22 @@ found alpha_deg 13.681 0.001
 found periods 5 0
 near "peak torque in the last periods" "$(awk '/peak_torque/ { print $2 + 0; exit }' out)" 0.403 0.0005
 steps=$(value steps)
+
+# Motors, a battery, unequal links.
+run --model fp --set duration_s=20 --set hotel_W=1 --set motor_idle_W=0.1 --set battery_Wh=20
+joints=$(value joints_or_motors_W)
+check "without motors the power is that of the joints: $(cat err)" [ "$(awk '/"power_W"/ { print $2; exit }' out)" = "$joints," ]
+near "whole power" "$(value power_W)" "$(awk "BEGIN { print $joints + 1.9 }")" 1e-5
+near "endurance" "$(value endurance_h)" "$(awk "BEGIN { print 20 / ($joints + 1.9) }")" 1e-4
+run --model fp --set duration_s=20 --set motor_efficiency=0.5 --set motor_speed_deg_s=0,60 --set motor_torque_N_m=0.7,0
+check "power is at the motors: $(cat err)" grep -q '"power_is":.*"mean power at the motors"' out
+check "half the efficiency and nothing back takes more than twice, $(value joints_or_motors_W) W, of $joints W" \
+    awk -v is="$(value joints_or_motors_W)" -v was="$joints" 'BEGIN { exit !(is > 2 * was) }'
+check "how near the motors come to their line: $(value motor_load)" \
+    awk -v load="$(value motor_load)" 'BEGIN { exit !(load > 0.5 && load < 1.5) }'
+run --model control --robot "$root/problems/robots/head_and_fin.ini" --set duration_s=5
+check "the control-oriented model swims the nearest equal robot: $(cat err)" grep -q nearest_equal_link out
+check "and says so" eval '"$simulate" --robot "$root/problems/robots/head_and_fin.ini" --set duration_s=5 | grep -q "9 unequal links (the control-oriented model swims the nearest equal robot"'
 run --model fp --integrator paper
 found speed_m_s 0.2293 0.001
 found rtol 1e-4 0
