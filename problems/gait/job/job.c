@@ -42,7 +42,7 @@ static const moray_option shared[] = {
 static const moray_option continuation[2] = {MORAY_CONTINUE(gait_job, from_file), MORAY_LEAVE(gait_job, solution_file)};
 
 // A limit on the effort is kept at the nodes: between them it passes the certificate on the finer mesh.
-enum { usual_intervals = 12, effort_intervals = 80 };
+enum { usual_intervals = 12, motor_intervals = 24, effort_intervals = 80 };
 
 gait_job gait_job_defaults(const gait_program *program)
 {
@@ -167,6 +167,9 @@ moray_status gait_job_prepare(gait_job *job)
     MORAY_TRY(moray_robot_check_swims(&job->snake.robot));
     if (isfinite(job->joint_effort) && job->common.intervals == usual_intervals)
         job->common.intervals = effort_intervals;
+    if (job->snake.robot.motor.fitted && job->snake.model == MORAY_FIRST_PRINCIPLES &&
+        job->common.intervals == usual_intervals)
+        job->common.intervals = motor_intervals; // for what changes with the sign of a rate or a power
     delta_range(job->delta, &job->snake.robot);
     MORAY_TRY(moray_scheme_parse(job->common.scheme, &family, &stages));
     MORAY_TRY(moray_test_rig_new(&job->rig, &job->snake.robot, job->snake.current, job->snake.course));
