@@ -29,6 +29,7 @@ static inline size_t option_size(const moray_option *row)
         return sizeof(moray_ipopt_list);
     case MORAY_OPTION_LIST:
     case MORAY_OPTION_TEXT:
+    case MORAY_OPTION_RUN:
         break;
     }
     return row->size;

@@ -39,6 +39,9 @@ MORAY_API void moray_spline_free(moray_spline *spline);
 MORAY_API moray_status moray_spline_read(moray_spline **spline, const char *path, const char *x, const char *y,
                                          moray_table_ends ends, moray_table_outside outside);
 
+// The first and the last number that it was made from.
+MORAY_API void moray_spline_range(const moray_spline *spline, double range[2]);
+
 // Value at x, with first and second derivatives in d[2] unless NULL; the second is that of the right at a jump.
 MORAY_API double moray_spline_real(const moray_spline *spline, double x, double *d);
 

@@ -142,6 +142,12 @@ void moray_spline_free(moray_spline *spline)
     free(spline);
 }
 
+void moray_spline_range(const moray_spline *spline, double range[2])
+{
+    range[0] = spline->x[0];
+    range[1] = spline->x[spline->axis.n - 1];
+}
+
 double moray_spline_real(const moray_spline *spline, double x, double *d)
 {
     double w[3][4], value[3];

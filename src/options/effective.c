@@ -56,8 +56,9 @@ static bool repeats(const moray_option *row, const char *text, const void *at)
     moved.offset = 0;
     const bool plain = !strpbrk(text, ";#\n\r\"") && strlen(text) + strlen(row->key) < 190 && *text != ' ' &&
                        (!*text || text[strlen(text) - 1] != ' ');
+    const bool words = row->type == MORAY_OPTION_TEXT || row->type == MORAY_OPTION_RUN;
     const bool same = copy && plain && !moray_failed(moray_option_read(&moved, row->key, text, copy)) &&
-                      (row->type == MORAY_OPTION_TEXT ? strcmp(copy, at) == 0 : memcmp(copy, at, row->size) == 0);
+                      (words ? strcmp(copy, at) == 0 : memcmp(copy, at, row->size) == 0);
     free(copy);
     return same;
 }
@@ -75,6 +76,7 @@ static bool show(const moray_option *row, const void *settings, char text[MOST])
         show_reals(row, at, text);
         break;
     case MORAY_OPTION_TEXT:
+    case MORAY_OPTION_RUN:
         snprintf(text, MOST, "%s", at);
         break;
     default:

@@ -42,7 +42,7 @@ const char *moray_option_argument(const moray_option *row)
         [MORAY_OPTION_LIMIT] = "X|none",   [MORAY_OPTION_INT] = "N",       [MORAY_OPTION_REAL] = "X",
         [MORAY_OPTION_BOOL] = "yes|no",    [MORAY_OPTION_CHOICE] = "NAME", [MORAY_OPTION_TEXT] = "TEXT",
         [MORAY_OPTION_RANGE] = "LOW:HIGH", [MORAY_OPTION_PAIR] = "X,Y",    [MORAY_OPTION_INI] = "FILE",
-        [MORAY_OPTION_IPOPT] = "VALUE",    [MORAY_OPTION_LIST] = "X,...",
+        [MORAY_OPTION_IPOPT] = "VALUE",    [MORAY_OPTION_LIST] = "X,...",  [MORAY_OPTION_RUN] = "DIR",
     };
     return row->argument ? row->argument : by_type[row->type];
 }
@@ -61,7 +61,7 @@ void moray_option_text(const moray_option *row, const void *settings, char text[
 {
     char allowed[MORAY_SHOWN_SIZE] = "", given[MORAY_SHOWN_SIZE] = "";
     if (row->type != MORAY_OPTION_TEXT && row->type != MORAY_OPTION_BOOL && row->type != MORAY_OPTION_INI &&
-        row->type != MORAY_OPTION_IPOPT)
+        row->type != MORAY_OPTION_IPOPT && row->type != MORAY_OPTION_RUN)
         moray_option_allowed(row, allowed);
     const bool shown = row->key && moray_option_default(row, settings, given);
     snprintf(text, MORAY_TEXT_SIZE, "%s%s%s%s%s", row->help, *allowed ? "; " : "", allowed, shown ? "; default " : "",

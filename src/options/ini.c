@@ -18,6 +18,7 @@ typedef struct ini_state {
     char list[LIST_SIZE];     // of it, so far
     moray_ipopt_list ipopt;   // what this file has set
     bool words_given;         // before it was read
+    bool of_a_run;            // of any program: what this one does not have is passed over
     moray_status status;
 } ini_state;
 
@@ -85,6 +86,11 @@ static moray_status set_list(ini_state *state, const moray_option *row, const ch
 
 static moray_status set_key(ini_state *state, const char *section, const char *key, const char *value)
 {
+    if (state->of_a_run) {
+        const moray_option *own = moray_option_find(state->options, key);
+        if (!own || strcmp(section, own->section) != 0)
+            return moray_ok();
+    }
     if (strcmp(section, "ipopt") == 0)
         return set_ipopt(state, key, value);
     if (strcmp(section, "run") == 0)
@@ -132,11 +138,13 @@ static moray_status parse(ini_state *state)
     return state->status;
 }
 
-moray_status moray_ini_read(const moray_options *options, const char *flag, const char *path, void *settings)
+moray_status moray_ini_read(const moray_options *options, const moray_option *from, const char *given, void *settings)
 {
-    char what[64];
-    snprintf(what, sizeof what, "%s file", flag);
-    ini_state state = {.options = options, .settings = settings, .status = moray_ok()};
+    char what[64], path[MORAY_PATH_SIZE + 16];
+    const bool of_a_run = from->type == MORAY_OPTION_RUN;
+    snprintf(what, sizeof what, "%s file", from->flag);
+    snprintf(path, sizeof path, "%s%s", given, of_a_run ? "/run.ini" : "");
+    ini_state state = {.options = options, .settings = settings, .of_a_run = of_a_run, .status = moray_ok()};
     state.words_given = options->words && !moray_failed(moray_words_check(options->words, settings));
     state.set_in_line = calloc((size_t)options->n, sizeof *state.set_in_line);
     moray_status status = state.set_in_line

@@ -106,7 +106,8 @@ void moray_options_write_rest(const moray_options *options, const void *settings
 moray_status moray_options_parse(const moray_program *program, int argc, char **argv, void *settings,
                                  moray_request *request, char **ini);
 
-// Sets the keys that the INI file of --flag gives. Error: MORAY_INPUT or MORAY_IO, with file and line.
-moray_status moray_ini_read(const moray_options *options, const char *flag, const char *path, void *settings);
+// Sets the keys that the INI file of the row, or that of its run, gives. Error: MORAY_INPUT or MORAY_IO, with file and
+// line.
+moray_status moray_ini_read(const moray_options *options, const moray_option *from, const char *given, void *settings);
 
 #endif

@@ -31,11 +31,11 @@ static moray_status read_files(const moray_options *options, const moray_argumen
 {
     for (int i = 0; i < arguments->n; i++) {
         const moray_option *row = arguments->item[i].row;
-        bool last = row && row->type == MORAY_OPTION_INI;
+        bool last = row && (row->type == MORAY_OPTION_INI || row->type == MORAY_OPTION_RUN);
         for (int k = i + 1; k < arguments->n; k++)
             last = last && arguments->item[k].row != row;
         if (last)
-            MORAY_TRY(moray_ini_read(options, row->flag, arguments->item[i].value, settings));
+            MORAY_TRY(moray_ini_read(options, row, arguments->item[i].value, settings));
     }
     return moray_ok();
 }

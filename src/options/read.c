@@ -140,6 +140,7 @@ static bool read_value(const moray_option *row, const char *text, char *to)
             memcpy(to, &yes, sizeof yes);
         return good;
     case MORAY_OPTION_TEXT:
+    case MORAY_OPTION_RUN:
         return read_text(row, text, to);
     case MORAY_OPTION_IPOPT:
     case MORAY_OPTION_INI:

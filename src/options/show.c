@@ -71,6 +71,9 @@ void moray_option_allowed(const moray_option *row, char text[MORAY_SHOWN_SIZE])
     case MORAY_OPTION_TEXT:
         snprintf(text, MORAY_SHOWN_SIZE, "a text of 1 to %zu bytes", row->size - 1);
         return;
+    case MORAY_OPTION_RUN:
+        snprintf(text, MORAY_SHOWN_SIZE, "the folder of a run, with a run.ini");
+        return;
     case MORAY_OPTION_IPOPT:
     case MORAY_OPTION_INI:
         snprintf(text, MORAY_SHOWN_SIZE, "the path of a file");
@@ -141,6 +144,7 @@ bool moray_option_default(const moray_option *row, const void *settings, char te
         snprintf(text, MORAY_SHOWN_SIZE, yes ? "yes" : "no");
         return true;
     case MORAY_OPTION_TEXT:
+    case MORAY_OPTION_RUN:
         snprintf(text, MORAY_SHOWN_SIZE, "%s", at);
         return text[0] != 0;
     case MORAY_OPTION_REAL:

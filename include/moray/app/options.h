@@ -28,7 +28,9 @@ typedef enum {
     MORAY_OPTION_LIST,   // double[] from "x,k*y,...", k times y; what is behind the last one is NaN; in an INI file a
                          // list that ends with a comma goes on in the next line
     MORAY_OPTION_IPOPT,  // moray_ipopt_list: one more of it
-    MORAY_OPTION_INI     // path of an INI file, read before the command line; stored nowhere; a flag alone
+    MORAY_OPTION_INI,    // path of an INI file, read before the command line; stored nowhere; a flag alone
+    MORAY_OPTION_RUN // char[], the folder of a run of any program (--out); of its run.ini the keys that this program
+                     // has too, in the same section, are read before the command line
 } moray_option_type;
 
 // One row of the table. The default is what stands in the settings before they are parsed; a NaN has none to show.

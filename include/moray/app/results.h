@@ -70,6 +70,19 @@ MORAY_API void moray_json_object(moray_json *json, const char *key, const moray_
 MORAY_API moray_status moray_json_write(const moray_json *json, FILE *file);
 MORAY_API void moray_json_free(moray_json *json);
 
+// A JSON file, such as a summary.json, to be read. A place in it is the keys that lead there, items of a list by their
+// number from 0, joined by dots: "steering.2.gain_m_rad"; "" is the whole. Error: MORAY_IO, MORAY_INPUT naming the
+// file, MORAY_MEMORY. Free with moray_json_file_free.
+typedef struct moray_json_file moray_json_file;
+MORAY_API moray_status moray_json_read(moray_json_file **json, const char *path);
+MORAY_API void moray_json_file_free(moray_json_file *json); // NULL is allowed
+
+// What stands there: the number, NaN where there is none; the text, which lives as long as the file, or NULL; how many
+// items or members, -1 where there is no list and no object.
+MORAY_API double moray_json_number_at(const moray_json_file *json, const char *place);
+MORAY_API const char *moray_json_text_at(const moray_json_file *json, const char *place);
+MORAY_API int moray_json_count_at(const moray_json_file *json, const char *place);
+
 // ---- Tables --------------------------------------------------------------------------------------------------------
 
 enum { MORAY_TABLE_COLUMNS = 8 };

@@ -124,6 +124,9 @@ static void summary(const void *found, moray_json *json)
     const sea_law *laws;
     const int n = sea_laws(job, &laws), best = best_rival(job, laws, n);
     moray_snake_to_json(json, &job->snake);
+    const moray_gait gait[2] = {
+        job->gait, moray_gait_map(&job->snake.robot, &job->gait, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES)};
+    moray_gait_to_json(json, "gait", &job->snake.robot, gait);
     moray_json_text(json, "task", job->task == SEA_HEADING ? "heading" : "path");
     moray_json_text(json, "rung", job->rung);
     moray_json_text(json, "planner_current", job->believed_current);
