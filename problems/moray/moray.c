@@ -29,7 +29,7 @@ static const listed programs[] = {
     {"min_time_turn", "fastest change of heading, or from pose to pose", NULL},
     {"sea_trials", "steering under robots, currents and noise not foreseen", NULL},
     {"ladder", "any gaits on the ladder of models", NULL},
-    {"export", "a gait and its steering for a robot's controller, and the robot for simulators", NULL},
+    {"export", "a gait and its steering as C, tables, URDF", NULL},
     {"simulate", "any gait or schedule of gaits, on either model", NULL},
     {"paper", "the figures and propositions of the paper as studies", NULL},
     {"classics", "textbook problems beside their published optima", NULL},
