@@ -16,6 +16,7 @@ static const moray_option options[] = {
         "of the integral over s of the square of phi_0'' in units of its limit per s^2, against 1 for the time in s"),
     STEER_NUMBER(REAL, turn_job, band, "problem", "band_deg", 1e-3, 90, "deg",
                  "around the heading wanted, within which the turn counts as done"),
+    STEER_WATER_OPTION(turn_job),
     STEER_MESH_OPTIONS(turn_job),
     STEER_TUNING_OPTIONS(turn_job),
 };

@@ -23,6 +23,7 @@ static const moray_option options[] = {
     STEER_LIMIT(path_job, tube, "tube_m", "m", "largest cross-track error allowed of the plan"),
     STEER_NUMBER(REAL, path_job, reach, "problem", "reach_m", 1e-3, 1e4, "m",
                  "way made within which a start off the path is to come to it"),
+    STEER_WATER_OPTION(path_job),
     STEER_MESH_OPTIONS(path_job),
     MORAY_ROW(BOOL, path_job, find_gait, "solver", "find_gait",
               .help =

@@ -173,6 +173,7 @@ static moray_status swim(const simulate *run, simulate_results *results, double 
                                   .schedule = results->schedule,
                                   .n_changes = results->n_changes,
                                   .times = times,
+                                  .water = results->water,
                                   .n_times = choose_times(run, results, n, divided, times, kept),
                                   .observe = look,
                                   .observer = &seen,
@@ -213,7 +214,7 @@ static bool turns(const simulate *run, const simulate_results *results)
     bool offset = fabs(V[1] * cos(run->heading) - V[0] * sin(run->heading)) > nothing;
     for (int k = 0; k < results->n_changes; k++)
         offset = offset || results->schedule[k].gait.offset != 0;
-    return offset && run->snake.model == MORAY_CONTROL_ORIENTED;
+    return (offset || results->water) && run->snake.model == MORAY_CONTROL_ORIENTED;
 }
 
 moray_status simulate_run(const simulate *run, simulate_results *results)
@@ -222,6 +223,11 @@ moray_status simulate_run(const simulate *run, simulate_results *results)
     results->sim = settings_of(run);
     MORAY_TRY(moray_sim_settings_check(&results->sim));
     MORAY_TRY(read_schedule(run, results));
+    if (run->water_file[0]) {
+        if (run->snake.current[0] != 0 || run->snake.current[1] != 0)
+            return moray_error(MORAY_INPUT, "--water and --current: give one of them");
+        MORAY_TRY(moray_water_read(&results->water, run->water_file));
+    }
     if (turns(run, results))
         MORAY_TRY(moray_snake_turning(&run->snake));
     results->window = window_of(results, run->periods);
@@ -231,6 +237,7 @@ moray_status simulate_run(const simulate *run, simulate_results *results)
 
 void simulate_release(simulate_results *results)
 {
+    moray_water_free(results->water);
     moray_swim_track_free(&results->track);
     moray_swimmer_free(results->swimmer);
     free(results->schedule);

@@ -12,7 +12,7 @@ typedef struct simulate {
     moray_common common;
     moray_snake_options snake;
     moray_gait_input gait;
-    char schedule_file[MORAY_PATH_SIZE];
+    char schedule_file[MORAY_PATH_SIZE], water_file[MORAY_PATH_SIZE]; // empty: none
     double duration, output_step, heading, position[2]; // duration NaN: 60 s after the last change of gait
     int periods;
     simulate_integrator integrator;
@@ -28,6 +28,7 @@ typedef struct simulate_window {
 typedef struct simulate_results {
     const simulate *run;
     moray_sim_settings sim;
+    moray_water *water;          // NULL: the current is uniform
     moray_gait_change *schedule; // as far as the simulation goes
     int n_changes;
     double t1;

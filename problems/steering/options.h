@@ -29,6 +29,11 @@
                     "mean joint power; by default what the paper's gait uses straight ahead in the same model, none "  \
                     "where the gait is given")
 
+#define STEER_WATER_OPTION(settings)                                                                                   \
+    MORAY_ROW(TEXT, settings, steer.water_file, "problem", "water", .flag = "water", .argument = "FILE",               \
+              .help = "CSV file of a current over place and time in place of the uniform one: a grid of x_m, y_m, "    \
+                      "v_x_m_s, v_y_m_s and, where it changes, t_s")
+
 #define STEER_MESH_OPTIONS(settings)                                                                                   \
     STEER_NUMBER(INT, settings, steer.intervals_per_period, "solver", "intervals_per_period", 1, 100, NULL,            \
                  "of the mesh, an undulation"),                                                                        \

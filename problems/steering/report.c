@@ -165,8 +165,9 @@ static void print(const void *found, const moray_report *report)
     const steer_program *program = job->program;
     char text[STEER_TEXT];
     char links[MORAY_LINKS_TEXT];
-    printf("%s, current (%g, %g) m/s, ", moray_snake_links_text(&job->snake.robot, links), job->snake.current[0],
-           job->snake.current[1]);
+    printf("%s, current (%.6g, %.6g) m/s%s%s, ", moray_snake_links_text(&job->snake.robot, links),
+           job->snake.current[0], job->snake.current[1], job->water ? " in the mean of " : "",
+           job->water ? job->water_file : "");
     program->headline(job, stdout);
     printf("\n\n");
     moray_tables_print(report->tables, report->n_tables, stdout);
@@ -221,7 +222,7 @@ static void say_missing(const steer_job *job, char *text, size_t size)
 moray_status steer_report(steer_job *job)
 {
     steer_tables tables = {0};
-    char text[STEER_TEXT], why[STEER_TEXT], certificates[3 * STEER_TEXT] = "", asked[160];
+    char text[STEER_TEXT], why[STEER_TEXT], certificates[3 * STEER_TEXT] = "", asked[300];
     moray_swim_scene scene = {0};
     job->program->tables(job, &tables);
     job->program->conclude(job, text, sizeof text);
@@ -229,8 +230,9 @@ moray_status steer_report(steer_job *job)
     job->program->explain(job, why, sizeof why);
     const bool pass = certify(job, certificates, sizeof certificates);
     char links[MORAY_LINKS_TEXT];
-    snprintf(asked, sizeof asked, "A robot of %s in a current of (%g, %g) m/s.",
-             moray_snake_links_text(&job->snake.robot, links), job->snake.current[0], job->snake.current[1]);
+    snprintf(asked, sizeof asked, "A robot of %s in a current of (%g, %g) m/s%s%.60s.",
+             moray_snake_links_text(&job->snake.robot, links), job->snake.current[0], job->snake.current[1],
+             job->water ? " in the mean, by the table " : "", job->water ? job->water_file : "");
     scene.scene.title = "The robot swimming";
     scene.scene.text = "Simulated on the first-principles model, every way of steering on the same water.";
     job->scene = &scene;

@@ -27,6 +27,29 @@ steer_job steer_defaults(void)
     return job;
 }
 
+moray_status steer_read_water(steer_job *job, const double (*place)[2], int n)
+{
+    double *mean = job->snake.current;
+    if (!job->water_file[0])
+        return moray_ok();
+    if (job->snake.robot.hydro.drag != MORAY_DRAG_LINEAR &&
+        job->snake.robot.hydro.added_mass != MORAY_ADDED_MASS_INVARIANT)
+        return moray_error(MORAY_INPUT, "--water: quadratic drag needs added_mass = invariant, else drag = linear");
+    MORAY_TRY(moray_water_read(&job->water, job->water_file));
+    mean[0] = mean[1] = 0;
+    for (int k = 0; k < n; k++) {
+        double V[2];
+        if (!moray_water_covers(job->water, place[k][0], place[k][1], 0))
+            return moray_error(MORAY_INPUT,
+                               "--water %.120s: the way leads through (%.4g, %.4g) m, outside of the table",
+                               job->water_file, place[k][0], place[k][1]);
+        moray_water_at(job->water, place[k][0], place[k][1], 0, V);
+        mean[0] += V[0] / n;
+        mean[1] += V[1] / n;
+    }
+    return moray_ok();
+}
+
 // ---- Start and end -------------------------------------------------------------------------------------------------
 
 static moray_status work(steer_job *job)
@@ -79,6 +102,7 @@ int steer_main(const moray_program *own, const steer_program *program, int argc,
         moray_steering_plan_free(&job->plan[k]);
     if (program->release)
         program->release(job);
+    moray_water_free(job->water);
     return exit_code;
 }
 

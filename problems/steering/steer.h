@@ -155,10 +155,12 @@ struct steer_job {
     double replan_periods, look_ahead_periods;
     bool receding;
     steer_clock clock;
+    char water_file[MORAY_PATH_SIZE]; // empty: the current is uniform
     // found along the way
     moray_status without; // why there is no first-principles plan though it was asked for; ok: there is, or it was not
     const char *name;     // of the program
     const steer_program *program;
+    moray_water *water; // owned; NULL: uniform, else snake.current is typical of it
     steer_number number[STEER_NUMBERS];
     moray_straight_motion straight[STEER_GAITS][2]; // of the paper's gait, those of the plans; by the model swum on
     moray_steering_plan plan[3];                    // owned; without a solution: not yet made
@@ -183,6 +185,10 @@ static inline const moray_steering_plan *steer_last_plan(const steer_job *job)
 }
 
 // ---- Gaits and limits ----------------------------------------------------------------------------------------------
+
+// Where --water is given: reads it, and makes the current of the job its mean over n places [m] at t = 0. Error: those
+// of moray_water_read; MORAY_INPUT where a place is not in the table.
+moray_status steer_read_water(steer_job *job, const double (*place)[2], int n);
 
 // Whether the ranges leave no choice of a gait.
 bool steer_gait_given(const steer_job *job);

@@ -52,6 +52,7 @@ static moray_status swim(steer_steersman *h, accuracy how, moray_swim_closed_loo
     moray_swim_closed_loop_spec spec = {.robot = &job->snake.robot,
                                         .straight = &job->straight[h->trial->gait][h->model],
                                         .current = {job->snake.current[0], job->snake.current[1]},
+                                        .water = job->water,
                                         .controller = &h->controller,
                                         .tolerance = how.tolerance,
                                         .on_gait = how.on_gait};

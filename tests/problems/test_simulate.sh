@@ -90,6 +90,20 @@ found power_W "$power" 1e-6
 near "peak force, sampled between the output steps" "$(awk '/peak_force/ { print $2 + 0; exit }' out)" 1.614 0.005
 
 # Currents, headings, positions: the control-oriented model knows the current through the relative velocity alone.
+# A table of a uniform current swims as that current does; where it ends, the run does.
+awk 'BEGIN { print "x_m,y_m,v_x_m_s,v_y_m_s"; for (x = -9; x <= 12; x += 7) for (y = -9; y <= 12; y += 7) print x "," y ",0.1,0.05" }' >uniform.csv
+run --model fp --current 0.1,0.05 --duration 8
+power=$(value power_W) along=$(value course_speed_m_s)
+run --model fp --water uniform.csv --duration 8
+check "swims in a table: $(cat err)" [ $code -eq 0 ]
+found power_W "$power" 1e-9
+found course_speed_m_s "$along" 1e-9
+run --model fp --water uniform.csv --duration 60
+check "leaves the table: $(cat err)" eval '[ $code -eq 2 ] && grep -q "outside of the table: x -9 to 12, y -9 to 12 m" err'
+run --water uniform.csv --current 0.1,0
+check "two currents: $(cat err)" eval '[ $code -eq 2 ] && grep -q "give one of them" err'
+run --water nowhere.csv
+check "no table: $(cat err)" eval '[ $code -eq 2 ] && grep -q "water nowhere.csv: cannot be opened" err'
 run --current 0.1,0.05 --course 90
 found speed_m_s 0.2574 0.0005
 found course_speed_m_s 0.05 0.01

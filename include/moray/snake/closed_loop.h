@@ -18,6 +18,7 @@ typedef struct moray_swim_closed_loop_spec {
     double heading;                          // mean, at the start [rad]
     double position[2];                      // there [m]
     double current[2];                       // [m/s]
+    const moray_water *water;                // in place of it; NULL: uniform
     const moray_swim_controller *controller; // NULL: nobody steers
     double duration;                         // [s]
     int intervals;                           // recorded, of equal length

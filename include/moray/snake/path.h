@@ -32,7 +32,8 @@ typedef struct moray_path_spec {
     moray_robot robot;
     moray_model model;
     bool averaged;
-    double current[2]; // [m/s]
+    double current[2];        // [m/s]
+    const moray_water *water; // in place of it, which is then what guesses and times go by; NULL: uniform
     moray_steering_limits limits;
     moray_path_weights weight;
     const moray_path *path;              // must outlive the problem

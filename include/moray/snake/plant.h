@@ -7,6 +7,7 @@
 #include "moray/export.h"
 #include "moray/map.h"
 #include "moray/snake/model.h"
+#include "moray/water.h"
 
 MORAY_BEGIN
 
@@ -30,6 +31,7 @@ typedef struct moray_plant_spec {
     moray_robot robot;
     moray_joints joints;
     double current[2];             // V_x, V_y [m/s]
+    const moray_water *water;      // in place of it, as it is at (p_x, p_y) and t; must outlive the map; NULL: uniform
     bool path_forces, path_angles; // blocks of c wanted
     bool path_supply;              // and, with the motors of the first-principles model, behind the efforts u_m + slope
                                    // phi_i' of every line of these, all joints of one line after the other

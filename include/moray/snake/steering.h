@@ -46,8 +46,9 @@ typedef struct moray_steering_task {
 typedef struct moray_steering_spec {
     moray_robot robot;
     moray_model model;
-    bool averaged;     // the period-averaged plant; control-oriented model only
-    double current[2]; // [m/s]
+    bool averaged;            // the period-averaged plant; control-oriented model only
+    double current[2];        // [m/s]
+    const moray_water *water; // in place of it, as of a moray_plant_spec; NULL: uniform
     moray_steering_limits limits;
     moray_bounds t0, tf;
     moray_bounds x0[MORAY_STEERING_STATES], xf[MORAY_STEERING_STATES]; // narrow the limits at the ends

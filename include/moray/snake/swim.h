@@ -10,6 +10,7 @@
 #include "moray/control/closed_loop.h"
 #include "moray/sim.h"
 #include "moray/snake/model.h"
+#include "moray/water.h"
 
 MORAY_BEGIN
 
@@ -52,6 +53,7 @@ typedef struct moray_swim_plan {
     const moray_swim_controller *controller; // steers in place of the gait's own offset; NULL: nobody does
     const double *times;                     // of the samples: ascending, within [t0, t1]; may be NULL with n_times 0
     int n_times;
+    const moray_water *water; // in place of the swimmer's current, as it is where its centre of mass is
     moray_swim_observer *observe;
     void *observer;
     moray_sim_statistics *statistics; // receives those of the run; may be NULL
@@ -60,7 +62,8 @@ typedef struct moray_swim_plan {
 // Simulates from t0 to t1 in the swimmer's current; x[2N+4] is start and end state, *energy the joint work [J] (may be
 // NULL). Changes of gait, measurements of the controller and samples are exact stops; the integrator starts anew at
 // every change and measurement. When the observer stops the run, the status is ok and x the state last observed; after
-// an error x is the state last reached. Error: those of moray_closed_loop_run.
+// an error x is the state last reached. Error: those of moray_closed_loop_run; MORAY_INPUT where the swimmer leaves the
+// table of the water.
 MORAY_API moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings,
                                       const moray_swim_plan *plan, double *x, double *energy);
 

@@ -16,8 +16,9 @@ MORAY_BEGIN
 typedef struct moray_turn_spec {
     moray_robot robot;
     moray_model model;
-    bool averaged;     // on the period-averaged plant
-    double current[2]; // [m/s]
+    bool averaged;            // on the period-averaged plant
+    double current[2];        // [m/s]
+    const moray_water *water; // in place of it, which is then what guesses and times go by; NULL: uniform
     moray_steering_limits limits;
     double heading;           // at the end [rad]
     bool to_position;         // the end lies at this position too

@@ -12,6 +12,7 @@ moray_path_spec path_spec(const path_job *job, moray_model model, bool averaged)
                              .model = model,
                              .averaged = averaged,
                              .current = {snake->current[0], snake->current[1]},
+                             .water = job->steer.water,
                              .limits = steer_limits(&job->steer, model),
                              .weight = {.across = 1 / (across_unit * across_unit * seconds),
                                         .time = job->weight_time / seconds,

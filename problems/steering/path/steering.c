@@ -249,10 +249,23 @@ static void points(const steer_job *steer, double x[STEER_POINTS], double y[STEE
 
 // ---- The program ---------------------------------------------------------------------------------------------------
 
+static moray_status read_water(path_job *job)
+{
+    enum { places = 50 };
+    double place[places][2];
+    for (int k = 0; k < places; k++) {
+        const moray_path_point at = moray_path_at(&job->path, job->path.length * k / (places - 1));
+        place[k][0] = creal(at.x);
+        place[k][1] = creal(at.y);
+    }
+    return steer_read_water(&job->steer, (const double(*)[2])place, places);
+}
+
 static moray_status work(steer_job *steer)
 {
     path_job *job = (path_job *)steer;
     MORAY_TRY(moray_path_read(&job->path, job->path_text, job->radius));
+    MORAY_TRY(read_water(job));
     const moray_status made = path_make_plans(job);
     if (moray_failed(made))
         MORAY_TRY(steer_do_without(steer, made));

@@ -8,6 +8,7 @@ static moray_turn_spec spec_of(const turn_job *job, moray_model model, bool aver
                              .model = model,
                              .averaged = averaged,
                              .current = {snake->current[0], snake->current[1]},
+                             .water = job->steer.water,
                              .limits = steer_limits(&job->steer, model),
                              .heading = job->angle,
                              .to_position = turn_to_position(job),

@@ -231,6 +231,9 @@ static moray_status work(steer_job *steer)
     turn_job *job = (turn_job *)steer;
     if (job->angle == 0 && !turn_to_position(job))
         return moray_error(MORAY_INPUT, "angle_deg = 0: must not be, unless there is an end_m");
+    const double ends[2][2] = {{0, 0},
+                               {turn_to_position(job) ? job->end[0] : 0, turn_to_position(job) ? job->end[1] : 0}};
+    MORAY_TRY(steer_read_water(steer, ends, 2));
     const moray_status made = turn_make_plans(job);
     if (moray_failed(made))
         MORAY_TRY(steer_do_without(steer, made));

@@ -19,8 +19,9 @@ enum { states = MORAY_STEERING_STATES, STEERING = states, AMPLITUDE, OMEGA, DELT
 
 struct moray_average {
     control_body body;
-    int n;           // joints
-    double Q_0, G_0; // |A^T e|^2 and e^T G e, G = (D D^T)^{-1}
+    const moray_water *water; // NULL: uniform
+    int n;                    // joints
+    double Q_0, G_0;          // |A^T e|^2 and e^T G e, G = (D D^T)^{-1}
 };
 
 // What depends on delta alone: means of quadratic forms of the wave, per a^2 (and omega).
@@ -100,11 +101,14 @@ void moray_average_rates(void *context, const double complex *in, double complex
     const double complex phi_0 = in[MORAY_STATE_PHI_0], v_phi_0 = in[MORAY_STATE_V_PHI_0], dv_phi_0 = in[STEERING];
     const double complex a2 = in[AMPLITUDE] * in[AMPLITUDE], omega = in[OMEGA];
     const wave of = wave_of(self, in[DELTA]);
+    double complex V[2] = {b->V_x, b->V_y};
+    if (self->water)
+        moray_water_at_complex(self->water, in[MORAY_STATE_P_X], in[MORAY_STATE_P_Y], in[TIME], V);
     means y = {.s = self->n * phi_0,
                .q = a2 * of.Q_1 / 2 + phi_0 * phi_0 * self->Q_0,
                .w = a2 * omega * of.W,
-               .v_tr = v_t - (b->V_x * c + b->V_y * s),
-               .v_nr = v_n - (-b->V_x * s + b->V_y * c)};
+               .v_tr = v_t - (V[0] * c + V[1] * s),
+               .v_nr = v_n - (-V[0] * s + V[1] * c)};
     const double complex lift = 2 * a2 * of.sigma * (b->c_p * b->c_n + b->mu_p * b->mt * omega * omega) /
                                 (b->N * (b->c_n * b->c_n + b->mt * b->mt * omega * omega));
     const double complex square = a2 * of.sigma; // of the wave of s
@@ -143,7 +147,8 @@ moray_status moray_average_new(moray_average **result, const moray_plant_spec *s
     if (!self)
         return moray_error(MORAY_MEMORY, "no memory for an averaged plant");
     const int N = spec->robot.links;
-    *self = (moray_average){.body = moray_body_of(&spec->robot, spec->current), .n = N - 1, .Q_0 = 4 * N - 6};
+    *self = (moray_average){
+        .body = moray_body_of(&spec->robot, spec->current), .water = spec->water, .n = N - 1, .Q_0 = 4 * N - 6};
     self->G_0 = N * ((double)N * N - 1) / 12; // sum of k (N - k) / 2, the solution of D D^T x = e
     *result = self;
     return moray_ok();
@@ -151,9 +156,16 @@ moray_status moray_average_new(moray_average **result, const moray_plant_spec *s
 
 moray_status moray_average_plant(moray_map *map, const moray_plant_spec *spec)
 {
-    const double probe[inputs] = {0.1, 0, 0, 0.2, 0.2, 0.05, 0.01, 0.003, 0.002, 0.04, 2, 0.7, 0.4};
+    double probe[inputs] = {0.1, 0, 0, 0.2, 0.2, 0.05, 0.01, 0.003, 0.002, 0.04, 2, 0.7, 0.4};
     moray_average *self;
     *map = (moray_map){0};
     MORAY_TRY(moray_average_new(&self, spec));
+    if (spec->water) {
+        double middle[3];
+        moray_water_middle(spec->water, middle);
+        probe[MORAY_STATE_P_X] = middle[0];
+        probe[MORAY_STATE_P_Y] = middle[1];
+        probe[TIME] = middle[2];
+    }
     return moray_map_from_complex(map, inputs, states + 1, moray_average_rates, self, free, probe);
 }

@@ -10,6 +10,7 @@
 
 #include "snake/plant/fp_free.h"
 #include "snake/plant/series.h"
+#include "snake/plant/water.h"
 #include "snake/model/circle.h"
 #include "snake/model/taper.h"
 
@@ -275,6 +276,8 @@ moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec)
     fp_plant *plant = NULL;
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));
+    if (spec->water)
+        return moray_water_plant(map, spec, true, moray_fp_plant);
     if (spec->joints == MORAY_JOINTS_SERIES)
         return moray_plant_series(map, spec, moray_fp_plant);
     if (spec->joints == MORAY_JOINTS_FREE)

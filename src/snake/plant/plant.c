@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "snake/plant/series.h"
+#include "snake/plant/water.h"
 #include "snake/model/shape.h"
 
 moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
@@ -195,6 +196,8 @@ moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec)
 {
     *map = (moray_map){0};
     MORAY_TRY(moray_robot_check(&spec->robot));
+    if (spec->water)
+        return moray_water_plant(map, spec, false, moray_control_plant);
     if (spec->joints == MORAY_JOINTS_SERIES)
         return moray_plant_series(map, spec, moray_control_plant);
     plant *self = plant_new(spec);

@@ -27,7 +27,9 @@ static void start(const moray_swim_closed_loop_spec *plan, const moray_swimmer *
 {
     double state[MORAY_STEERING_STATES];
     moray_gait gait = plan->straight->gait;
-    moray_straight_motion_start(plan->straight, plan->heading, plan->current, state);
+    double V[2];
+    moray_steering_current(plan->water, plan->current, plan->position[0], plan->position[1], 0, V);
+    moray_straight_motion_start(plan->straight, plan->heading, V, state);
     memcpy(state + MORAY_STATE_P_X, plan->position, sizeof plan->position);
     if (plan->controller) {
         const moray_offset offset = plan->controller->offset(0, plan->controller->self);
@@ -50,6 +52,7 @@ static moray_status sail(moray_swim_closed_loop *closed_loop, const moray_swim_c
                                   .controller = plan->controller,
                                   .times = times,
                                   .n_times = n,
+                                  .water = plan->water,
                                   .observe = record,
                                   .observer = &recorder};
     settings.rtol = settings.atol = plan->tolerance;

@@ -95,6 +95,14 @@ void moray_straight_motion_start(const moray_straight_motion *straight, double h
     state[MORAY_STATE_V_2] += water[1];
 }
 
+void moray_steering_current(const moray_water *water, const double current[2], double x, double y, double t,
+                            double V[2])
+{
+    memcpy(V, current, 2 * sizeof *V);
+    if (water)
+        moray_water_at(water, x, y, t, V);
+}
+
 double moray_straight_motion_heading(const moray_straight_motion *straight, double t, double heading)
 {
     const double phase = straight->gait.omega * t;

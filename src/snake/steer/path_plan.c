@@ -15,14 +15,15 @@ enum { states = MORAY_STEERING_STATES };
 typedef struct dot {
     const moray_path_spec *spec;
     double speed, turn_rate; // the latter at the limit of the offset, with its sign
-    double x, y, heading, rate, along;
+    double x, y, heading, rate, along, time;
 } dot;
 
 // Heads for the path, crabbing on it.
 static void step(dot *d, double seconds)
 {
-    const double lookahead = 1.5, settling = 2, *V = d->spec->current; // [m], [s]
-    double across;
+    const double lookahead = 1.5, settling = 2; // [m], [s]
+    double across, V[2];
+    moray_steering_current(d->spec->water, d->spec->current, d->x, d->y, d->time, V);
     moray_path_project(d->spec->path, d->x, d->y, &d->along, &across);
     const double course = creal(moray_path_at(d->spec->path, d->along + 0.5 * lookahead).course);
     const double crab = moray_crab_angle(d->speed, V, course);
@@ -32,11 +33,14 @@ static void step(dot *d, double seconds)
     d->x += seconds * (d->speed * cos(d->heading) + V[0]);
     d->y += seconds * (d->speed * sin(d->heading) + V[1]);
     d->heading += seconds * d->rate;
+    d->time += seconds;
 }
 
 static void take(const dot *d, double *x, double *u)
 {
-    const double *V = d->spec->current, c = cos(d->heading), s = sin(d->heading);
+    const double c = cos(d->heading), s = sin(d->heading);
+    double V[2];
+    moray_steering_current(d->spec->water, d->spec->current, d->x, d->y, d->time, V);
     const double v[2] = {d->speed * c + V[0], d->speed * s + V[1]};
     const bool body_frame = d->spec->model == MORAY_CONTROL_ORIENTED;
     const double sample[states] = {d->heading,
@@ -83,8 +87,9 @@ static moray_status guess_by_dot(steering_guess *guess, const moray_path_spec *s
 static moray_status pose_problem(moray_steering_plan *plan, moray_path_spec *spec, const double position[2],
                                  double heading)
 {
-    double across;
-    moray_straight_motion_start(&plan->straight, heading, spec->current, spec->start);
+    double across, V[2];
+    moray_steering_current(spec->water, spec->current, position[0], position[1], 0, V);
+    moray_straight_motion_start(&plan->straight, heading, V, spec->start);
     if (spec->averaged) {
         spec->start[MORAY_STATE_THETA] = heading;
         spec->start[MORAY_STATE_V_THETA] = 0;

@@ -122,6 +122,7 @@ static moray_steering_spec steering_spec(const moray_path_spec *spec, path_task 
                                     .model = spec->model,
                                     .averaged = spec->averaged,
                                     .current = {spec->current[0], spec->current[1]},
+                                    .water = spec->water,
                                     .limits = spec->limits,
                                     .task = {.name = "path",
                                              .nu = 1,

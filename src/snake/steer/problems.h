@@ -24,6 +24,10 @@ void moray_steering_parameters(const moray_gait *gait, double s[MORAY_STEERING_P
 void moray_straight_motion_start(const moray_straight_motion *straight, double heading, const double current[2],
                                  double state[MORAY_STEERING_STATES]);
 
+// The current at a place and time: of the water, or where there is none the uniform one.
+void moray_steering_current(const moray_water *water, const double current[2], double x, double y, double t,
+                            double V[2]);
+
 // Error of all: those of moray_steering_new, and MORAY_INPUT. Free with moray_steering_problem_free.
 moray_status moray_heading_new(moray_steering_problem *problem, const moray_heading_spec *spec);
 moray_status moray_path_problem_new(moray_steering_problem *problem, const moray_path_spec *spec);

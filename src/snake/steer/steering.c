@@ -151,8 +151,10 @@ static moray_status make_plant(moray_steering *problem)
 {
     const moray_steering_spec *spec = &problem->spec;
     const moray_steering_task *task = &spec->task;
-    const moray_plant_spec plant_spec = {
-        .robot = spec->robot, .joints = MORAY_JOINTS_STEERED, .current = {spec->current[0], spec->current[1]}};
+    const moray_plant_spec plant_spec = {.robot = spec->robot,
+                                         .joints = MORAY_JOINTS_STEERED,
+                                         .current = {spec->current[0], spec->current[1]},
+                                         .water = spec->water};
     int place[states + 1 + parameters + 1];
     moray_map plant, added;
     MORAY_TRY(spec->averaged                          ? moray_average_plant(&plant, &plant_spec)

@@ -57,6 +57,7 @@ static moray_steering_spec steering_spec(const moray_turn_spec *spec, turn_task 
                                     .model = spec->model,
                                     .averaged = spec->averaged,
                                     .current = {spec->current[0], spec->current[1]},
+                                    .water = spec->water,
                                     .limits = spec->limits,
                                     .t0 = moray_fixed(0),
                                     .tf = moray_between(spec->shortest, spec->longest),
@@ -157,7 +158,9 @@ static void guess_outline(steering_guess *guess, const moray_turn_spec *spec, co
 
 static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spec, double seconds)
 {
-    moray_straight_motion_start(&plan->straight, 0, spec->current, spec->start);
+    double V[2];
+    moray_steering_current(spec->water, spec->current, 0, 0, 0, V);
+    moray_straight_motion_start(&plan->straight, 0, V, spec->start);
     if (spec->averaged)
         spec->start[MORAY_STATE_THETA] = spec->start[MORAY_STATE_V_THETA] = 0;
     for (int k = 0; k < 2; k++)

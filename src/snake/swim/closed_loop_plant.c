@@ -35,8 +35,31 @@ void moray_swim_plant_steer(swim_plant *plant, const double u[SWIM_CONTROLS])
     plant->gait.offset_acceleration = u[2];
 }
 
+void moray_swim_stir(moray_swimmer *swimmer, const moray_water *water, double t, const double *x)
+{
+    double body[MORAY_BODY_STATES], V[2];
+    moray_state_body(moray_swimmer_model(swimmer), moray_swimmer_robot(swimmer)->links, x, body);
+    moray_water_at(water, body[MORAY_STATE_P_X], body[MORAY_STATE_P_Y], t, V);
+    moray_swimmer_set_current(swimmer, V[0], V[1]);
+}
+
+moray_status moray_swim_afloat(const moray_water *water, const moray_swim_sample *sample)
+{
+    double low[3], high[3];
+    if (!water || moray_water_covers(water, sample->pose.p_x, sample->pose.p_y, sample->t))
+        return moray_ok();
+    moray_water_range(water, low, high);
+    return moray_error(MORAY_INPUT,
+                       "water: at t = %.4g s the robot is at (%.4g, %.4g) m, outside of the table: x %g to %g, y %g to "
+                       "%g m, t %g to %g s",
+                       sample->t, sample->pose.p_x, sample->pose.p_y, low[0], high[0], low[1], high[1], low[2],
+                       high[2]);
+}
+
 static bool rates(swim_plant *plant, double t, const double *x, double *dx)
 {
+    if (plant->water)
+        moray_swim_stir(plant->swimmer, plant->water, t, x);
     moray_swimmer_control(plant->swimmer, &plant->gait, t, x, plant->ubar);
     return moray_swimmer_rates(plant->swimmer, x, plant->ubar, dx, plant->u);
 }

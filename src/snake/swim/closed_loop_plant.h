@@ -7,8 +7,9 @@
 #include "moray/snake/swim.h"
 
 typedef struct swim_plant {
-    moray_swimmer *swimmer; // the caller's
-    moray_gait gait;        // followed now
+    moray_swimmer *swimmer;   // the caller's
+    moray_gait gait;          // followed now
+    const moray_water *water; // NULL: the swimmer's own current
     int n_states, n_joints;
     double *x;                           // n_states + 1: room for a start or end state
     double *ubar, *u, *phi, *v_phi, *dx; // scratch
@@ -17,6 +18,12 @@ typedef struct swim_plant {
 // Error: MORAY_MEMORY.
 moray_status moray_swim_plant_new(swim_plant *plant, moray_swimmer *swimmer, const moray_gait *gait);
 void moray_swim_plant_free(swim_plant *plant);
+
+// Gives the swimmer the current that the water has at its centre of mass.
+void moray_swim_stir(moray_swimmer *swimmer, const moray_water *water, double t, const double *x);
+
+// Error: MORAY_INPUT where the swimmer has left the table of the water (NULL: none).
+moray_status moray_swim_afloat(const moray_water *water, const moray_swim_sample *sample);
 
 // n_states + 1 states; `self` is the plant.
 moray_ode moray_swim_plant_ode(swim_plant *plant);

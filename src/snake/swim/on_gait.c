@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "snake/swim/closed_loop_plant.h"
 
 enum { body = MORAY_BODY_STATES, ENERGY = body, states };
 
@@ -75,6 +76,8 @@ static bool rates(on_gait *r, const moray_gait *gait, double t, const double *y,
     set_current(r, t);
     moray_gait_reference(gait, r->n_joints, t, r->phi, r->v_phi, r->ubar);
     moray_swimmer_on_gait(r->swimmer, gait, t, y, r->x);
+    if (r->plan->water)
+        moray_swim_stir(r->swimmer, r->plan->water, t, r->x);
     if (!moray_swimmer_rates(r->swimmer, r->x, r->ubar, r->dx, r->u))
         return false;
     moray_state_body(moray_swimmer_model(r->swimmer), robot->links, r->dx, dy);
@@ -141,6 +144,7 @@ static moray_status measure(on_gait *r)
     const moray_swim_sample shown = sample(r);
     moray_gait gait = r->gait;
     set_offset(r, r->t, &gait);
+    MORAY_TRY(moray_swim_afloat(r->plan->water, &shown));
     MORAY_TRY(controller->measure(&shown, controller->self));
     const moray_offset wanted = commanded(r, r->t);
     r->deviation[0] = gait.offset - wanted.value;
@@ -171,6 +175,7 @@ static moray_status run(on_gait *r)
     for (int i = 0; i < plan->n_times; i++) {
         MORAY_TRY(go(r, plan->times[i]));
         const moray_swim_sample shown = sample(r);
+        MORAY_TRY(moray_swim_afloat(plan->water, &shown));
         if (!plan->observe(&shown, plan->observer))
             return moray_ok();
     }

@@ -27,7 +27,8 @@ typedef struct swim_run {
     const moray_swim_plan *plan;
     swim_plant plant;
     moray_ode ode;
-    double *change; // [n_changes] times
+    double *change;    // [n_changes] times
+    moray_status left; // the water's table
 } swim_run;
 
 static bool rates(double t, const double *x, const double *u, double *dx, void *self)
@@ -64,6 +65,7 @@ static moray_status measure(const moray_closed_loop_sample *sample, void *self)
 {
     swim_run *r = self;
     const moray_swim_sample shown = sample_of(r, sample);
+    MORAY_TRY(moray_swim_afloat(r->plan->water, &shown));
     return r->plan->controller->measure(&shown, r->plan->controller->self);
 }
 
@@ -71,7 +73,8 @@ static bool observe(const moray_closed_loop_sample *sample, void *self)
 {
     swim_run *r = self;
     const moray_swim_sample shown = sample_of(r, sample);
-    return r->plan->observe(&shown, r->plan->observer);
+    r->left = moray_swim_afloat(r->plan->water, &shown);
+    return !moray_failed(r->left) && r->plan->observe(&shown, r->plan->observer);
 }
 
 static moray_status run(swim_run *r, const moray_sim_settings *settings)
@@ -102,6 +105,7 @@ static moray_status prepare(swim_run *r, moray_swimmer *swimmer, const double *x
 {
     const moray_swim_plan *plan = r->plan;
     MORAY_TRY(moray_swim_plant_new(&r->plant, swimmer, &plan->schedule[0].gait));
+    r->plant.water = plan->water;
     r->ode = moray_swim_plant_ode(&r->plant);
     r->change = calloc((size_t)plan->n_changes, sizeof *r->change);
     if (!r->change)
@@ -116,10 +120,12 @@ moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *se
                             double *x, double *energy)
 {
     MORAY_TRY(check_plan(plan));
-    swim_run r = {.plan = plan};
+    swim_run r = {.plan = plan, .left = moray_ok()};
     moray_status status = prepare(&r, swimmer, x);
     if (!moray_failed(status)) {
         status = run(&r, settings);
+        if (!moray_failed(status))
+            status = r.left;
         memcpy(x, r.plant.x, (size_t)r.plant.n_states * sizeof *x);
         if (energy)
             *energy = r.plant.x[r.plant.n_states];
