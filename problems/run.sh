@@ -6,6 +6,10 @@ root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd) || exit 1
 . "$root/problems/setup.sh"
 
 name=${1-}
+if [ "$name" = tour ] && [ -f "$root/problems/tour.sh" ]; then # of several programs
+    shift
+    exec sh "$root/problems/tour.sh" "$@"
+fi
 case $name in
 '' | */*) known= ;;
 *) [ -f "$root/problems/$name.c" ] && known=yes || known= ;;
@@ -15,6 +19,7 @@ if [ -z "$known" ]; then
     for source in "$root"/problems/*.c; do
         [ -f "$source" ] && say "  $(basename "$source" .c)"
     done
+    [ ! -f "$root/problems/tour.sh" ] || say "  tour"
     exit 2
 fi
 shift

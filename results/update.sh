@@ -130,6 +130,7 @@ none='--set spread=0 --set current_max_m_s=0 --set current_turning_deg_s=0 --set
 show sea_trials_known sea_trials $few $none
 show sea_trials_consistent sea_trials $few --rung consistent
 show sea_trials_control sea_trials $few --model control
+show tour tour
 show paper paper all
 show sweep sweep measure
 swept atlas max_speed --grid hydrodynamics=consistent --grid links=4:16:7 --grid current_speed=0:0.15:4 --grid current_deg=-135:180:8 \

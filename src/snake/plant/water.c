@@ -313,7 +313,7 @@ moray_status moray_water_plant(moray_map *map, const moray_plant_spec *spec, boo
                                moray_plant_maker *make)
 {
     const moray_hydrodynamics *hydro = &spec->robot.hydro;
-    const bool motor = first_principles && spec->robot.motor.given;
+    const bool motor = first_principles && spec->robot.motor.fitted;
     const bool linear = !first_principles || (hydro->drag == MORAY_DRAG_LINEAR && !motor);
     if (spec->joints == MORAY_JOINTS_CLOSED_LOOP || spec->joints == MORAY_JOINTS_FREE)
         return moray_error(MORAY_INPUT, "water that is not uniform: only with the joints on a gait");
