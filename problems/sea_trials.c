@@ -87,7 +87,8 @@ static moray_status work(sea_job *job)
 {
     MORAY_TRY(sea_prepare(job));
     MORAY_TRY(sea_tune(job));
-    return sea_run(job);
+    MORAY_TRY(sea_run(job));
+    return sea_estimate_all(job);
 }
 
 int main(int argc, char **argv)

@@ -17,6 +17,7 @@
 #include "moray/snake/ladder.h"
 #include "moray/snake/model.h"
 #include "moray/snake/motor.h"
+#include "moray/snake/moving_horizon.h"
 #include "moray/snake/navigator.h"
 #include "moray/snake/options.h"
 #include "moray/snake/orbit.h"

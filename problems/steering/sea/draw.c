@@ -120,7 +120,8 @@ moray_status sea_prepare(sea_job *job)
     MORAY_TRY(choose_rung(job));
     job->draw = calloc((size_t)n, sizeof *job->draw);
     job->score = calloc((size_t)job->seeds * SEA_LAWS, sizeof *job->score);
-    if (!job->draw || !job->score)
+    job->estimate = calloc((size_t)job->seeds, sizeof *job->estimate);
+    if (!job->draw || !job->score || !job->estimate)
         return moray_error(MORAY_MEMORY, "no memory for %d draws", n);
     job->drawn = n;
     if (job->task == SEA_PATH)
@@ -144,5 +145,6 @@ void sea_release(sea_job *job)
     moray_steering_plan_free(&job->plan);
     free(job->draw);
     free(job->score);
+    free(job->estimate);
     moray_path_free(&job->path);
 }

@@ -175,23 +175,30 @@ static void pose_problems(steersman *h, const sea_job *job, const sea_draw *draw
     h->path = (moray_path_replanner){.spec = sea_path_spec(job, speed), .horizon = horizon};
 }
 
-static moray_status set_receding(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law)
+moray_navigator_spec sea_navigator_spec(const sea_job *job, const sea_draw *draw, int knows)
 {
-    const bool told = law->knows == SEA_TOLD, estimates = law->knows == SEA_ESTIMATING;
-    const double period = 2 * M_PI / job->gait.omega, horizon = job->look_ahead_periods * period;
-    const moray_straight_motion *known = told ? &draw->straight : &job->believed_straight;
+    const bool told = knows == SEA_TOLD, estimates = knows == SEA_ESTIMATING, path = job->task == SEA_PATH;
     const double current_doubt = 0.1, factor_doubt = 0.15, least_heading = 0.5 * DEG, least_position = 0.02;
     double rate;
+    return (moray_navigator_spec){.robot = job->believed,
+                                  .gait = job->gait,
+                                  .heading =
+                                      path ? job->path.piece->course : moray_reference_at(&draw->reference, 0, &rate),
+                                  .position = {0, path ? SEA_BESIDE : 0},
+                                  .speed = told ? draw->straight.speed : job->believed_straight.speed,
+                                  .belief = told ? draw->truth : job->belief,
+                                  .current_doubt = estimates ? current_doubt : 0,
+                                  .factor_doubt = estimates ? factor_doubt : 0,
+                                  .heading_error = hypot(job->sensors.heading, least_heading),
+                                  .position_error = hypot(job->sensors.position, least_position)};
+}
+
+static moray_status set_receding(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law)
+{
+    const double period = 2 * M_PI / job->gait.omega, horizon = job->look_ahead_periods * period;
+    const moray_straight_motion *known = law->knows == SEA_TOLD ? &draw->straight : &job->believed_straight;
     pose_problems(h, job, draw, known->speed, horizon);
-    moray_adaptive_spec spec = {.navigator = {.robot = job->believed,
-                                              .gait = job->gait,
-                                              .heading = moray_reference_at(&draw->reference, 0, &rate),
-                                              .speed = known->speed,
-                                              .belief = told ? draw->truth : job->belief,
-                                              .current_doubt = estimates ? current_doubt : 0,
-                                              .factor_doubt = estimates ? factor_doubt : 0,
-                                              .heading_error = hypot(job->sensors.heading, least_heading),
-                                              .position_error = hypot(job->sensors.position, least_position)},
+    moray_adaptive_spec spec = {.navigator = sea_navigator_spec(job, draw, law->knows),
                                 .measured = known,
                                 .scale = job->scale,
                                 .limits = {.offset = job->offset, .offset_rate = job->offset_rate},
@@ -202,10 +209,6 @@ static moray_status set_receding(steersman *h, const sea_job *job, const sea_dra
                                 .interval = job->replan_periods * period,
                                 .look = look_every,
                                 .dead_time = job->actuators.dead_time};
-    if (job->task == SEA_PATH) {
-        spec.navigator.heading = job->path.piece->course;
-        spec.navigator.position[1] = SEA_BESIDE;
-    }
     spec.settings.scheme = "radau3";
     spec.settings.intervals = (int)ceil(3 * job->look_ahead_periods);
     spec.settings.tolerance = 1e-6;
@@ -237,11 +240,10 @@ static void judge(const sea_job *job, const sea_draw *draw, const moray_swim_clo
     score->known = true;
 }
 
-static moray_status swim(const sea_job *job, const sea_draw *draw, steersman *h, sea_score *score)
+static moray_status swim(const sea_job *job, const sea_draw *draw, steersman *h, moray_swim_closed_loop *closed_loop)
 {
     const moray_swim_controller outer = moray_instruments_controller(h->instruments);
     const moray_swim_on_gait how = {.steps = 24, .current_turning = draw->current_turning};
-    moray_swim_closed_loop closed_loop;
     double rate;
     moray_swim_closed_loop_spec spec = {.robot = &draw->robot,
                                         .straight = &draw->straight,
@@ -258,32 +260,47 @@ static moray_status swim(const sea_job *job, const sea_draw *draw, steersman *h,
         spec.observe = moray_path_seek;
         spec.observer = &h->seeker;
     }
-    MORAY_TRY(moray_swim_closed_loop_run(&closed_loop, &spec));
-    judge(job, draw, &closed_loop, score);
-    moray_swim_closed_loop_free(&closed_loop);
-    return moray_ok();
+    return moray_swim_closed_loop_run(closed_loop, &spec);
+}
+
+static moray_status set_out(const sea_job *job, const sea_draw *draw, int which, const double *number, steersman *h,
+                            moray_swim_closed_loop *closed_loop)
+{
+    const sea_law *laws;
+    moray_sensors sensors = job->sensors;
+    sea_laws(job, &laws);
+    sensors.seed = draw->seed; // the same errors for every law
+    if (laws[which].tuned)
+        set_feedback(h, job, draw, laws[which].knows == SEA_BEFOREHAND, number);
+    else
+        MORAY_TRY(set_receding(h, job, draw, &laws[which]));
+    MORAY_TRY(moray_instruments_new(&h->instruments, &sensors, &job->actuators, &draw->straight, draw->robot.links,
+                                    &h->controller));
+    if (h->adaptive)
+        moray_adaptive_look_at(h->adaptive, moray_instruments_reading(h->instruments));
+    return swim(job, draw, h, closed_loop);
+}
+
+moray_status sea_record(const sea_job *job, const sea_draw *draw, int which, const double *number,
+                        moray_swim_closed_loop *closed_loop)
+{
+    steersman h = {0};
+    const moray_status status = set_out(job, draw, which, number, &h, closed_loop);
+    moray_adaptive_free(h.adaptive);
+    moray_instruments_free(h.instruments);
+    return status;
 }
 
 moray_status sea_swim(const sea_job *job, const sea_draw *draw, int which, const double *number, sea_score *score)
 {
-    const sea_law *laws;
     steersman h = {0};
-    moray_sensors sensors = job->sensors;
-    moray_status status = moray_ok();
-    sea_laws(job, &laws);
+    moray_swim_closed_loop closed_loop;
     *score = (sea_score){0};
-    sensors.seed = draw->seed; // the same errors for every law
-    if (laws[which].tuned)
-        set_feedback(&h, job, draw, laws[which].knows == SEA_BEFOREHAND, number);
-    else
-        status = set_receding(&h, job, draw, &laws[which]);
-    if (!moray_failed(status))
-        status = moray_instruments_new(&h.instruments, &sensors, &job->actuators, &draw->straight, draw->robot.links,
-                                       &h.controller);
-    if (h.adaptive && h.instruments)
-        moray_adaptive_look_at(h.adaptive, moray_instruments_reading(h.instruments));
-    if (!moray_failed(status))
-        status = swim(job, draw, &h, score);
+    const moray_status status = set_out(job, draw, which, number, &h, &closed_loop);
+    if (!moray_failed(status)) {
+        judge(job, draw, &closed_loop, score);
+        moray_swim_closed_loop_free(&closed_loop);
+    }
     if (h.adaptive)
         score->failures = moray_adaptive_record(h.adaptive)->failures;
     moray_adaptive_free(h.adaptive);

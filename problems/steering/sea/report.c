@@ -118,6 +118,45 @@ static int fill_multipliers(const sea_job *job, moray_table_row *rows)
     return 2;
 }
 
+static const char *const estimators[SEA_ESTIMATORS] = {"unscented filter", "moving horizon"};
+
+// Over the draws that there are estimates of; NaN: of none.
+static double estimate_quantile(const sea_job *job, int estimator, int which, double share)
+{
+    static double values[SEA_MOST_SEEDS];
+    int n = 0;
+    for (int k = 0; k < job->seeds; k++)
+        if (job->estimate[k].known)
+            values[n++] = job->estimate[k].value[estimator][which];
+    return n ? part(values, n, share) : NAN;
+}
+
+static void fill_estimates(const sea_job *job, moray_table_row *rows)
+{
+    const double unit[SEA_ESTIMATED] = {1, 0.01, 0.01};
+    for (int k = 0; k < SEA_ESTIMATORS; k++) {
+        rows[k] = (moray_table_row){.label = estimators[k]};
+        for (int which = 0; which < SEA_ESTIMATED; which++) {
+            rows[k].value[2 * which] = estimate_quantile(job, k, which, 0.5) / unit[which];
+            rows[k].value[2 * which + 1] = estimate_quantile(job, k, which, 0.9) / unit[which];
+        }
+    }
+}
+
+static void json_estimates(const sea_job *job, moray_json *json)
+{
+    moray_json_open_list(json, "estimates");
+    for (int k = 0; k < SEA_ESTIMATORS; k++) {
+        moray_json_open(json, NULL);
+        moray_json_text(json, "estimator", estimators[k]);
+        moray_json_number(json, "current_error_median_m_s", estimate_quantile(job, k, SEA_CURRENT, 0.5));
+        moray_json_number(json, "thrust_error_median", estimate_quantile(job, k, SEA_THRUST, 0.5));
+        moray_json_number(json, "turning_error_median", estimate_quantile(job, k, SEA_TURNING, 0.5));
+        moray_json_close(json);
+    }
+    moray_json_close(json);
+}
+
 static void summary(const void *found, moray_json *json)
 {
     const sea_job *job = found;
@@ -157,6 +196,7 @@ static void summary(const void *found, moray_json *json)
         moray_json_close(json);
     }
     moray_json_close(json);
+    json_estimates(job, json);
 }
 
 static void print(const void *found, const moray_report *report)
@@ -177,11 +217,12 @@ moray_status sea_report(const sea_job *job)
     const sea_law *laws;
     const int n = sea_laws(job, &laws), best = best_rival(job, laws, n), by = judged_by(job);
     const int second = job->task == SEA_HEADING ? 1 : 0;
-    moray_table_row rows[3][SEA_LAWS];
+    moray_table_row rows[4][SEA_LAWS];
     char label[SEA_LAWS][64], text[1000] = "";
     int tuned;
     fill(job, laws, n, rows[0], label);
     fill_tuning(job, laws, n, rows[1], &tuned);
+    fill_estimates(job, rows[3]);
     const struct scale *scale = &scales[job->task];
     const moray_table tables[] = {
         {.title = "Trials: median and 90th percentile; differences to the best rival of the training, draw by draw",
@@ -200,7 +241,13 @@ moray_status sea_report(const sea_job *job)
          .columns = {"largest", "second"},
          .n_columns = 2,
          .rows = rows[2],
-         .n_rows = fill_multipliers(job, rows[2])}};
+         .n_rows = fill_multipliers(job, rows[2])},
+        {.title =
+             "Estimates from one record of every draw, under the first law: median and 90th percentile of how far off",
+         .columns = {"current, m/s", "90th", "thrust, %", "90th", "turning, %", "90th"},
+         .n_columns = 6,
+         .rows = rows[3],
+         .n_rows = SEA_ESTIMATORS}};
     moray_text_add(text, sizeof text,
                    "%d draws on %s (rung %s), none of which tuned anybody; all on the paper's gait behind the same "
                    "instruments. Rivals are told nothing of robot and current. The best rival by its training is %s.",
@@ -211,7 +258,7 @@ moray_status sea_report(const sea_job *job)
                            wins(job, law, best), quantile(job, law, best, by, 0.5));
     if (job->seeds < job->wanted)
         moray_text_add(text, sizeof text, " The time given ended before %d more draws.", job->wanted - job->seeds);
-    const moray_report report = {.title = "sea_trials", .text = text, .tables = tables, .n_tables = 3};
+    const moray_report report = {.title = "sea_trials", .text = text, .tables = tables, .n_tables = 4};
     return moray_app_show(&job->common, &(moray_results){.name = "sea_trials",
                                                          .found = job,
                                                          .summary = summary,

@@ -48,6 +48,14 @@ typedef struct sea_score {
     int failures; // of a receding horizon's plans
 } sea_score;
 
+// Estimates at the end of a swim: how far off the current is [m/s], and the factors of thrust and turning as shares,
+// of an unscented filter and of a moving horizon.
+enum { SEA_CURRENT, SEA_THRUST, SEA_TURNING, SEA_ESTIMATED, SEA_ESTIMATORS = 2 };
+typedef struct sea_estimate {
+    double value[SEA_ESTIMATORS][SEA_ESTIMATED];
+    bool known;
+} sea_estimate;
+
 struct sea_job {
     moray_common common;
     moray_snake_options snake; // of the plant, before the draw
@@ -87,7 +95,8 @@ struct sea_job {
     double number[SEA_LAWS][SEA_NUMBERS];
     double tuned_cost[SEA_LAWS];
     int tuned_by[SEA_LAWS];
-    sea_score *score; // [seeds][SEA_LAWS]
+    sea_score *score;       // [seeds][SEA_LAWS]
+    sea_estimate *estimate; // [seeds]
     moray_ticker ticker;
 };
 
@@ -101,6 +110,16 @@ void sea_release(sea_job *job);
 
 // Swims one draw under a law with these numbers.
 moray_status sea_swim(const sea_job *job, const sea_draw *draw, int law, const double *number, sea_score *score);
+
+// The same, of which the track is left; free with moray_swim_closed_loop_free.
+moray_status sea_record(const sea_job *job, const sea_draw *draw, int law, const double *number,
+                        moray_swim_closed_loop *closed_loop);
+
+// What who estimates, or is told, begins with.
+moray_navigator_spec sea_navigator_spec(const sea_job *job, const sea_draw *draw, int knows);
+
+// Estimates of all seeds. Error: those of moray_parallel.
+moray_status sea_estimate_all(sea_job *job);
 
 // Tunes what is tuned on the training draws, in half of the time given; swims all seeds, or as many as that leaves time
 // for. Error: MORAY_INTERRUPTED, MORAY_IO, those of the trials; MORAY_NOT_SOLVED where the time ended before the first.

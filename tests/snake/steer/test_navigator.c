@@ -5,7 +5,10 @@
 #include "degree.h"
 #include "tap.h"
 
+#include <stdlib.h>
+
 #include "moray/snake/closed_loop.h"
+#include "moray/snake/moving_horizon.h"
 #include "moray/snake/navigator.h"
 #include "moray/snake/trial.h"
 
@@ -105,6 +108,51 @@ static void test_estimate(const sea *at)
     moray_navigator_free(navigator);
 }
 
+// The same swim, its readings all at once, with errors of their size: in a window as long as the swim, and in one of a
+// third, which has to know the heading's own errors better.
+static void test_moving_horizon(const sea *at)
+{
+    enum { n = 120 };
+    moray_feedback feedback = {.target = bend,
+                               .gain = 0.08 * at->scale,
+                               .straight = &at->straight,
+                               .offset = 0.015 * fabs(at->scale),
+                               .offset_rate = 0.01 * fabs(at->scale),
+                               .period = 0.1};
+    const moray_swim_controller controller = moray_feedback_controller(&feedback);
+    const moray_navigator_spec spec = told_wrongly(at);
+    moray_swim_closed_loop closed_loop = sail(at, &controller, 60);
+    double t[n], offset[n], heading[n], p_x[n], p_y[n], error[4];
+    unsigned long seed = 3;
+    for (int k = 0; k < n; k++) {
+        const int row = 5 * (k + 1);
+        const moray_pose *pose = &closed_loop.track.pose[row];
+        t[k] = closed_loop.track.t[row];
+        offset[k] = closed_loop.offset[row] / at->scale;
+        heading[k] = k % 7 == 3 ? NAN
+                                : moray_straight_motion_heading(&at->straight, t[k], pose->heading) +
+                                      0.5 * spec.heading_error * moray_random_normal(&seed);
+        p_x[k] = pose->p_x + 0.5 * spec.position_error * moray_random_normal(&seed);
+        p_y[k] = pose->p_y + 0.5 * spec.position_error * moray_random_normal(&seed);
+    }
+    const moray_log log = {n, t, offset, heading, p_x, p_y};
+    moray_settings settings = moray_settings_default();
+    moray_belief found;
+    settings.scheme = "radau3";
+    settings.max_iterations = 60;
+    settings.tolerance = 1e-6;
+    CHECK_OK(moray_moving_horizon(&spec, &log, 60, &settings, &found, error), "estimated");
+    CHECK_NEAR(found.current[0], at->current[0], 0.006, "current [m/s]");
+    CHECK_NEAR(found.current[1], at->current[1], 0.006, "current [m/s]");
+    CHECK_NEAR(found.amplitude / at->truth.amplitude, 1, 0.04, "factor of the thrust");
+    CHECK_NEAR(found.turning / at->truth.turning, 1, 0.04, "factor of the turning");
+    CHECK(error[0] > 0 && error[0] < 0.01 && error[3] > 0 && error[3] < 0.1, "and how well: %.1e m/s, %.1e", error[0],
+          error[3]);
+    CHECK(moray_moving_horizon(&spec, &log, 0.2, &settings, &found, NULL).code == MORAY_INPUT,
+          "one reading is too few");
+    moray_swim_closed_loop_free(&closed_loop);
+}
+
 // A step in heading, planned with wrong beliefs and estimated ones.
 static void test_adaptive(const sea *at)
 {
@@ -151,6 +199,7 @@ int main(void)
     sea at;
     sea_new(&at);
     test_estimate(&at);
+    test_moving_horizon(&at);
     test_adaptive(&at);
     return tap_done();
 }
