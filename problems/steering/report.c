@@ -203,7 +203,7 @@ static void say_missing(const steer_job *job, char *text, size_t size)
 {
     const char *before = " Not swum in the time given (--time):";
     if (moray_failed(job->without))
-        moray_text_add(text, size, " %s.", job->without.text);
+        moray_text_add(text, size, " There is %s.", job->without.text);
     for (int k = 0; k < job->n_trials; k++)
         if (!job->trial[k].run) {
             moray_text_add(text, size, "%s %s", before, job->trial[k].name);

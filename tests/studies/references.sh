@@ -5,20 +5,29 @@
 # Takes an hour and runs by name alone:  sh tests/studies/references.sh BUILD_FOLDER [SECONDS [NAME...]]
 build=$1/problems
 limit=${2:-200}
-[ $# -gt 2 ] && shift 2 && wanted=" $* "
+names=
+[ $# -gt 2 ] && shift 2 && names=" $* "
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 bad=0
+
+# wanted NAME...: whether one of them is to be tried.
+wanted() {
+    [ -z "$names" ] && return 0
+    for one; do
+        case $names in
+        *" $one "*) return 0 ;;
+        esac
+    done
+    return 1
+}
 
 # try NAME PROGRAM ARGUMENTS: with few searches for the rivals, which are not what is tried here.
 try() {
     name=$1
     program=$2
     shift 2
-    case ${wanted:- $name } in
-    *" $name "*) ;;
-    *) return ;;
-    esac
+    wanted "$name" || return
     from=$(date +%s)
     "$build/$program" "$@" --time "$limit" --quiet --set starts=1 --set evaluations=2 >"$work/out" 2>"$work/err" </dev/null
     code=$?
@@ -63,9 +72,9 @@ try sharp_corner path_following --path "0,0 5,0 5,5" --set radius_m=0.05
 try tiny_arcs path_following --path "0,0 5,0 5,5 10,5" --set radius_m=0.01
 try spline_in_current path_following --path "$work/spline.csv" --set radius_m=0.2 --current=-0.05,0.1
 
-robot five --links 5
-robot twenty --links 20
-robot salt --links 6 --set rho_kg_m3=1025
+wanted five_links && robot five --links 5
+wanted twenty_links && robot twenty --links 20
+wanted salt_heading salt_turn salt_path && robot salt --links 6 --set rho_kg_m3=1025
 try five_links heading_tracking --robot "$work/five.ini" --links 5 --horizon 60 --set gait_evaluations=2
 try twenty_links heading_tracking --robot "$work/twenty.ini" --links 20 --horizon 60 --set gait_evaluations=2
 try salt_heading heading_tracking --robot "$work/salt.ini" --links 6 --set rho_kg_m3=1025 --horizon 60 --set gait_evaluations=2

@@ -58,26 +58,49 @@ static bool solved(const moray_steering_plan *plan)
     return steer_solved(plan->solution);
 }
 
-// From the plan `from` on times that end at several parts of a stroke; leaves the fastest turn.
+// Takes the faster turn of the two, if it is one.
+static void keep_faster(moray_steering_plan *plan, moray_steering_plan *next)
+{
+    const bool better =
+        !plan->solution || (solved(next) && (!solved(plan) || moray_solution_objective(next->solution) <
+                                                                  moray_solution_objective(plan->solution)));
+    moray_steering_plan_free(better ? plan : next);
+    if (better)
+        *plan = *next;
+}
+
+// How much longer a turn takes than that of a plan, by the steady rates of turning of the two models.
+static double stretch_of(const turn_job *job, moray_model model, const moray_steering_plan *from)
+{
+    const moray_steering_limits limits = steer_limits(&job->steer, model);
+    const double *rate = job->steer.turn_rate, ratio = fabs(rate[from->straight.model] / rate[model]);
+    const double seconds = steer_duration(from->solution), ramps = 2 * limits.offset / limits.offset_rate;
+    return seconds > ramps ? (ramps + (seconds - ramps) * ratio) / seconds : 1;
+}
+
+// From the plan `from` on times that end at several parts of a stroke, and from nothing where that does not solve;
+// leaves the fastest turn.
 static moray_status solve(turn_job *job, moray_model model, const moray_gait *gait, const moray_steering_plan *from,
                           moray_steering_plan *plan)
 {
     enum { starts = 2 };
     const moray_turn_spec spec = spec_of(job, model, from == NULL);
     const double period = 2 * M_PI / gait->omega, turn_rate = job->steer.turn_rate[model];
-    const moray_settings settings = settings_of(job, from, period);
+    const double stretch = from ? stretch_of(job, model, from) : 1;
+    const moray_settings settings = settings_of(job, from, period / stretch);
     steer_clock_give(&job->steer.clock, !from ? 0.2 : model < job->steer.snake.model ? 0.3 : 0.5);
-    for (int k = 0; k < (from ? starts : 1); k++) {
-        const double seconds = from ? steer_duration(from->solution) : 1,
-                     later = from ? period * (k - 0.5) / starts : 0;
+    for (int k = 0; from && k < starts; k++) {
+        const double later = period * (k - 0.5) / starts;
         moray_steering_plan next;
-        MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, from, 1 + later / seconds));
-        const bool better =
-            !plan->solution || (solved(&next) && (!solved(plan) || moray_solution_objective(next.solution) <
-                                                                       moray_solution_objective(plan->solution)));
-        moray_steering_plan_free(better ? plan : &next);
-        if (better)
-            *plan = next;
+        MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, from,
+                                       stretch + later / steer_duration(from->solution)));
+        keep_faster(plan, &next);
+        MORAY_TRY(steer_interruption());
+    }
+    if (!plan->solution || !solved(plan)) {
+        moray_steering_plan next;
+        MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, NULL, 1));
+        keep_faster(plan, &next);
         MORAY_TRY(steer_interruption());
     }
     if (!solved(plan))

@@ -150,6 +150,11 @@ static void conclude(const steer_job *steer, char *text, size_t size)
         return;
     }
     const double *a = ours->score[1], *b = theirs->score[1];
+    char settled[2][40];
+    for (int k = 0; k < 2; k++) {
+        const double t = (k ? b : a)[SETTLED];
+        snprintf(settled[k], sizeof settled[k], isnan(t) ? "never while it swam" : "after %.2f s", t);
+    }
     const double plan = steer_duration(steer_last_plan(steer)->solution);
     if (turn_to_position(job))
         moray_text_add(
@@ -160,11 +165,10 @@ static void conclude(const steer_job *steer, char *text, size_t size)
     else
         moray_text_add(
             text, size,
-            "First-principles model, same limits: the %s, swum blindly, is within %.3g deg of its heading after %.2f "
-            "s, "
-            "of the tuned bang-bang turns the better (%s) after %.2f s; weighted by the error %.3f s against %.3f s%s. "
+            "First-principles model, same limits: the %s, swum blindly, is within %.3g deg of its heading %s, "
+            "of the tuned bang-bang turns the better (%s) %s; weighted by the error %.3f s against %.3f s%s. "
             "The plan itself takes %.2f s, until offset and turning are at rest.",
-            ours->name, job->band / DEG, a[SETTLED], theirs->name, b[SETTLED], a[WEIGHTED], b[WEIGHTED],
+            ours->name, job->band / DEG, settled[0], theirs->name, settled[1], a[WEIGHTED], b[WEIGHTED],
             fabs(a[WEIGHTED] / b[WEIGHTED] - 1) < 0.02
                 ? ", as good as the same: the fastest turn is a bang-bang one, which the plan finds without trials"
             : a[WEIGHTED] < b[WEIGHTED] ? ""
