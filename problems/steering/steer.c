@@ -164,6 +164,12 @@ moray_status steer_not_solved(const moray_solution *solution)
     return moray_error(MORAY_NOT_SOLVED, "not solved in the time given (--time): %s", failure.text);
 }
 
+bool steer_alike(const steer_job *job, moray_model model, const moray_steering_plan *from)
+{
+    const double *rate = job->turn_rate, most = log(2);
+    return !from || fabs(log(fabs(rate[from->straight.model] / rate[model]))) < most;
+}
+
 moray_status steer_do_without(steer_job *job, moray_status reason)
 {
     if (reason.code != MORAY_NOT_SOLVED || job->snake.model == MORAY_CONTROL_ORIENTED ||

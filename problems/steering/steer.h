@@ -228,6 +228,9 @@ static inline bool steer_cut_short(const moray_solution *solution)
     return moray_solution_info(solution)->outcome == MORAY_NLP_INTERRUPTED;
 }
 
+// Whether a plan is of use to begin one of this model from: the models turn within a factor of two as fast.
+bool steer_alike(const steer_job *job, moray_model model, const moray_steering_plan *from);
+
 // Goes on without the first-principles plan that failed for this reason, where there is a control-oriented one: the
 // model is that from then on, and trials are to be chosen anew. Error: the reason, where it is another or there is
 // none.

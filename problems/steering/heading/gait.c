@@ -51,7 +51,10 @@ static bool evaluate(void *self, const double *x, double *f, double *c, double *
     settings.scheme = "radau3";
     settings.tolerance = 1e-5;
     settings.max_refinements = 0;
-    const moray_steering_plan *from = h->best.solution ? &h->best : &job->steer.plan[MORAY_CONTROL_ORIENTED];
+    const moray_steering_plan *control = &job->steer.plan[MORAY_CONTROL_ORIENTED];
+    const moray_steering_plan *from = h->best.solution                                            ? &h->best
+                                      : steer_alike(&job->steer, MORAY_FIRST_PRINCIPLES, control) ? control
+                                                                                                  : NULL;
     if (moray_failed(moray_heading_plan_make(&plan, &h->spec, &settings, &gait, from)))
         return false;
     job->gaits_tried++;

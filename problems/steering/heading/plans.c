@@ -97,7 +97,7 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
 {
     const moray_heading_spec spec = heading_spec(job, model, false);
     moray_settings settings = heading_settings(job, false, 2 * M_PI / gait->omega);
-    if (from->straight.model == model && from != &job->steer.plan[STEER_AVERAGED])
+    if (from && from->straight.model == model && from != &job->steer.plan[STEER_AVERAGED])
         settings.barrier = 1e-6;
     moray_steering_plan *plan = &job->steer.plan[model];
     MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, gait, from));
@@ -128,17 +128,19 @@ moray_status heading_plan_last(heading_job *job)
     const moray_gait first = steer_first_gait(&job->steer);
     const moray_gait gait =
         moray_gait_map(&job->steer.snake.robot, &first, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    const moray_steering_plan *control = &job->steer.plan[MORAY_CONTROL_ORIENTED];
     steer_clock_give(&job->steer.clock, 0.5);
+    MORAY_TRY(steer_find_turn_rate(&job->steer, MORAY_FIRST_PRINCIPLES, &gait));
+    const moray_steering_plan *from = steer_alike(&job->steer, MORAY_FIRST_PRINCIPLES, control) ? control : NULL;
     if (job->gait_evaluations == 0 || steer_gait_given(&job->steer))
-        return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, &job->steer.plan[MORAY_CONTROL_ORIENTED]);
+        return make_plan(job, MORAY_FIRST_PRINCIPLES, &gait, from);
     moray_steering_plan best;
     steer_clock_give(&job->steer.clock, 0.3);
     moray_status status = heading_search_gait(job, &gait, &best);
     const bool found = best.solution != NULL; // else the time given, or no solve, was too short for one
     steer_clock_give(&job->steer.clock, 0.5);
     if (!moray_failed(status))
-        status = make_plan(job, MORAY_FIRST_PRINCIPLES, found ? &best.straight.gait : &gait,
-                           found ? &best : &job->steer.plan[MORAY_CONTROL_ORIENTED]);
+        status = make_plan(job, MORAY_FIRST_PRINCIPLES, found ? &best.straight.gait : &gait, found ? &best : from);
     moray_steering_plan_free(&best);
     return status;
 }

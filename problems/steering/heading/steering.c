@@ -186,8 +186,9 @@ static void conclude(const steer_job *job, char *text, size_t size)
         "First-principles model, same limits, RMS heading error in deg. Told the reference ahead of its time:");
     say_errors(job, "", planner, 2, text, size);
     say_errors(job, "; tuned feedback:", ahead, 2, text, size);
-    say_errors(job, ". Told no more than the reference and its rate now:", unknowing, job->receding, text, size);
-    say_errors(job, "; tuned feedback:", now, 3, text, size);
+    say_errors(job, ". Told no more than the reference and its rate now, tuned feedback:", now, 3, text, size);
+    if (trial_of(job, RECEDING_UNKNOWING))
+        say_errors(job, ";", unknowing, 1, text, size);
     moray_text_add(text, size, ".");
     if (isnan(ratio))
         return;

@@ -137,8 +137,15 @@ static moray_status solve(path_job *job, moray_model model, bool averaged, const
     MORAY_TRY(steer_find_turn_rate(&job->steer, model, gait));
     job->speed = straight.speed;
     const moray_settings settings = settings_of(job, averaged, &straight);
-    MORAY_TRY(moray_path_plan_make(plan, &spec, &settings, gait, job->start, job->heading, from));
+    MORAY_TRY(moray_path_plan_make(plan, &spec, &settings, gait, job->start, job->heading,
+                                   steer_alike(&job->steer, model, from) ? from : NULL));
     MORAY_TRY(steer_interruption());
+    if (!steer_solved(plan->solution) && steer_alike(&job->steer, model, from) && from &&
+        !steer_cut_short(plan->solution)) {
+        moray_steering_plan_free(plan);
+        MORAY_TRY(moray_path_plan_make(plan, &spec, &settings, gait, job->start, job->heading, NULL));
+        MORAY_TRY(steer_interruption());
+    }
     if (!steer_solved(plan->solution))
         return why_not(job, plan);
     return steer_take_plan(&job->steer, averaged ? STEER_AVERAGED : (int)model);
