@@ -12,9 +12,11 @@ static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
                "mean joint power; by default what the paper's gait uses in the same model and current"),
     MORAY_ROW(TEXT, gait_job, over, "problem", "over", .flag = "over", .argument = "MODELS",
-              .help = "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of "
-                      "the paper's gait on each; with @VX,VY behind a name in that current [m/s]: "
-                      "paper,consistent@0.1,0.1; none: the first-principles optimum is recommended"),
+              .help =
+                  "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of "
+                  "the paper's gait on each; with @VX,VY behind a name in that current [m/s]: "
+                  "paper,consistent@0.1,0.1; or NAME.csv, scenarios of coefficients and currents as identify leaves "
+                  "them; none: the first-principles optimum is recommended"),
     MORAY_ROW(CHOICE, gait_job, over_goal, "problem", "over_goal", .choices = over_goals,
               .help = "what of the gains over these is maximised"),
 };

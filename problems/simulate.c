@@ -9,6 +9,9 @@ const char *const simulate_integrators[] = {
     [SIMULATE_EXPLICIT] = "explicit", [SIMULATE_TR_BDF2] = "tr-bdf2", [SIMULATE_PAPER] = "paper", NULL};
 _Static_assert(sizeof(simulate_integrator) == sizeof(int), "choices are stored as int");
 
+#define LOG(field, name, high, in, text)                                                                               \
+    MORAY_ROW(REAL, simulate, field, "log", name, .max = high, .unit = in, .help = text)
+
 static const moray_option options[] = {
     MORAY_ROW(
         TEXT, simulate, schedule_file, "simulation", "schedule", .flag = "schedule", .argument = "FILE",
@@ -39,6 +42,27 @@ static const moray_option options[] = {
     MORAY_ROW(REAL, simulate, atol, "simulation", "atol", .max = INFINITY, .open = true,
               .help = "absolute tolerance, instead of the integrator's own"),
     MORAY_GAIT_OPTIONS(simulate, gait),
+    MORAY_ROW(TEXT, simulate, log_file, "log", "log", .flag = "log", .argument = "FILE",
+              .help =
+                  "leave a log of the first gait there, as instruments would have taken it, for the program identify"),
+    LOG(log_from, "log_from_s", 1e6, "s", "when it begins; 5 unless given"),
+    LOG(log_step, "log_step_s", 1e3, "s", "between two rows"),
+    LOG(noise.position, "noise_position_m", 10, "m", "standard deviation of either coordinate"),
+    LOG(noise.heading, "noise_heading_deg", 90, "deg", "of the heading"),
+    LOG(noise.joints, "noise_joints_deg", 90, "deg", "of every joint angle"),
+    LOG(noise.torque, "noise_torque_N_m", 1e3, "N m", "of every joint torque, first-principles model"),
+    LOG(noise.position_delay, "position_delay_s", 10, "s", "by which positions are late"),
+    LOG(noise.heading_delay, "heading_delay_s", 10, "s", "by which headings are late"),
+    LOG(noise.outliers, "outliers", 1, NULL, "share of positions and headings that are off by 20 standard deviations"),
+    LOG(noise.missing, "missing", 1, NULL, "share of positions and headings that are left out"),
+    MORAY_ROW(REAL, simulate, noise.heading_bias, "log", "heading_bias_deg", .min = -180, .max = 180, .unit = "deg",
+              .help = "of the compass"),
+    MORAY_ROW(REAL, simulate, noise.camera_rotation, "log", "camera_rotation_deg", .min = -180, .max = 180,
+              .unit = "deg", .help = "by which the camera sees the world turned"),
+    MORAY_ROW(PAIR, simulate, noise.camera, "log", "camera_m", .unit = "m",
+              .help = "origin of the camera's coordinates"),
+    MORAY_ROW(INT, simulate, log_seed, "log", "log_seed", .max = 1e9,
+              .help = "of the noise: the same seed, the same log"),
 };
 
 static const char *const without[] = {"scheme", "intervals", "tol", "linear_solver", "ipopt.KEY", NULL};
@@ -61,6 +85,9 @@ int main(int argc, char **argv)
                     .duration = NAN,
                     .output_step = 0.05,
                     .periods = 5,
+                    .log_from = 5,
+                    .log_step = 0.05,
+                    .log_seed = 1,
                     .rtol = NAN,
                     .atol = NAN};
     simulate_results results = {0};
@@ -68,6 +95,8 @@ int main(int argc, char **argv)
     if (!moray_app_start(&program, argc, argv, &run, &exit_code))
         return exit_code;
     moray_status status = simulate_run(&run, &results);
+    if (!moray_failed(status) && run.log_file[0])
+        status = simulate_log(&run, &results);
     if (!moray_failed(status))
         status = simulate_report(&results);
     simulate_release(&results);

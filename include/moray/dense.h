@@ -18,6 +18,10 @@ MORAY_API bool moray_dense_solve(int n, double *A, int m, double *B);
 // MORAY_NUMERIC when A is not finite or LAPACK fails; MORAY_MEMORY.
 MORAY_API moray_status moray_eigenvalues(int n, const double *A, moray_num *lambda);
 
+// Of a symmetric one, the largest first: value[n], and in row k of vector[n][n] the direction of value[k], of length 1.
+// Errors likewise.
+MORAY_API moray_status moray_symmetric_eigen(int n, const double *A, double *value, double *vector);
+
 MORAY_END
 
 #endif

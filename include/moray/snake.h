@@ -13,6 +13,7 @@
 #include "moray/snake/gait_search.h"
 #include "moray/snake/heading.h"
 #include "moray/snake/heading_law.h"
+#include "moray/snake/identify.h"
 #include "moray/snake/instruments.h"
 #include "moray/snake/ladder.h"
 #include "moray/snake/model.h"

@@ -28,6 +28,7 @@ static const listed programs[] = {
     {"path_following", "gait and joint offset over time that follow legs and arcs", NULL},
     {"min_time_turn", "fastest change of heading, or from pose to pose", NULL},
     {"sea_trials", "steering under robots, currents and noise not foreseen", NULL},
+    {"identify", "a robot from logs of its swimming", NULL},
     {"ladder", "any gaits on the ladder of models", NULL},
     {"export", "a gait and its steering as C, tables, URDF", NULL},
     {"simulate", "any gait or schedule of gaits, on either model", NULL},

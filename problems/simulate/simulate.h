@@ -17,6 +17,10 @@ typedef struct simulate {
     int periods;
     simulate_integrator integrator;
     double rtol, atol; // NaN: the integrator's own
+    char log_file[MORAY_PATH_SIZE];
+    double log_from, log_step;
+    moray_log_noise noise; // its seed from log_seed
+    int log_seed;
 } simulate;
 
 // The stretch of time that means are taken over: the last whole periods of the last gait, or all of it.
@@ -48,6 +52,10 @@ typedef struct simulate_results {
 // Simulates; the run must outlive the results. Error: MORAY_INPUT, MORAY_IO (schedule), MORAY_MEMORY, MORAY_NUMERIC.
 moray_status simulate_run(const simulate *run, simulate_results *results);
 void simulate_release(simulate_results *results); // safe on zeroed results
+
+// Leaves a log of the first gait, from rest as the run itself. Error: MORAY_INPUT, MORAY_IO, MORAY_MEMORY,
+// MORAY_NUMERIC.
+moray_status simulate_log(const simulate *run, const simulate_results *results);
 
 // Tables or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status simulate_report(const simulate_results *results);

@@ -12,6 +12,9 @@ void dgeev_(const char *want_left, const char *want_right, const int *n, double 
             double *imaginary, double *left, const int *ldl, double *right, const int *ldr, double *work,
             const int *lwork, int *info, size_t left_length, size_t right_length);
 
+void dsyev_(const char *want, const char *triangle, const int *n, double *A, const int *lda, double *value,
+            double *work, const int *lwork, int *info, size_t want_length, size_t triangle_length);
+
 // Descending in modulus; of conjugates the one above the real axis first.
 static int by_modulus(const void *one, const void *other)
 {
@@ -40,5 +43,28 @@ moray_status moray_eigenvalues(int n, const double *A, double complex *lambda)
     if (info != 0)
         return moray_error(MORAY_NUMERIC, "eigenvalues: LAPACK's dgeev returns %d for a matrix of %d rows", info, n);
     qsort(lambda, (size_t)n, sizeof *lambda, by_modulus);
+    return moray_ok();
+}
+
+moray_status moray_symmetric_eigen(int n, const double *A, double *value, double *vector)
+{
+    const int entries = n * n, lwork = 34 * n + 1;
+    int info = 0;
+    for (int k = 0; k < entries; k++)
+        if (!isfinite(A[k]))
+            return moray_error(MORAY_NUMERIC, "eigenvalues: entry (%d, %d) of the matrix is %g", k / n, k % n, A[k]);
+    double *copy = malloc(((size_t)entries + (size_t)lwork + (size_t)n) * sizeof *copy);
+    if (!copy)
+        return moray_error(MORAY_MEMORY, "no memory for the eigenvalues of a matrix of %d rows", n);
+    double *ascending = copy + entries + lwork;
+    memcpy(copy, A, (size_t)entries * sizeof *copy);
+    dsyev_("V", "U", &n, copy, &n, ascending, copy + entries, &lwork, &info, 1, 1);
+    for (int k = 0; k < n; k++) {
+        value[k] = ascending[n - 1 - k];
+        memcpy(vector + k * n, copy + (n - 1 - k) * n, (size_t)n * sizeof *vector);
+    }
+    free(copy);
+    if (info != 0)
+        return moray_error(MORAY_NUMERIC, "eigenvalues: LAPACK's dsyev returns %d for a matrix of %d rows", info, n);
     return moray_ok();
 }

@@ -40,6 +40,7 @@ public_headers() {
         moray/snake/gait_problem.h | moray/snake/gait_search.h | moray/snake/gait_over.h) room=snake/gait ;;
         moray/snake/steering.h | moray/snake/heading.h | moray/snake/heading_law.h | moray/snake/instruments.h | moray/snake/navigator.h | moray/snake/moving_horizon.h | moray/snake/poincare.h | moray/snake/robust.h | moray/snake/path.h | moray/snake/turn.h | moray/snake/controllers.h | \
             moray/snake/closed_loop.h | moray/snake/receding_horizon.h) room=snake/steer ;;
+        moray/snake/identify.h) room=snake/identify ;;
         moray/snake/*) room=snake/swim ;;
         *) room=none ;;
         esac

@@ -73,7 +73,12 @@ refuse 'paper stands there twice' --over paper,paper
 refuse 'paper@0,0.0 stands there twice' --over paper,paper@0,0.0
 refuse 'over = strip@0.1,: must be none' --over strip@0.1
 refuse 'over = strip@0.1,paper: must be none' --over strip@0.1,paper
+printf 'name,c_q\na,1\n' >bad.csv
+refuse 'bad.csv:1: column c_q: must be name or what can be identified' --over bad.csv
 if thorough; then
+printf 'name,c_n [kg/s],current_x\nthin,6,0\nthick,10,0.05\n' >scenarios.csv
+run --json --over scenarios.csv
+check "a gait for scenarios of a file" eval '[ $code -eq 0 ] && [ "$(grep -c "\"model\":.*\"thi[nc]k*\"" out)" -eq 2 ]'
 run --json --over paper,consistent@0.1,0.1
 check "a gait for two models in two currents" [ $code -eq 0 ]
 gain_on() {

@@ -162,6 +162,8 @@ typedef struct moray_swimmer moray_swimmer; // one robot, one model, its scratch
 MORAY_API moray_status moray_swimmer_new(moray_swimmer **swimmer, const moray_robot *robot, moray_model model);
 MORAY_API void moray_swimmer_free(moray_swimmer *swimmer);
 
+// Another robot of as many links in its place. Error: MORAY_INPUT.
+MORAY_API moray_status moray_swimmer_set_robot(moray_swimmer *swimmer, const moray_robot *robot);
 MORAY_API const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer);
 MORAY_API moray_model moray_swimmer_model(const moray_swimmer *swimmer);
 MORAY_API int moray_swimmer_states(const moray_swimmer *swimmer); // 2N+4
@@ -200,6 +202,10 @@ enum {
 MORAY_API void moray_state_body(moray_model model, int links, const double *x, double body[MORAY_BODY_STATES]);
 MORAY_API void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait, double t,
                                      const double body[MORAY_BODY_STATES], double *x);
+
+// The same with joints phi[N-1] at the rates v_phi[N-1].
+MORAY_API void moray_swimmer_with_joints(const moray_swimmer *swimmer, const double *phi, const double *v_phi,
+                                         const double body[MORAY_BODY_STATES], double *x);
 
 // State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
 // N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.

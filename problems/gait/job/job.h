@@ -40,6 +40,8 @@ typedef struct stage {
 typedef struct scenario {
     char name[48]; // as it is given, "consistent@0.1,0.1"
     int rung;
+    bool read; // from a file: robot in place of the rung's
+    moray_robot robot;
     double current[2]; // [m/s]
     double gain;       // of that gait over the baseline there, a ratio, when it is found
 } scenario;

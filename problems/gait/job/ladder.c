@@ -15,7 +15,7 @@ static moray_status refuse_name(const gait_job *job, const char *name)
         moray_text_add(names, sizeof names, "%s%s", k ? ", " : "", rung[k].name);
     return moray_error(MORAY_INPUT,
                        "over = %.60s: must be none or names of rungs with commas between, @VX,VY [m/s] behind those in "
-                       "another current: %s",
+                       "another current, or a file NAME.csv of scenarios: %s",
                        name, names);
 }
 
@@ -41,9 +41,33 @@ static moray_status read_scenario(const gait_job *job, char *text, char **rest, 
     return moray_ok();
 }
 
+// Those of a file, as identify leaves it: the job's robot with what the file says changed.
+static moray_status read_file(const gait_job *job, const char *path, scenarios *over)
+{
+    const moray_unknowns base = {.robot = job->snake.robot, .current = {job->snake.current[0], job->snake.current[1]}};
+    moray_unknowns world[MORAY_SCENARIOS];
+    moray_world_name name[MORAY_SCENARIOS];
+    int n;
+    MORAY_TRY(moray_worlds_read(path, &base, MORAY_SCENARIOS - over->n, world, name, &n));
+    for (int k = 0; k < n; k++) {
+        scenario *at = &over->at[over->n++];
+        *at = (scenario){
+            .rung = -1, .read = true, .robot = world[k].robot, .current = {world[k].current[0], world[k].current[1]}};
+        snprintf(at->name, sizeof at->name, "%.39s", name[k].text);
+    }
+    return moray_ok();
+}
+
+static bool is_file(const char *name)
+{
+    const size_t length = strlen(name);
+    return length > 4 && strcmp(name + length - 4, ".csv") == 0;
+}
+
 static bool same_scenario(const scenario *one, const scenario *other)
 {
-    return one->rung == other->rung && one->current[0] == other->current[0] && one->current[1] == other->current[1];
+    return !one->read && !other->read && one->rung == other->rung && one->current[0] == other->current[0] &&
+           one->current[1] == other->current[1];
 }
 
 moray_status gait_job_scenarios(const gait_job *job, scenarios *over)
@@ -56,6 +80,10 @@ moray_status gait_job_scenarios(const gait_job *job, scenarios *over)
     for (char *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
         if (over->n == MORAY_SCENARIOS)
             return moray_error(MORAY_INPUT, "over = %.200s: more than %d names", job->over, MORAY_SCENARIOS);
+        if (is_file(name)) {
+            MORAY_TRY(read_file(job, name, over));
+            continue;
+        }
         scenario *at = &over->at[over->n];
         MORAY_TRY(read_scenario(job, name, &rest, at));
         for (int k = 0; k < over->n; k++)
@@ -122,8 +150,8 @@ static void set_free(scenario_set *set)
 static moray_status make_scenario(gait_job *job, scenario_set *set, int k)
 {
     const scenario *it = &set->over->at[k];
-    const moray_rung *rung = &set->rung[it->rung];
-    moray_orbit_spec spec = moray_orbit_spec_default(&rung->robot, MORAY_FIRST_PRINCIPLES);
+    const moray_robot *robot = it->read ? &it->robot : &set->rung[it->rung].robot;
+    moray_orbit_spec spec = moray_orbit_spec_default(robot, MORAY_FIRST_PRINCIPLES);
     moray_orbit_result baseline;
     stage at = {.model = MORAY_FIRST_PRINCIPLES};
     memcpy(spec.current, it->current, sizeof spec.current);
@@ -138,7 +166,7 @@ static moray_status make_scenario(gait_job *job, scenario_set *set, int k)
     memcpy(at.taper, job->taper, sizeof at.taper);
     set->scenario[k] = (moray_gait_scenario){it->name, gait_job_spec(job, &at, MORAY_GAIT_FASTEST, it->current),
                                              baseline.steady.speed};
-    set->scenario[k].problem.robot = rung->robot;
+    set->scenario[k].problem.robot = *robot;
     return moray_ok();
 }
 
@@ -193,7 +221,11 @@ static moray_status solve_all(gait_job *job, scenario_set *set, const gait_start
 static bool is_own(const gait_job *job, const scenario *at)
 {
     const double *V = job->snake.current;
-    return moray_rung_of(&job->snake.robot) >> at->rung & 1 && at->current[0] == V[0] && at->current[1] == V[1];
+    const moray_robot *own = &job->snake.robot, *its = &at->robot;
+    const bool same = at->read
+                          ? its->c_t == own->c_t && its->c_n == own->c_n && its->mu_n == own->mu_n && its->m == own->m
+                          : moray_rung_of(own) >> at->rung & 1;
+    return same && at->current[0] == V[0] && at->current[1] == V[1];
 }
 
 // omega is that of the user's own model and current, where it is one of them, and else that which uses the power
@@ -256,7 +288,7 @@ moray_status gait_job_over(gait_job *job, const gait_starts *known)
                   .speed = last_stage(job)->speed,
                   .taper = {job->taper[0], job->taper[1]}};
     for (int k = 0; k < set.over->n; k++)
-        at->found_on |= 1u << set.over->at[k].rung;
+        at->found_on |= set.over->at[k].read ? moray_rung_of(&set.over->at[k].robot) : 1u << set.over->at[k].rung;
     if (at->found_on & moray_rung_of(&job->snake.robot))
         at->found_on |= MORAY_RUNG_CHANGES;
     if (moray_failed(job->no_paper[MORAY_FIRST_PRINCIPLES]))

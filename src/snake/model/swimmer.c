@@ -50,6 +50,15 @@ void moray_swimmer_free(moray_swimmer *swimmer)
     free(swimmer);
 }
 
+moray_status moray_swimmer_set_robot(moray_swimmer *swimmer, const moray_robot *robot)
+{
+    MORAY_TRY(moray_robot_check(robot));
+    if (robot->links != swimmer->robot.links)
+        return moray_error(MORAY_INPUT, "links = %d: the swimmer was made for %d", robot->links, swimmer->robot.links);
+    swimmer->robot = *robot;
+    return moray_ok();
+}
+
 const moray_robot *moray_swimmer_robot(const moray_swimmer *swimmer)
 {
     return &swimmer->robot;
@@ -104,6 +113,12 @@ void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_gait *gait,
     double *phi = swimmer->reference, *v_phi = phi + n;
     moray_gait_reference(gait, n, t, phi, v_phi, v_phi + n);
     swimmer->model->assemble(n + 1, phi, v_phi, body, x);
+}
+
+void moray_swimmer_with_joints(const moray_swimmer *swimmer, const double *phi, const double *v_phi,
+                               const double body[MORAY_BODY_STATES], double *x)
+{
+    swimmer->model->assemble(swimmer->robot.links, phi, v_phi, body, x);
 }
 
 static bool all_finite(const double *values, int n)

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: MIT
+//
+// A robot identified from synthetic logs: recovered without noise; as uncertain as many seeds scatter; what is open is
+// named; a model that is too simple is told.
+#include <string.h>
+
+#include "degree.h"
+#include "tap.h"
+
+#include "moray/dense.h"
+#include "moray/snake/identify.h"
+
+enum { MOST_LOGS = 2, LINKS = 5 };
+
+// What the logs are swum by, and how they are read.
+typedef struct story {
+    moray_model model;
+    moray_hydrodynamics hydro;
+    moray_log_noise noise;
+    double current[2], sigma[MORAY_CHANNELS];
+    double offset; // of the second gait [rad or m]
+    double duration, step;
+} story;
+
+static moray_robot robot_of(const story *s)
+{
+    moray_robot robot = moray_robot_paper();
+    robot.links = LINKS;
+    robot.hydro = s->hydro;
+    return robot;
+}
+
+static void swim_logs(const story *s, moray_log log[MOST_LOGS])
+{
+    const moray_robot robot = robot_of(s);
+    moray_swimmer *swimmer;
+    CHECK_OK(moray_swimmer_new(&swimmer, &robot, s->model), "swimmer");
+    moray_swimmer_set_current(swimmer, s->current[0], s->current[1]);
+    for (int k = 0; k < MOST_LOGS; k++) {
+        moray_log_noise noise = s->noise;
+        noise.seed = noise.seed * MOST_LOGS + (unsigned long)k;
+        moray_gait gait = {.omega = (k ? 150 : 110) * DEG, .delta = (k ? 60 : 40) * DEG, .offset = k ? s->offset : 0};
+        gait.amplitude = moray_amplitude_from_theta_max(&robot, s->model, (k ? 18 : 25) * DEG, gait.delta);
+        CHECK_OK(moray_log_swim(&log[k], swimmer, &gait, k * 70 * DEG, 6, 6 + s->duration, s->step, &noise), "log");
+    }
+    moray_swimmer_free(swimmer);
+}
+
+// The unknowns of a spec by name, starting away from the truth, bounds a factor 5 or 0.5 on either side.
+typedef struct wanted {
+    int n, unknown[MORAY_MOST_UNKNOWNS];
+    double truth[MORAY_MOST_UNKNOWNS], lower[MORAY_MOST_UNKNOWNS], upper[MORAY_MOST_UNKNOWNS];
+} wanted;
+
+static moray_identify_spec spec_of(const story *s, const char *names, wanted *w)
+{
+    moray_identify_spec spec = {.model = s->model, .start = {.robot = robot_of(s)}, .max_iterations = 40};
+    moray_unknowns truth = spec.start;
+    char text[300], *rest = NULL;
+    memcpy(spec.sigma, s->sigma, sizeof spec.sigma);
+    memcpy(truth.current, s->current, sizeof truth.current);
+    memcpy(truth.camera, s->noise.camera, sizeof truth.camera);
+    truth.heading_bias = s->noise.heading_bias;
+    truth.camera_rotation = s->noise.camera_rotation;
+    truth.position_delay = s->noise.position_delay;
+    truth.heading_delay = s->noise.heading_delay;
+    *w = (wanted){0};
+    snprintf(text, sizeof text, "%s", names);
+    for (char *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+        const int unknown = w->unknown[w->n] = moray_unknown_named(name), k = w->n++;
+        const double value = w->truth[k] = *moray_unknown_at(unknown, &truth);
+        const bool coefficient = unknown < moray_unknown_named("current_x");
+        w->lower[k] = coefficient ? value / 5 : strstr(name, "delay") ? 0 : -0.5;
+        w->upper[k] = coefficient ? value * 5 : 0.5;
+        *moray_unknown_at(unknown, &spec.start) = coefficient ? 1.3 * value : 0;
+    }
+    spec.unknown = w->unknown;
+    spec.n = w->n;
+    spec.lower = w->lower;
+    spec.upper = w->upper;
+    return spec;
+}
+
+static void free_logs(moray_log log[MOST_LOGS])
+{
+    for (int k = 0; k < MOST_LOGS; k++)
+        moray_log_free(&log[k]);
+}
+
+static void check_recovered(const story *s, const char *names, const char *what)
+{
+    moray_log log[MOST_LOGS];
+    wanted w;
+    moray_identify *identify;
+    moray_estimate at;
+    double worst = 0;
+    int at_worst = 0;
+    swim_logs(s, log);
+    moray_identify_spec spec = spec_of(s, names, &w);
+    spec.step = 0.01;
+    CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), what);
+    moray_identify_start(identify, 0, &at);
+    CHECK_OK(moray_identify_solve(identify, &at), what);
+    for (int k = 0; k < w.n; k++) {
+        const double off = fabs(at.value[k] - w.truth[k]) / (w.truth[k] != 0 ? fabs(w.truth[k]) : 1);
+        printf("# %s %s %.10g (true %.10g)\n", what, moray_unknown_name(w.unknown[k]), at.value[k], w.truth[k]);
+        if (!(off <= worst))
+            worst = off, at_worst = k;
+    }
+    CHECK(worst < 1e-6 && at.converged, "%s: recovered within 1e-6 in %d iterations: worst %s by %.2g; cost %.3g", what,
+          at.iterations, moray_unknown_name(w.unknown[at_worst]), worst, at.cost);
+    moray_identify_free(identify);
+    free_logs(log);
+}
+
+static const double known[MORAY_CHANNELS] = {1e-3, 1e-3, 0.1 * DEG, 1e-3};
+
+static void test_recovery(void)
+{
+    story s = {
+        .model = MORAY_FIRST_PRINCIPLES, .current = {0.06, -0.04}, .offset = 3 * DEG, .duration = 8, .step = 0.1};
+    memcpy(s.sigma, known, sizeof known);
+    s.noise = (moray_log_noise){.heading_bias = 0.05, .position_delay = 0.12, .heading_delay = 0.03};
+    check_recovered(&s, "c_t,c_n,mu_n,lambda_2,current_x,current_y,heading_bias,position_delay,heading_delay",
+                    "first-principles");
+    s.hydro = moray_hydrodynamics_consistent();
+    check_recovered(&s, "c_t,c_n,mu_n,m,current_x,current_y,heading_bias,position_delay,heading_delay", "consistent");
+    s.model = MORAY_CONTROL_ORIENTED;
+    s.offset = 0.005;
+    s.noise = (moray_log_noise){.heading_bias = 0.05};
+    check_recovered(&s, "c_t,c_n,rot_damping,rot_gain,current_x,current_y,heading_bias", "control-oriented");
+}
+
+// ---- Noise ---------------------------------------------------------------------------------------------------------
+
+enum { MOST_SEEDS = 1000 };
+
+// How often the interval of 95 % holds the truth; the scatter beside the mean of the claimed variances; and the errors
+// weighed by the claimed covariance, e' C^-1 e, which are chi^2 of as many degrees of freedom as there are unknowns.
+typedef struct tally {
+    int inside[MORAY_MOST_UNKNOWNS], seeds, simple;
+    double sum[MORAY_MOST_UNKNOWNS], squares[MORAY_MOST_UNKNOWNS], claimed[MORAY_MOST_UNKNOWNS];
+    double weighed;
+} tally;
+
+static double weigh(const double *error, const moray_information *info)
+{
+    double C[MORAY_MOST_UNKNOWNS * MORAY_MOST_UNKNOWNS], x[MORAY_MOST_UNKNOWNS], sum = 0;
+    memcpy(C, info->covariance, sizeof C);
+    memcpy(x, error, sizeof x);
+    if (!moray_dense_solve(info->n, C, 1, x))
+        return NAN;
+    for (int k = 0; k < info->n; k++)
+        sum += error[k] * x[k];
+    return sum;
+}
+
+static void count_seed(const story *of, const char *names, unsigned long seed, wanted *w, tally *t)
+{
+    moray_log log[MOST_LOGS];
+    moray_identify *identify;
+    moray_estimate at;
+    moray_information info;
+    moray_identify_fit fit;
+    story s = *of;
+    s.noise.seed = seed;
+    swim_logs(&s, log);
+    const moray_identify_spec spec = spec_of(&s, names, w);
+    moray_status status = moray_identify_new(&identify, &spec, log, MOST_LOGS);
+    moray_identify_start(identify, 0, &at);
+    if (!moray_failed(status))
+        status = moray_identify_solve(identify, &at);
+    if (!moray_failed(status))
+        status = moray_identify_information(identify, &at, &info);
+    if (!moray_failed(status))
+        status = moray_identify_residuals(identify, &at, &fit);
+    if (moray_failed(status))
+        CHECK_OK(status, "seed");
+    double error[MORAY_MOST_UNKNOWNS] = {0};
+    for (int k = 0; k < w->n; k++) {
+        const double off = error[k] = at.value[k] - w->truth[k];
+        t->inside[k] += fabs(off) < 1.959964 * info.error[k];
+        t->sum[k] += off;
+        t->squares[k] += off * off;
+        t->claimed[k] += info.error[k] * info.error[k];
+    }
+    t->weighed += weigh(error, &info);
+    t->seeds++;
+    t->simple += fit.simple;
+    moray_identify_fit_free(&fit);
+    moray_identify_free(identify);
+    free_logs(log);
+}
+
+// What chi^2 lies below, and above, but for one in 1000 (Wilson & Hilferty).
+static double chi_square(double freedom, double side)
+{
+    const double root = 1 - 2 / (9 * freedom) + side * 3.0902 * sqrt(2 / (9 * freedom));
+    return freedom * root * root * root;
+}
+
+static void check_coverage(const story *s, const char *names, int seeds, const char *what)
+{
+    tally t = {0};
+    wanted w;
+    double inside = 0;
+    for (int k = 0; k < seeds; k++)
+        count_seed(s, names, (unsigned long)k + 1, &w, &t);
+    for (int k = 0; k < w.n; k++) {
+        const double mean = t.sum[k] / seeds, scatter = sqrt(t.squares[k] / seeds),
+                     claimed = sqrt(t.claimed[k] / seeds);
+        printf("# %s %-16s inside %d of %d; claimed %.4g, scatter %.4g, mean error %.2g\n", what,
+               moray_unknown_name(w.unknown[k]), t.inside[k], seeds, claimed, scatter, mean);
+        inside += (double)t.inside[k] / seeds / w.n;
+    }
+    const double freedom = (double)seeds * w.n, low = chi_square(freedom, -1), high = chi_square(freedom, 1);
+    CHECK(t.weighed > low && t.weighed < high,
+          "%s: over %d seeds errors weighed by the claimed covariance sum up to %.1f, within %.1f to %.1f", what, seeds,
+          t.weighed, low, high);
+    if (seeds >= 200)
+        CHECK(inside > 0.93 && inside < 0.97, "%s: %.1f %% of the truths inside their 95 %% intervals", what,
+              100 * inside);
+    CHECK(t.simple <= 1 + seeds / 50, "%s: %d of %d called too simple", what, t.simple, seeds);
+}
+
+static story noisy(moray_hydrodynamics hydro)
+{
+    story s = {.model = MORAY_FIRST_PRINCIPLES,
+               .hydro = hydro,
+               .current = {0.06, -0.04},
+               .offset = 3 * DEG,
+               .duration = 10,
+               .step = 0.1};
+    for (int k = 0; k < MORAY_CHANNELS; k++)
+        s.sigma[k] = NAN;
+    s.noise = (moray_log_noise){.position = 0.005, .heading = 0.5 * DEG, .torque = 0.02, .heading_bias = 0.05};
+    return s;
+}
+
+static void test_coverage(int seeds)
+{
+    const story paper = noisy((moray_hydrodynamics){0}), consistent = noisy(moray_hydrodynamics_consistent());
+    check_coverage(&paper, "c_t,c_n,mu_n,current_x,current_y,heading_bias", seeds, "first-principles");
+    check_coverage(&consistent, "c_t,c_n,mu_n,current_x,current_y,heading_bias", seeds, "consistent");
+}
+
+// ---- What the data leave open ---------------------------------------------------------------------------------------
+
+typedef struct found {
+    moray_log log[MOST_LOGS];
+    moray_identify *identify;
+    moray_estimate at;
+    moray_information info;
+    moray_identify_fit fit;
+    wanted w;
+} found;
+
+static void find(const story *s, const moray_identify_spec *spec, int logs, found *f)
+{
+    swim_logs(s, f->log);
+    CHECK_OK(moray_identify_new(&f->identify, spec, f->log, logs), "new");
+    moray_identify_start(f->identify, 0, &f->at);
+    CHECK_OK(moray_identify_solve(f->identify, &f->at), "solve");
+    CHECK_OK(moray_identify_information(f->identify, &f->at, &f->info), "information");
+    CHECK_OK(moray_identify_residuals(f->identify, &f->at, &f->fit), "residuals");
+}
+
+static void found_free(found *f)
+{
+    moray_identify_fit_free(&f->fit);
+    moray_identify_free(f->identify);
+    free_logs(f->log);
+}
+
+// A compass that is off and a camera that is turned: a world turned as a whole looks the same to both.
+static void test_open(void)
+{
+    static found f;
+    char text[600];
+    story s = noisy((moray_hydrodynamics){0});
+    const moray_identify_spec spec = spec_of(&s, "c_t,c_n,current_x,current_y,heading_bias,camera_rotation", &f.w);
+    find(&s, &spec, MOST_LOGS, &f);
+    moray_information_open(&f.info, f.w.unknown, text, sizeof text);
+    CHECK(f.info.rank == f.w.n - 1, "one direction is open: rank %d of %d", f.info.rank, f.w.n);
+    CHECK(strstr(text, "heading_bias") && strstr(text, "camera_rotation"), "it is named: %s", text);
+    CHECK(isinf(f.info.error[4]) && isinf(f.info.error[5]) && isfinite(f.info.error[0]),
+          "neither angle has an interval; c_t has: +- %.3g", f.info.error[0]);
+    found_free(&f);
+}
+
+// Logs of quadratic drag read by the linear model.
+static void test_simple(void)
+{
+    static found f;
+    story s = noisy((moray_hydrodynamics){.drag = MORAY_DRAG_QUADRATIC});
+    moray_identify_spec spec = spec_of(&s, "c_t,c_n,mu_n,current_x,current_y,heading_bias", &f.w);
+    spec.start.robot.hydro = (moray_hydrodynamics){0};
+    find(&s, &spec, MOST_LOGS, &f);
+    CHECK(f.fit.simple, "a model that is too simple is told: %s", f.fit.verdict);
+    found_free(&f);
+}
+
+// Joint angles with noise, taken by splines.
+static void test_splines(void)
+{
+    static found f;
+    story s = noisy(moray_hydrodynamics_consistent());
+    s.noise.joints = 0.1 * DEG;
+    s.noise.torque = 0.05;
+    s.step = 0.05;
+    moray_identify_spec spec = spec_of(&s, "c_t,c_n,current_x,current_y,heading_bias", &f.w);
+    spec.joints = MORAY_LOGGED_SPLINE;
+    find(&s, &spec, MOST_LOGS, &f);
+    for (int k = 0; k < f.w.n; k++)
+        CHECK(fabs(f.at.value[k] - f.w.truth[k]) < 5 * f.info.error[k], "%s by splines: %.4g +- %.2g (true %.4g)",
+              moray_unknown_name(f.w.unknown[k]), f.at.value[k], f.info.error[k], f.w.truth[k]);
+    CHECK(strstr(moray_identify_joints(f.identify, 0), "splines"), "joints: %s", moray_identify_joints(f.identify, 0));
+    found_free(&f);
+}
+
+// A tenth of the readings of position and heading is far off: least squares goes wrong, Huber's loss does not.
+static void test_outliers(void)
+{
+    static found f;
+    double off[2];
+    story s = noisy((moray_hydrodynamics){0});
+    s.noise.outliers = 0.1;
+    s.noise.missing = 0.05;
+    s.sigma[0] = s.sigma[1] = s.noise.position, s.sigma[2] = s.noise.heading, s.sigma[3] = s.noise.torque;
+    for (int huber = 0; huber < 2; huber++) {
+        moray_identify_spec spec = spec_of(&s, "c_t,c_n,mu_n,current_x,current_y,heading_bias", &f.w);
+        spec.huber = huber ? 1.5 : 0;
+        find(&s, &spec, MOST_LOGS, &f);
+        off[huber] = 0;
+        for (int k = 0; k < f.w.n; k++)
+            off[huber] += pow((f.at.value[k] - f.w.truth[k]) / f.info.error[k], 2);
+        found_free(&f);
+    }
+    CHECK(off[0] > 3 * off[1] && off[1] < 25, "squares of errors over standard errors: %.3g, with Huber's loss %.3g", off[0],
+          off[1]);
+}
+
+// The experiment to swim next: swum, it tells what was predicted.
+static void test_design(void)
+{
+    static found f;
+    moray_gait gait;
+    moray_information after;
+    story s = noisy((moray_hydrodynamics){0});
+    const moray_identify_spec spec = spec_of(&s, "c_t,c_n,mu_n,current_x,current_y", &f.w);
+    const moray_design_spec design = {.lower = {5 * DEG, 60 * DEG, 30 * DEG, -5 * DEG},
+                                      .upper = {30 * DEG, 150 * DEG, 80 * DEG, 5 * DEG},
+                                      .most_rate = INFINITY,
+                                      .duration = 8,
+                                      .evaluations = 18};
+    find(&s, &spec, 1, &f);
+    CHECK_OK(moray_identify_design(f.identify, &f.at, &f.info, &design, &gait, &after), "design");
+    for (int k = 0; k < f.w.n; k++)
+        CHECK(after.error[k] < f.info.error[k], "%s +- %.3g, with the experiment %.3g",
+              moray_unknown_name(f.w.unknown[k]), f.info.error[k], after.error[k]);
+    CHECK(gait.amplitude >= design.lower[0] && gait.amplitude <= design.upper[0] && gait.omega <= design.upper[1],
+          "within limits: alpha %.3g deg, omega %.4g deg/s", gait.amplitude / DEG, gait.omega / DEG);
+    moray_unknowns world[5];
+    CHECK(moray_identify_worlds(f.identify, &f.at, &f.info, 1, 5, world) == 5, "five worlds of two axes");
+    CHECK(world[0].robot.c_n == f.at.value[1] && world[1].robot.c_n != world[2].robot.c_n,
+          "the estimate, and the ends of an axis");
+    found_free(&f);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1) { // tests/studies/identify.sh: so many seeds alone
+        test_coverage(atoi(argv[1]));
+        return tap_done();
+    }
+    test_recovery();
+    test_open();
+    test_simple();
+    test_design();
+    if (tap_thorough()) {
+        test_splines();
+        test_outliers();
+    }
+    test_coverage(tap_thorough() ? 2 : 1);
+    return tap_done();
+}
