@@ -37,7 +37,7 @@ typedef struct identify {
     moray_ticker ticker;
     int unknown[MORAY_MOST_UNKNOWNS], n;
     double lower[MORAY_MOST_UNKNOWNS], upper[MORAY_MOST_UNKNOWNS];
-    moray_log log[LOGS], held[LOGS];
+    moray_swim_log log[LOGS], held[LOGS];
     int n_logs, n_held;
     moray_identify *fitted;
     moray_estimate at[MOST_STARTS]; // the best first

@@ -112,7 +112,7 @@ static void fill_next(const identify *run, struct shown *s)
 static void tell_logs(const identify *run, struct shown *s)
 {
     for (int k = 0; k < run->n_logs; k++) {
-        const moray_log *log = &run->log[k];
+        const moray_swim_log *log = &run->log[k];
         moray_text_add(s->text, TEXT, "\n%s: %d rows, %.4g s; joints: %s.", log->name, log->n,
                        log->t[log->n - 1] - log->t[0], moray_identify_joints(run->fitted, k));
         if (log->notes[0])

@@ -7,19 +7,19 @@
 
 static const double same_cost = 1e-3; // of the best: another start came to the same
 
-static moray_status read_logs(const identify *run, const char *list, moray_log *log, int *n)
+static moray_status read_logs(const identify *run, const char *list, moray_swim_log *log, int *n)
 {
-    const moray_log_format format = {.joints = run->snake.robot.links - 1,
-                                     .columns = run->columns,
-                                     .units = run->units,
-                                     .reference = run->reference,
-                                     .torque_constant = run->torque_constant};
+    const moray_swim_log_format format = {.joints = run->snake.robot.links - 1,
+                                          .columns = run->columns,
+                                          .units = run->units,
+                                          .reference = run->reference,
+                                          .torque_constant = run->torque_constant};
     char text[MORAY_PATH_SIZE], *rest = NULL;
     snprintf(text, sizeof text, "%s", list);
     for (char *path = strtok_r(text, ",", &rest); path; path = strtok_r(NULL, ",", &rest)) {
         if (*n == LOGS)
             return moray_error(MORAY_INPUT, "%.200s: at most %d logs", list, LOGS);
-        MORAY_TRY(moray_log_read(&log[(*n)++], path, &format));
+        MORAY_TRY(moray_swim_log_read(&log[(*n)++], path, &format));
     }
     return moray_ok();
 }
@@ -93,7 +93,7 @@ void identify_release(identify *run)
     moray_identify_fit_free(&run->fit);
     moray_identify_free(run->fitted);
     for (int k = 0; k < run->n_logs; k++)
-        moray_log_free(&run->log[k]);
+        moray_swim_log_free(&run->log[k]);
     for (int k = 0; k < run->n_held; k++)
-        moray_log_free(&run->held[k]);
+        moray_swim_log_free(&run->held[k]);
 }

@@ -10,7 +10,7 @@
 static const double first_part = 0.25;
 
 // A log that measures nothing after a time: the joints stay.
-static moray_status cut_copy(const moray_log *log, double until, moray_log *cut, double **room)
+static moray_status cut_copy(const moray_swim_log *log, double until, moray_swim_log *cut, double **room)
 {
     const size_t n = (size_t)log->n, width = n * (size_t)log->joints;
     *cut = *log;
@@ -76,8 +76,8 @@ static void speeds(const moray_identify_fit *fit, double until, held_out *found)
 }
 
 // The whole log against the robot from the first state found.
-static moray_status compare(const moray_log *log, const moray_identify_spec *spec, moray_estimate *at, double until,
-                            held_out *found)
+static moray_status compare(const moray_swim_log *log, const moray_identify_spec *spec, moray_estimate *at,
+                            double until, held_out *found)
 {
     moray_identify *whole;
     moray_identify_fit fit = {0};
@@ -94,14 +94,14 @@ static moray_status compare(const moray_log *log, const moray_identify_spec *spe
 
 moray_status identify_validate(const identify *run, int k, held_out *found)
 {
-    const moray_log *log = &run->held[k];
+    const moray_swim_log *log = &run->held[k];
     const double until = log->t[0] + first_part * (log->t[log->n - 1] - log->t[0]);
     moray_identify_spec spec = identify_spec(run);
     const double value = run->at[0].value[0], lower = value - 1e-9 * (1 + fabs(value)),
                  upper = value + 1e-9 * (1 + fabs(value));
     moray_identify *first = NULL;
     moray_estimate at;
-    moray_log cut;
+    moray_swim_log cut;
     double *room = NULL;
     *found = (held_out){.seconds = until - log->t[0]};
     spec.start = run->world;

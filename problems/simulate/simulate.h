@@ -19,7 +19,7 @@ typedef struct simulate {
     double rtol, atol; // NaN: the integrator's own
     char log_file[MORAY_PATH_SIZE];
     double log_from, log_step;
-    moray_log_noise noise; // its seed from log_seed
+    moray_swim_log_noise noise; // its seed from log_seed
     int log_seed;
 } simulate;
 

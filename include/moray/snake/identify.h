@@ -16,48 +16,51 @@ MORAY_BEGIN
 // ---- Logs ----------------------------------------------------------------------------------------------------------
 
 // One run. A value that is missing is NAN; a channel that the file has not is NULL.
-typedef struct moray_log {
+typedef struct moray_swim_log {
     char name[80]; // the end of the path
     int n, joints;
     int *line;                                 // [n] in the file
     double *t, *phi, *p_x, *p_y, *heading, *u; // [n], phi and u [n][joints]; heading without jumps of 2 pi
     bool reference;                            // phi is what was commanded
     char notes[600];                           // what is odd but no error, a line each
-} moray_log;
+} moray_swim_log;
 
 // How a file names and measures things.
-typedef struct moray_log_format {
+typedef struct moray_swim_log_format {
     int joints;
     const char *columns;    // "t=Time,phi=servo#": columns of other names, # for the number of a joint; NULL: none
     const char *units;      // "phi=deg,p_x=mm": in place of those in brackets behind a name; NULL: none
     bool reference;         // joints from phi_ref_#, not from phi_#
     double torque_constant; // of motors whose u is in A [N m/A]; NAN: none
-} moray_log_format;
+} moray_swim_log_format;
 
 // Reads comma-separated values: t, phi_# (or phi_ref_#), and any of p_x with p_y, heading, u_#; s, rad, m, N m unless a
 // unit stands in brackets behind the name; other columns are ignored; a missing value is empty or nan. Error: MORAY_IO;
 // MORAY_INPUT naming file, line, column, and what is allowed: a missing column or one of an unknown unit, text that is
 // no number, times that do not ascend, fewer than 20 rows, angles beyond 2 pi and paths faster than 5 m/s whose unit
-// was not said by format->units; MORAY_MEMORY. Free with moray_log_free in any case.
-MORAY_API moray_status moray_log_read(moray_log *log, const char *path, const moray_log_format *format);
-MORAY_API void moray_log_free(moray_log *log);
+// was not said by format->units; MORAY_MEMORY. Free with moray_swim_log_free in any case.
+MORAY_API moray_status moray_swim_log_read(moray_swim_log *log, const char *path, const moray_swim_log_format *format);
+MORAY_API void moray_swim_log_free(moray_swim_log *log);
 
-// Writes a log as moray_log_read takes it, in place of the file at once. Error: MORAY_IO naming the file, MORAY_MEMORY.
-MORAY_API moray_status moray_log_save(const moray_log *log, const char *path);
+// Writes a log as moray_swim_log_read takes it, in place of the file at once. Error: MORAY_IO naming the file,
+// MORAY_MEMORY.
+MORAY_API moray_status moray_swim_log_save(const moray_swim_log *log, const char *path);
 
 // Instruments of a synthetic log: standard deviations, offsets, delays, faults. All zero: perfect.
-typedef struct moray_log_noise {
+typedef struct moray_swim_log_noise {
     double position, heading, joints, torque; // standard deviations [m, rad, rad, N m]
     double heading_bias, camera[2], camera_rotation, position_delay, heading_delay; // as of moray_unknowns
     double outliers, missing; // shares of readings of position and heading
     unsigned long seed;
-} moray_log_noise;
+} moray_swim_log_noise;
 
 // A log of the swimmer on a gait of its model, from rest at t = 0 straight at `heading`, recorded from `from` to `to`
 // [s] every `step`. Joint angles of the control-oriented model are those of the gait mapped, without torques. An
-// outlier is off by 20 standard deviations. Error: MORAY_INPUT, MORAY_MEMORY, MORAY_NUMERIC. Free with moray_log_free.
-MORAY_API moray_status moray_log_swim(moray_log *log, moray_swimmer *swimmer, const moray_gait *gait, double heading,
-                                      double from, double to, double step, const moray_log_noise *noise);
+// outlier is off by 20 standard deviations. Error: MORAY_INPUT, MORAY_MEMORY, MORAY_NUMERIC. Free with
+// moray_swim_log_free.
+MORAY_API moray_status moray_swim_log_swim(moray_swim_log *log, moray_swimmer *swimmer, const moray_gait *gait,
+                                           double heading, double from, double to, double step,
+                                           const moray_swim_log_noise *noise);
 
 // ---- Unknowns ------------------------------------------------------------------------------------------------------
 
@@ -114,7 +117,7 @@ typedef struct moray_identify moray_identify;
 // Error: MORAY_INPUT naming what is wrong: an unknown that the model does not feel, a start out of its bounds, joints
 // that are no gait or have gaps; MORAY_MEMORY.
 MORAY_API moray_status moray_identify_new(moray_identify **identify, const moray_identify_spec *spec,
-                                          const moray_log *log, int logs);
+                                          const moray_swim_log *log, int logs);
 MORAY_API void moray_identify_free(moray_identify *identify);
 
 // How the joints of a run were taken: "gait of ..., within 0.3 deg" or "splines of 60 pieces".

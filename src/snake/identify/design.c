@@ -20,7 +20,7 @@ struct search {
     const moray_estimate *at;
     const moray_information *known;
     const moray_design_spec *spec;
-    moray_log log; // whose joints are written anew for every gait
+    moray_swim_log log; // whose joints are written anew for every gait
 };
 
 static moray_gait gait_of(const double x[MORAY_DESIGNED])
@@ -128,12 +128,12 @@ static moray_status search(struct search *s, double x[MORAY_DESIGNED])
         &settings, x, &found);
 }
 
-static moray_status make_log(const moray_identify *v, const moray_design_spec *spec, moray_log *log)
+static moray_status make_log(const moray_identify *v, const moray_design_spec *spec, moray_swim_log *log)
 {
-    const moray_log *like = v->run[0].log;
+    const moray_swim_log *like = v->run[0].log;
     const double usual = (like->t[like->n - 1] - like->t[0]) / (like->n - 1);
     const int n = (int)fmin(spec->duration / usual, 100000) + 1;
-    MORAY_TRY(moray_log_new(log, n < 20 ? 20 : n, like->joints));
+    MORAY_TRY(moray_swim_log_new(log, n < 20 ? 20 : n, like->joints));
     double *room = log->phi + (size_t)log->n * (size_t)log->joints;
     for (int k = 0; k < log->n; k++)
         log->t[k] = spec->duration * k / (log->n - 1);
@@ -158,6 +158,6 @@ moray_status moray_identify_design(const moray_identify *v, const moray_estimate
         *gait = gait_of(x);
         status = add_information(&s, gait, after);
     }
-    moray_log_free(&s.log);
+    moray_swim_log_free(&s.log);
     return status;
 }

@@ -17,7 +17,7 @@ const char *moray_channel_name(moray_channel_kind kind)
     return channel_names[kind];
 }
 
-static const double *channel_of(const moray_log *log, moray_channel_kind kind, int joint, int *stride)
+static const double *channel_of(const moray_swim_log *log, moray_channel_kind kind, int joint, int *stride)
 {
     *stride = kind == MORAY_CHANNEL_TORQUE ? log->joints : 1;
     switch (kind) {
@@ -32,7 +32,7 @@ static const double *channel_of(const moray_log *log, moray_channel_kind kind, i
     }
 }
 
-static int width_of(const moray_log *log, moray_channel_kind kind)
+static int width_of(const moray_swim_log *log, moray_channel_kind kind)
 {
     return kind == MORAY_CHANNEL_TORQUE ? log->joints : 1;
 }
@@ -52,7 +52,7 @@ static double range_of(const double *y, int n, int stride)
 // guess.
 static moray_status take_scatter(const moray_identify *v, struct run *run, moray_channel_kind kind, double d[3])
 {
-    const moray_log *log = run->log;
+    const moray_swim_log *log = run->log;
     double sum = 0, least = 0;
     int freedom = 0, stride;
     for (int i = 0; i < width_of(log, kind); i++) {
@@ -88,7 +88,7 @@ static void share_position(struct run *run)
 static moray_status make_guess(const moray_identify *v, struct run *run)
 {
     const moray_unknowns *world = &v->spec.start;
-    const moray_log *log = run->log;
+    const moray_swim_log *log = run->log;
     double d[MORAY_CHANNELS][3] = {{0}};
     int stride;
     for (int kind = 0; kind < MORAY_CHANNELS; kind++)
@@ -143,7 +143,7 @@ static double longest_delay(const moray_identify *v, bool ahead)
 
 static moray_status list_items(const moray_identify *v, struct run *run)
 {
-    const moray_log *log = run->log;
+    const moray_swim_log *log = run->log;
     const double from = log->t[0] + longest_delay(v, false), to = log->t[log->n - 1] - longest_delay(v, true);
     const int most = log->n * (3 + log->joints);
     int stride;
@@ -177,7 +177,7 @@ static moray_status make_grid(const moray_identify *v, struct run *run)
     return run->grid ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d steps", run->steps);
 }
 
-static moray_status make_run(moray_identify *v, struct run *run, const moray_log *log)
+static moray_status make_run(moray_identify *v, struct run *run, const moray_swim_log *log)
 {
     run->log = log;
     if (log->joints != v->spec.start.robot.links - 1)
@@ -254,7 +254,7 @@ static moray_status make_room(moray_identify *v)
     return moray_ok();
 }
 
-static moray_status make(moray_identify *v, const moray_log *log, int logs)
+static moray_status make(moray_identify *v, const moray_swim_log *log, int logs)
 {
     v->run = calloc((size_t)logs, sizeof *v->run);
     if (!v->run)
@@ -268,7 +268,7 @@ static moray_status make(moray_identify *v, const moray_log *log, int logs)
     return moray_swimmer_new(&v->swimmer, &v->spec.start.robot, v->spec.model);
 }
 
-moray_status moray_identify_new(moray_identify **identify, const moray_identify_spec *spec, const moray_log *log,
+moray_status moray_identify_new(moray_identify **identify, const moray_identify_spec *spec, const moray_swim_log *log,
                                 int logs)
 {
     *identify = NULL;

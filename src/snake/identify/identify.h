@@ -16,7 +16,7 @@ struct item {
 };
 
 struct run {
-    const moray_log *log;
+    const moray_swim_log *log;
     struct motion motion;
     double sigma[MORAY_CHANNELS];
     int freedom[MORAY_CHANNELS]; // of an estimated sigma; 0: known

@@ -7,7 +7,7 @@
 #include "moray/app/results.h"
 #include "snake/identify/log.h"
 
-moray_status moray_log_new(moray_log *log, int n, int joints)
+moray_status moray_swim_log_new(moray_swim_log *log, int n, int joints)
 {
     log->n = n;
     log->joints = joints;
@@ -19,14 +19,14 @@ moray_status moray_log_new(moray_log *log, int n, int joints)
     return moray_ok();
 }
 
-void moray_log_free(moray_log *log)
+void moray_swim_log_free(moray_swim_log *log)
 {
     free(log->line);
     free(log->t);
-    *log = (moray_log){0};
+    *log = (moray_swim_log){0};
 }
 
-static moray_status write_columns(const moray_log *log, FILE *file)
+static moray_status write_columns(const moray_swim_log *log, FILE *file)
 {
     const int most = 2 * log->joints + 4;
     moray_column *column = calloc((size_t)most, sizeof *column);
@@ -55,7 +55,7 @@ static moray_status write_columns(const moray_log *log, FILE *file)
     return n > 0 ? moray_ok() : moray_error(MORAY_MEMORY, "no memory to write a log");
 }
 
-moray_status moray_log_save(const moray_log *log, const char *path)
+moray_status moray_swim_log_save(const moray_swim_log *log, const char *path)
 {
     char fresh[4200];
     if (snprintf(fresh, sizeof fresh, "%s.new", path) >= (int)sizeof fresh)

@@ -13,16 +13,16 @@ struct log_unit {
 };
 
 struct log_reader {
-    const moray_log_format *format;
+    const moray_swim_log_format *format;
     moray_csv csv;
     int column[LOG_QUANTITIES]; // the first of a numbered one
     bool said[LOG_QUANTITIES];  // the user said the unit
 };
 
 // Room for n rows: line, t, phi are set, the others NULL with their room behind phi. Error: MORAY_MEMORY.
-moray_status moray_log_new(moray_log *log, int n, int joints);
+moray_status moray_swim_log_new(moray_swim_log *log, int n, int joints);
 
 // What must hold of a log that was read; fills notes, takes jumps of 2 pi out of the heading. Error: MORAY_INPUT.
-moray_status moray_log_check(const struct log_reader *reader, moray_log *log);
+moray_status moray_swim_log_check(const struct log_reader *reader, moray_swim_log *log);
 
 #endif

@@ -12,8 +12,8 @@
 enum { LEAST_ROWS = 20 };
 static const double most_angle = 2 * M_PI, most_speed = 5, least_angle = 0.02, wide_gap = 5;
 
-static void note(moray_log *log, const char *format, ...) MORAY_PRINTF(2, 3);
-static void note(moray_log *log, const char *format, ...)
+static void note(moray_swim_log *log, const char *format, ...) MORAY_PRINTF(2, 3);
+static void note(moray_swim_log *log, const char *format, ...)
 {
     const size_t used = strlen(log->notes), size = sizeof log->notes;
     va_list arguments;
@@ -41,7 +41,7 @@ static double median(double *x, int n)
 
 // ---- Time ----------------------------------------------------------------------------------------------------------
 
-static moray_status check_order(const struct log_reader *r, const moray_log *log)
+static moray_status check_order(const struct log_reader *r, const moray_swim_log *log)
 {
     for (int k = 1; k < log->n; k++)
         if (!(log->t[k] > log->t[k - 1]))
@@ -54,7 +54,7 @@ static moray_status check_order(const struct log_reader *r, const moray_log *log
     return moray_ok();
 }
 
-static moray_status note_gaps(moray_log *log)
+static moray_status note_gaps(moray_swim_log *log)
 {
     double *step = malloc((size_t)log->n * sizeof *step), widest = 0;
     int gaps = 0, at = 0;
@@ -78,7 +78,7 @@ static moray_status note_gaps(moray_log *log)
 
 // ---- Values --------------------------------------------------------------------------------------------------------
 
-static void note_missing(moray_log *log, const char *name, const double *value, int n)
+static void note_missing(moray_swim_log *log, const char *name, const double *value, int n)
 {
     int missing = 0;
     for (int k = 0; value && k < n; k++)
@@ -88,7 +88,7 @@ static void note_missing(moray_log *log, const char *name, const double *value, 
 }
 
 // Angles that can be no rad, of [n][width].
-static moray_status check_angles(const struct log_reader *r, const moray_log *log, int which, const double *value,
+static moray_status check_angles(const struct log_reader *r, const moray_swim_log *log, int which, const double *value,
                                  int width)
 {
     const char *key = which == LOG_HEADING ? "heading" : which == LOG_REFERENCE ? "phi_ref" : "phi";
@@ -103,7 +103,7 @@ static moray_status check_angles(const struct log_reader *r, const moray_log *lo
     return moray_ok();
 }
 
-static void note_small_joints(moray_log *log)
+static void note_small_joints(moray_swim_log *log)
 {
     double most = 0;
     for (int k = 0; k < log->n * log->joints; k++)
@@ -113,7 +113,7 @@ static void note_small_joints(moray_log *log)
 }
 
 // Half of the steps of the path are faster than any such robot swims.
-static moray_status check_speed(const struct log_reader *r, const moray_log *log)
+static moray_status check_speed(const struct log_reader *r, const moray_swim_log *log)
 {
     if (!log->p_x || r->said[LOG_X])
         return moray_ok();
@@ -152,7 +152,7 @@ static void unwrap(double *angle, int n)
     }
 }
 
-static moray_status check_channels(const struct log_reader *r, const moray_log *log)
+static moray_status check_channels(const struct log_reader *r, const moray_swim_log *log)
 {
     if (!log->p_x != !log->p_y)
         return moray_csv_error(&r->csv, -1,
@@ -167,7 +167,7 @@ static moray_status check_channels(const struct log_reader *r, const moray_log *
     return moray_ok();
 }
 
-moray_status moray_log_check(const struct log_reader *r, moray_log *log)
+moray_status moray_swim_log_check(const struct log_reader *r, moray_swim_log *log)
 {
     if (log->n < LEAST_ROWS)
         return moray_error(MORAY_INPUT, "log %s: %d rows; needs %d at least", log->name, log->n, LEAST_ROWS);

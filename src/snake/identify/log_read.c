@@ -220,7 +220,7 @@ static moray_status read_numbered(struct log_reader *r, int which, bool needed, 
 
 // ---- The whole -----------------------------------------------------------------------------------------------------
 
-static moray_status read_channels(struct log_reader *r, moray_log *log)
+static moray_status read_channels(struct log_reader *r, moray_swim_log *log)
 {
     const int n = log->n, joints = log->joints;
     MORAY_TRY(read_single(r, LOG_TIME, log->t, &log->t));
@@ -233,22 +233,22 @@ static moray_status read_channels(struct log_reader *r, moray_log *log)
     return read_single(r, LOG_HEADING, free_room + 2 * n, &log->heading);
 }
 
-moray_status moray_log_read(moray_log *log, const char *path, const moray_log_format *format)
+moray_status moray_swim_log_read(moray_swim_log *log, const char *path, const moray_swim_log_format *format)
 {
     struct log_reader r = {.format = format};
-    *log = (moray_log){.joints = format->joints, .reference = format->reference};
+    *log = (moray_swim_log){.joints = format->joints, .reference = format->reference};
     snprintf(log->name, sizeof log->name, "%.79s", moray_path_tail(path));
     MORAY_TRY(check_list(format->columns, "columns"));
     MORAY_TRY(check_list(format->units, "units"));
     moray_status status = moray_csv_read(&r.csv, path, "log");
     if (!moray_failed(status))
-        status = moray_log_new(log, r.csv.rows, format->joints);
+        status = moray_swim_log_new(log, r.csv.rows, format->joints);
     if (!moray_failed(status)) {
         memcpy(log->line, r.csv.line, (size_t)log->n * sizeof *log->line);
         status = read_channels(&r, log);
     }
     if (!moray_failed(status))
-        status = moray_log_check(&r, log);
+        status = moray_swim_log_check(&r, log);
     moray_csv_free(&r.csv);
     return status;
 }

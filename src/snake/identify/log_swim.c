@@ -17,7 +17,7 @@ struct look {
 };
 
 struct recorder {
-    moray_log *log;
+    moray_swim_log *log;
     const struct look *look;
     int at, n, joints;
     moray_swimmer *swimmer;
@@ -34,7 +34,7 @@ static int by_time(const void *one, const void *other)
 static void record(struct recorder *r, const moray_swim_sample *sample)
 {
     const struct look *look = &r->look[r->at];
-    moray_log *log = r->log;
+    moray_swim_log *log = r->log;
     const size_t row = (size_t)look->row;
     double *phi = log->phi + row * (size_t)r->joints;
     if (look->what == 0)
@@ -62,7 +62,7 @@ static bool observe(const moray_swim_sample *sample, void *self) // a moray_swim
 
 // ---- Faults --------------------------------------------------------------------------------------------------------
 
-static double faulty(double value, double sigma, const moray_log_noise *noise, unsigned long *seed)
+static double faulty(double value, double sigma, const moray_swim_log_noise *noise, unsigned long *seed)
 {
     value += sigma * moray_random_normal(seed);
     if (moray_random(seed) < noise->outliers)
@@ -70,7 +70,7 @@ static double faulty(double value, double sigma, const moray_log_noise *noise, u
     return moray_random(seed) < noise->missing ? NAN : value;
 }
 
-static void spoil(moray_log *log, const moray_log_noise *noise)
+static void spoil(moray_swim_log *log, const moray_swim_log_noise *noise)
 {
     const double c = cos(noise->camera_rotation), s = sin(noise->camera_rotation);
     unsigned long seed = noise->seed;
@@ -88,7 +88,7 @@ static void spoil(moray_log *log, const moray_log_noise *noise)
 
 // ---- The run -------------------------------------------------------------------------------------------------------
 
-static moray_status check(double from, double to, double step, const moray_log_noise *noise)
+static moray_status check(double from, double to, double step, const moray_swim_log_noise *noise)
 {
     const double late = fmax(noise->position_delay, noise->heading_delay);
     if (!(step > 0) || !(to > from) || !(from >= 0) || (to - from) / step > 1e6)
@@ -99,7 +99,7 @@ static moray_status check(double from, double to, double step, const moray_log_n
     return moray_ok();
 }
 
-static void plan_looks(const moray_log *log, const moray_log_noise *noise, struct look *look, double *times)
+static void plan_looks(const moray_swim_log *log, const moray_swim_log_noise *noise, struct look *look, double *times)
 {
     for (int k = 0; k < log->n; k++) {
         look[3 * k] = (struct look){log->t[k] - noise->position_delay, k, 0};
@@ -132,15 +132,15 @@ static moray_status swim(moray_swimmer *swimmer, const moray_gait *gait, double 
                           x, NULL);
 }
 
-moray_status moray_log_swim(moray_log *log, moray_swimmer *swimmer, const moray_gait *gait, double heading, double from,
-                            double to, double step, const moray_log_noise *noise)
+moray_status moray_swim_log_swim(moray_swim_log *log, moray_swimmer *swimmer, const moray_gait *gait, double heading,
+                                 double from, double to, double step, const moray_swim_log_noise *noise)
 {
     const moray_robot *robot = moray_swimmer_robot(swimmer);
     const moray_model model = moray_swimmer_model(swimmer);
     const int joints = robot->links - 1, n = (int)floor((to - from) / step * (1 + 1e-12)) + 1;
-    *log = (moray_log){.name = "synthetic"};
+    *log = (moray_swim_log){.name = "synthetic"};
     MORAY_TRY(check(from, to, step, noise));
-    MORAY_TRY(moray_log_new(log, n, joints));
+    MORAY_TRY(moray_swim_log_new(log, n, joints));
     double *room = log->phi + (size_t)n * (size_t)joints;
     log->u = model == MORAY_FIRST_PRINCIPLES ? room : NULL;
     log->p_x = room + (size_t)n * (size_t)joints, log->p_y = log->p_x + n, log->heading = log->p_y + n;

@@ -12,7 +12,7 @@ static const double widest_gap = 0.25; // [s] without a value that a spline is l
 static const double likeness = 1.1;    // of a gait's scatter to that of splines: noise, no more
 static const double negligible = 2e-4; // of the amplitude
 
-static moray_status check_gaps(const moray_log *log)
+static moray_status check_gaps(const moray_swim_log *log)
 {
     for (int i = 0; i < log->joints; i++)
         for (int k = 0, last = -1; k < log->n; k++) {
@@ -30,7 +30,7 @@ static moray_status check_gaps(const moray_log *log)
     return moray_ok();
 }
 
-static moray_status fit_splines(struct motion *m, const moray_log *log)
+static moray_status fit_splines(struct motion *m, const moray_swim_log *log)
 {
     double noise = 0;
     MORAY_TRY(check_gaps(log));
@@ -68,7 +68,7 @@ static void tell_gait(struct motion *m)
 }
 
 // The gait where it is as near to the log as splines are.
-static moray_status choose(struct motion *m, const moray_log *log)
+static moray_status choose(struct motion *m, const moray_swim_log *log)
 {
     const moray_status gait = moray_motion_fit_gait(m, log);
     const double of_gait = m->rms;
@@ -83,7 +83,7 @@ static moray_status choose(struct motion *m, const moray_log *log)
     return splines;
 }
 
-moray_status moray_motion_new(struct motion *m, const moray_log *log, moray_logged_joints wanted)
+moray_status moray_motion_new(struct motion *m, const moray_swim_log *log, moray_logged_joints wanted)
 {
     *m = (struct motion){.joints = log->joints};
     if (wanted == MORAY_LOGGED_AUTO)

@@ -33,10 +33,10 @@ struct motion {
 
 // Error: MORAY_INPUT where the log's joints are not as wanted, have gaps or are no gait; MORAY_MEMORY, MORAY_NUMERIC.
 // Free with moray_motion_free in any case.
-moray_status moray_motion_new(struct motion *motion, const moray_log *log, moray_logged_joints wanted);
+moray_status moray_motion_new(struct motion *motion, const moray_swim_log *log, moray_logged_joints wanted);
 void moray_motion_free(struct motion *motion);
 
 // The gait (25) nearest to the angles: gait, shift and rms. Error: MORAY_NUMERIC where there is none.
-moray_status moray_motion_fit_gait(struct motion *motion, const moray_log *log);
+moray_status moray_motion_fit_gait(struct motion *motion, const moray_swim_log *log);
 
 #endif

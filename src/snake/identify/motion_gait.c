@@ -17,7 +17,7 @@ struct wave { // of one joint: c + p sin(omega t) + q cos(omega t)
 };
 
 // By least squares; adds what is left to *left.
-static bool fit_wave(const moray_log *log, int joint, double omega, struct wave *wave, double *left)
+static bool fit_wave(const moray_swim_log *log, int joint, double omega, struct wave *wave, double *left)
 {
     double A[9] = {0}, b[3] = {0}, square = 0;
     for (int k = 0; k < log->n; k++) {
@@ -40,7 +40,7 @@ static bool fit_wave(const moray_log *log, int joint, double omega, struct wave 
     return true;
 }
 
-static double left_at(const moray_log *log, double omega, struct wave *wave)
+static double left_at(const moray_swim_log *log, double omega, struct wave *wave)
 {
     double left = 0;
     for (int i = 0; i < log->joints; i++)
@@ -50,10 +50,10 @@ static double left_at(const moray_log *log, double omega, struct wave *wave)
 }
 
 // A scan in steps that no minimum hides between, and golden section.
-static double find_omega(const moray_log *log, struct wave *wave)
+static double find_omega(const moray_swim_log *log, struct wave *wave)
 {
     const double length = log->t[log->n - 1] - log->t[0], step = 1 / length, most = M_PI * (log->n - 1) / length / 3;
-    const moray_log middle = {.n = log->n, .joints = log->joints, .t = log->t, .phi = log->phi};
+    const moray_swim_log middle = {.n = log->n, .joints = log->joints, .t = log->t, .phi = log->phi};
     double best = INFINITY, omega = NAN, left;
     for (double at = 4 * step; at < most; at += step) {
         struct wave one;
@@ -105,7 +105,7 @@ static void first_guess(const struct wave *wave, int joints, double omega, doubl
 }
 
 // Normal equations at a point; returns the sum of squares and how many were summed.
-static double equations(const moray_log *log, const double at[PARAMETERS], double A[PARAMETERS * PARAMETERS],
+static double equations(const moray_swim_log *log, const double at[PARAMETERS], double A[PARAMETERS * PARAMETERS],
                         double b[PARAMETERS], int *used)
 {
     double sum = 0;
@@ -134,7 +134,7 @@ static double equations(const moray_log *log, const double at[PARAMETERS], doubl
     return sum;
 }
 
-moray_status moray_motion_fit_gait(struct motion *m, const moray_log *log)
+moray_status moray_motion_fit_gait(struct motion *m, const moray_swim_log *log)
 {
     double at[PARAMETERS], A[PARAMETERS * PARAMETERS], b[PARAMETERS];
     int used;

@@ -16,7 +16,7 @@ enum { MOST_LOGS = 2, LINKS = 5 };
 typedef struct story {
     moray_model model;
     moray_hydrodynamics hydro;
-    moray_log_noise noise;
+    moray_swim_log_noise noise;
     double current[2], sigma[MORAY_CHANNELS];
     double offset; // of the second gait [rad or m]
     double duration, step;
@@ -30,18 +30,19 @@ static moray_robot robot_of(const story *s)
     return robot;
 }
 
-static void swim_logs(const story *s, moray_log log[MOST_LOGS])
+static void swim_logs(const story *s, moray_swim_log log[MOST_LOGS])
 {
     const moray_robot robot = robot_of(s);
     moray_swimmer *swimmer;
     CHECK_OK(moray_swimmer_new(&swimmer, &robot, s->model), "swimmer");
     moray_swimmer_set_current(swimmer, s->current[0], s->current[1]);
     for (int k = 0; k < MOST_LOGS; k++) {
-        moray_log_noise noise = s->noise;
+        moray_swim_log_noise noise = s->noise;
         noise.seed = noise.seed * MOST_LOGS + (unsigned long)k;
         moray_gait gait = {.omega = (k ? 150 : 110) * DEG, .delta = (k ? 60 : 40) * DEG, .offset = k ? s->offset : 0};
         gait.amplitude = moray_amplitude_from_theta_max(&robot, s->model, (k ? 18 : 25) * DEG, gait.delta);
-        CHECK_OK(moray_log_swim(&log[k], swimmer, &gait, k * 70 * DEG, 6, 6 + s->duration, s->step, &noise), "log");
+        CHECK_OK(moray_swim_log_swim(&log[k], swimmer, &gait, k * 70 * DEG, 6, 6 + s->duration, s->step, &noise),
+                 "log");
     }
     moray_swimmer_free(swimmer);
 }
@@ -81,15 +82,15 @@ static moray_identify_spec spec_of(const story *s, const char *names, wanted *w)
     return spec;
 }
 
-static void free_logs(moray_log log[MOST_LOGS])
+static void free_logs(moray_swim_log log[MOST_LOGS])
 {
     for (int k = 0; k < MOST_LOGS; k++)
-        moray_log_free(&log[k]);
+        moray_swim_log_free(&log[k]);
 }
 
 static void check_recovered(const story *s, const char *names, const char *what)
 {
-    moray_log log[MOST_LOGS];
+    moray_swim_log log[MOST_LOGS];
     wanted w;
     moray_identify *identify;
     moray_estimate at;
@@ -120,14 +121,14 @@ static void test_recovery(void)
     story s = {
         .model = MORAY_FIRST_PRINCIPLES, .current = {0.06, -0.04}, .offset = 3 * DEG, .duration = 8, .step = 0.1};
     memcpy(s.sigma, known, sizeof known);
-    s.noise = (moray_log_noise){.heading_bias = 0.05, .position_delay = 0.12, .heading_delay = 0.03};
+    s.noise = (moray_swim_log_noise){.heading_bias = 0.05, .position_delay = 0.12, .heading_delay = 0.03};
     check_recovered(&s, "c_t,c_n,mu_n,lambda_2,current_x,current_y,heading_bias,position_delay,heading_delay",
                     "first-principles");
     s.hydro = moray_hydrodynamics_consistent();
     check_recovered(&s, "c_t,c_n,mu_n,m,current_x,current_y,heading_bias,position_delay,heading_delay", "consistent");
     s.model = MORAY_CONTROL_ORIENTED;
     s.offset = 0.005;
-    s.noise = (moray_log_noise){.heading_bias = 0.05};
+    s.noise = (moray_swim_log_noise){.heading_bias = 0.05};
     check_recovered(&s, "c_t,c_n,rot_damping,rot_gain,current_x,current_y,heading_bias", "control-oriented");
 }
 
@@ -157,7 +158,7 @@ static double weigh(const double *error, const moray_information *info)
 
 static void count_seed(const story *of, const char *names, unsigned long seed, wanted *w, tally *t)
 {
-    moray_log log[MOST_LOGS];
+    moray_swim_log log[MOST_LOGS];
     moray_identify *identify;
     moray_estimate at;
     moray_information info;
@@ -233,7 +234,7 @@ static story noisy(moray_hydrodynamics hydro)
                .step = 0.1};
     for (int k = 0; k < MORAY_CHANNELS; k++)
         s.sigma[k] = NAN;
-    s.noise = (moray_log_noise){.position = 0.005, .heading = 0.5 * DEG, .torque = 0.02, .heading_bias = 0.05};
+    s.noise = (moray_swim_log_noise){.position = 0.005, .heading = 0.5 * DEG, .torque = 0.02, .heading_bias = 0.05};
     return s;
 }
 
@@ -247,7 +248,7 @@ static void test_coverage(int seeds)
 // ---- What the data leave open ---------------------------------------------------------------------------------------
 
 typedef struct found {
-    moray_log log[MOST_LOGS];
+    moray_swim_log log[MOST_LOGS];
     moray_identify *identify;
     moray_estimate at;
     moray_information info;
@@ -336,8 +337,8 @@ static void test_outliers(void)
             off[huber] += pow((f.at.value[k] - f.w.truth[k]) / f.info.error[k], 2);
         found_free(&f);
     }
-    CHECK(off[0] > 3 * off[1] && off[1] < 25, "squares of errors over standard errors: %.3g, with Huber's loss %.3g", off[0],
-          off[1]);
+    CHECK(off[0] > 3 * off[1] && off[1] < 25, "squares of errors over standard errors: %.3g, with Huber's loss %.3g",
+          off[0], off[1]);
 }
 
 // The experiment to swim next: swum, it tells what was predicted.
