@@ -8,13 +8,14 @@
 struct resimulation {
     struct examiner *e;
     const struct interval *interval; // the one being integrated: its control also at its ends, where controls may jump
+    double start;                    // of the phase, from which time counts: steps would drown in a late one's digits
 };
 
 static bool resimulated_rhs(double t, const double *x, double *dx, void *self)
 {
     const struct resimulation *r = self;
     struct examiner *e = r->e;
-    moray_examiner_evaluate(e, r->interval, t, x);
+    moray_examiner_evaluate(e, r->interval, r->start + t, x);
     for (int i = 0; i < e->n; i++) {
         dx[i] = e->out[moray_examiner_output(e, i)];
         if (!isfinite(dx[i]))
@@ -41,7 +42,7 @@ static moray_status run(struct examiner *e, const moray_integrator *integrator, 
     const struct phase_layout *layout = &e->solution->transcription->layout.phase[e->p];
     const double *found = e->solution->iterate.x;
     const int nx = e->solution->transcription->ocp->phase[e->p].nx;
-    struct resimulation resimulation = {e, NULL};
+    struct resimulation resimulation = {e, NULL, time[0]};
     const moray_ode ode = {e->n, resimulated_rhs, &resimulation};
     memset(x, 0, (size_t)e->n * sizeof *x);
     for (int k = 0; k < layout->mesh.intervals; k++) {
@@ -49,7 +50,8 @@ static moray_status run(struct examiner *e, const moray_integrator *integrator, 
         if (k == 0 || anew)
             memcpy(x, found + layout->node[first].x, (size_t)nx * sizeof *x);
         resimulation.interval = &layout->interval[k];
-        MORAY_TRY(integrator->run(integrator, &ode, time[first], time[last], x, NULL, 0, NULL, NULL));
+        MORAY_TRY(
+            integrator->run(integrator, &ode, time[first] - time[0], time[last] - time[0], x, NULL, 0, NULL, NULL));
         moray_find(worst, difference(e, x, found + layout->node[last].x, 0, nx), e->p, time[last]);
     }
     moray_find(worst, difference(e, x, found + layout->q, nx, e->n - nx), e->p, time[layout->nodes - 1]);
