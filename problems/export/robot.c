@@ -11,21 +11,29 @@ typedef struct inertia {
     double xx, yy, zz;
 } inertia;
 
-// Added inertia of a link that turns: lambda_1 of (4), or of strips, or of pieces.
-static double added(const moray_robot *robot)
+static moray_link link_of(const export_job *job, int number)
 {
-    const double strip = robot->mu_n * robot->l * robot->l / 3, k = fmax(robot->hydro.pieces, 1);
-    if (robot->hydro.rotation == MORAY_ROTATION_STRIP)
-        return strip;
-    return robot->lambda_1 / (k * k) + (1 - 1 / (k * k)) * strip;
+    return moray_robot_link(&job->snake.robot, number - 1);
+}
+
+// Added inertia of a link that turns about its centre of mass: lambda_1 of (4), or of strips, or of pieces, what acts
+// at the centre of buoyancy, and its fin.
+static double added(const moray_hydrodynamics *hydro, const moray_link *link)
+{
+    const double half = link->l - fabs(link->cb), strip = link->mu_n * half * half / 3, k = fmax(hydro->pieces, 1);
+    const double lever = link->cb - link->cm, fin = link->fin_at - link->cm;
+    const double beside = link->mu_n * lever * lever + link->fin_mu_n * fin * fin;
+    if (hydro->rotation == MORAY_ROTATION_STRIP)
+        return strip + beside;
+    return link->lambda_1 / (k * k) + (1 - 1 / (k * k)) * strip + beside;
 }
 
 // The upright moment is the robot's, the others those of the solid elliptic cylinder of its mass.
-static inertia inertia_of(const export_job *job)
+static inertia inertia_of(const export_job *job, const moray_link *link)
 {
-    const moray_robot *robot = &job->snake.robot;
-    const double a = job->snake.geometry.a_e, b = job->snake.geometry.b_e, m = robot->m;
-    return (inertia){m * (a * a + b * b) / 4, m * (robot->l * robot->l / 3 + b * b / 4), robot->J + added(robot)};
+    const double a = job->snake.geometry.a_e, b = job->snake.geometry.b_e, m = link->m;
+    return (inertia){m * (a * a + b * b) / 4, m * (link->l * link->l / 3 + b * b / 4),
+                     link->J + added(&job->snake.robot.hydro, link)};
 }
 
 // ---- What the formats cannot say -----------------------------------------------------------------------------------
@@ -33,6 +41,7 @@ static inertia inertia_of(const export_job *job)
 static void put_comment(FILE *file, const export_job *job, const char *format)
 {
     const moray_robot *r = &job->snake.robot;
+    const moray_link of = link_of(job, 1);
     fprintf(
         file,
         "<!-- moray %s. %d links of %.10g kg, %.10g m long, in the plane z = 0; joint i from the tail is at phi_i = "
@@ -45,9 +54,12 @@ static void put_comment(FILE *file, const export_job *job, const char *format)
         "mu_n "
         "dv_n/dt n (mu_n = %.10g kg)\n"
         "     and the torque - lambda_2 w - lambda_3 |w| w (%.10g kg m^2/s, %.10g kg m^2).%s -->\n",
-        moray_version(), r->links, r->m, 2 * r->l, r->J, added(r), format, r->c_t, r->c_n, r->mu_n, r->lambda_2,
-        r->lambda_3,
-        r->hydro.drag == MORAY_DRAG_LINEAR && r->hydro.rotation == MORAY_ROTATION_PAPER && r->hydro.pieces < 2
+        moray_version(), r->links, r->m, 2 * r->l, r->J, added(&r->hydro, &of), format, r->c_t, r->c_n, r->mu_n,
+        r->lambda_2, r->lambda_3,
+        r->link ? "\n     The links differ: these are the means (but for the water that turns with link 1); each has "
+                  "its own in the "
+                  "robot's INI file."
+        : r->hydro.drag == MORAY_DRAG_LINEAR && r->hydro.rotation == MORAY_ROTATION_PAPER && r->hydro.pieces < 2
             ? ""
             : "\n     This robot's hydrodynamics have other terms than these: see src/snake/README.md of moray.");
 }
@@ -57,9 +69,10 @@ static void put_comment(FILE *file, const export_job *job, const char *format)
 // Frames stand at the tail end of their links.
 static void put_urdf_link(FILE *file, const export_job *job, int link)
 {
-    const inertia about = inertia_of(job);
+    const moray_link of = link_of(job, link);
+    const inertia about = inertia_of(job, &of);
     const moray_link_geometry *shape = &job->snake.geometry;
-    const double l = job->snake.robot.l;
+    const double l = of.l;
     fprintf(
         file,
         "  <link name=\"link_%d\">\n    <inertial>\n      <origin xyz=\"%.17g 0 0\"/>\n      <mass value=\"%.17g\"/>\n"
@@ -67,7 +80,7 @@ static void put_urdf_link(FILE *file, const export_job *job, int link)
         "    <visual>\n      <origin xyz=\"%.17g 0 0\"/>\n      <geometry><box size=\"%.17g %.17g "
         "%.17g\"/></geometry>\n"
         "    </visual>\n  </link>\n",
-        link, l, job->snake.robot.m, about.xx, about.yy, about.zz, l, 2 * l, 2 * shape->a_e, 2 * shape->b_e);
+        link, l + of.cm, of.m, about.xx, about.yy, about.zz, l, 2 * l, 2 * shape->a_e, 2 * shape->b_e);
 }
 
 // Between links i and i + 1; its axis points down, so that its angle is phi_i.
@@ -76,7 +89,7 @@ static void put_urdf_joint(FILE *file, const export_job *job, int joint)
     fprintf(file,
             "  <joint name=\"joint_%d\" type=\"continuous\">\n    <parent link=\"link_%d\"/>\n    <child "
             "link=\"link_%d\"/>\n    <origin xyz=\"%.17g 0 0\"/>\n    <axis xyz=\"0 0 -1\"/>\n  </joint>\n",
-            joint, joint, joint + 1, 2 * job->snake.robot.l);
+            joint, joint, joint + 1, 2 * link_of(job, joint).l);
 }
 
 static void put_urdf(FILE *file, const export_job *job)
@@ -100,10 +113,11 @@ static void open_body(FILE *file, const export_job *job, int link)
     static const char *const plane =
         "<joint name=\"x\" type=\"slide\" axis=\"1 0 0\"/><joint name=\"y\" type=\"slide\" axis=\"0 1 0\"/>"
         "<joint name=\"heading_1\" type=\"hinge\" axis=\"0 0 1\"/>";
-    const inertia about = inertia_of(job);
-    const double l = job->snake.robot.l;
+    const moray_link of = link_of(job, link);
+    const inertia about = inertia_of(job, &of);
+    const double l = of.l;
     const moray_link_geometry *shape = &job->snake.geometry;
-    fprintf(file, "    <body name=\"link_%d\" pos=\"%.17g 0 0\">", link, link > 1 ? 2 * l : 0);
+    fprintf(file, "    <body name=\"link_%d\" pos=\"%.17g 0 0\">", link, link > 1 ? 2 * link_of(job, link - 1).l : 0);
     if (link > 1)
         fprintf(file, "<joint name=\"joint_%d\" type=\"hinge\" axis=\"0 0 -1\"/>\n", link - 1);
     else
@@ -111,7 +125,7 @@ static void open_body(FILE *file, const export_job *job, int link)
     fprintf(file,
             "    <inertial pos=\"%.17g 0 0\" mass=\"%.17g\" diaginertia=\"%.17g %.17g %.17g\"/>\n"
             "    <geom type=\"box\" pos=\"%.17g 0 0\" size=\"%.17g %.17g %.17g\" contype=\"0\" conaffinity=\"0\"/>\n",
-            l, job->snake.robot.m, about.xx, about.yy, about.zz, l, l, shape->a_e, shape->b_e);
+            l + of.cm, of.m, about.xx, about.yy, about.zz, l, l, shape->a_e, shape->b_e);
 }
 
 static void put_numeric(FILE *file, const char *name, double value)

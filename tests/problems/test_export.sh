@@ -86,6 +86,11 @@ END
     check "links of 0.14 m: $length" near "$length" 0.14 1e-12
 fi
 
+run --robot "$source/problems/robots/head_and_fin.ini" --out unequal
+check "links of their own, head and tail: $(cat err)" eval \
+    '[ "$(grep -o "mass value=\"[0-9.]*" unequal/snake.urdf | cut -c13-16 | tr "\n" " ")" != "" ] &&
+     [ "$(grep -o "mass value=\"[^\"]*" unequal/snake.urdf | sort -u | wc -l)" -ge 3 ]'
+
 # ---- A free motion -------------------------------------------------------------------------------------------------
 mkdir series
 printf '[run]\nprogram = free_gait\n[problem]\npower_W = 0.3\n[robot]\nlinks = 3\n[solver]\ntol = 1e-8\n' >series/run.ini
