@@ -427,6 +427,8 @@ typedef struct moray_certificate {
                           // MORAY_LIMIT_CURVATURE
     double composed;      // as resimulation, each phase in one go from its start: for information, as unstable
                           // equations make it as large as they like
+    double untold;        // share of the derivatives at nodes and at the endpoint that differences say nothing of,
+                          // lost in rounding or on a kink, so that those in use are believed: for information
     double mesh_limit;    // mesh_tolerance of the solve
     char why[400];        // one sentence on the first number that fails, with its limit and where; empty if none does
 } moray_certificate;

@@ -116,7 +116,8 @@ class _Integrator(c.Structure):
 
 
 _certificate_numbers = ("kkt", "mesh_error", "between_nodes", "resimulation", "derivatives", "directions",
-                        "hamiltonian", "gap", "curvature", "composed", "mesh_limit")
+                        "hamiltonian", "gap", "curvature", "composed", "untold",
+                        "mesh_limit")
 
 
 class _Certificate(c.Structure):

@@ -119,6 +119,7 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
         {.label = "re-simulation of each interval", .value = {c->resimulation, loose}},
         {.label = "re-simulation of whole phases", .value = {c->composed, NAN}},
         {.label = "derivatives against differences", .value = {c->derivatives, MORAY_LIMIT_DERIVATIVES}},
+        {.label = "share of them that none tells", .value = {c->untold, NAN}},
         {.label = "the same along directions", .value = {c->directions, MORAY_LIMIT_DIRECTIONS}},
         {.label = "drift of the Hamiltonian", .value = {c->hamiltonian, NAN}}};
     memcpy(rows, filled, sizeof filled);
@@ -127,7 +128,7 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
 
 moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
-    enum { solver_room = 10, certificate_room = 10 };
+    enum { solver_room = 10, certificate_room = 11 };
     const int solution_room = count_rows(run->app->spec), ns = run->app->spec->ns, fit_room = MORAY_FIT_ROWS + ns;
     int meshes;
     moray_solution_history(run->solution, &meshes);

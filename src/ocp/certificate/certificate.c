@@ -67,7 +67,7 @@ static moray_status question_hamiltonian(struct verdict *v, const struct witness
 
 static moray_status question_witness(struct verdict *v, const struct witness *w, const moray_integrator *integrator)
 {
-    MORAY_TRY(moray_compare_columns(w, &v->c->derivatives, v->derivative, where_size));
+    MORAY_TRY(moray_compare_columns(w, &v->c->derivatives, &v->c->untold, v->derivative, where_size));
     MORAY_TRY(moray_measure_optimality(w, &v->optimality));
     MORAY_TRY(moray_measure_curvature(w, &v->c->curvature, NULL));
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
@@ -197,7 +197,7 @@ moray_status moray_certify(const moray_solution *solution, const moray_integrato
         certificate->pass = false;
         certificate->kkt = certificate->mesh_error = certificate->between_nodes = certificate->resimulation = NAN;
         certificate->derivatives = certificate->directions = certificate->hamiltonian = certificate->composed = NAN;
-        certificate->gap = certificate->curvature = NAN;
+        certificate->gap = certificate->curvature = certificate->untold = NAN;
         return moray_ok();
     }
     MORAY_TRY(gather(&v, integrator));

@@ -16,13 +16,19 @@ struct worst {
     bool missing; // from the pattern in use
 };
 
+// Derivatives that are not 0, and those of them that differences say nothing of.
+struct tally {
+    int all, untold;
+};
+
 // From the slope on the nearer side.
 static double distance(double in_use, double jac, double kink)
 {
     return fmin(fabs(in_use - (jac + kink)), fabs(in_use - (jac - kink)));
 }
 
-static void compare(const struct witness *w, int p, int n, const double *in_use, struct worst *worst)
+static void compare(const struct witness *w, int p, int n, const double *in_use, struct worst *worst,
+                    struct tally *tally)
 {
     const struct transcription *t = w->solution->transcription;
     const moray_map *map = p < 0 ? t->endpoint : t->phase[p].map;
@@ -36,6 +42,9 @@ static void compare(const struct witness *w, int p, int n, const double *in_use,
         const int row = k % map->n_out, col = k / map->n_out;
         const double far = (distance(in_use[k], jac[k], kink[k]) - certain * doubt[k]) * size[col];
         const double error = isfinite(doubt[k]) && out_size[row] > 0 ? far / out_size[row] : 0;
+        const bool speaks = moray_witness_speaks(doubt[k], kink[k], size[col], out_size[row]);
+        tally->all += in_use[k] != 0 || (speaks && jac[k] != 0);
+        tally->untold += in_use[k] != 0 && !speaks;
         if (error > worst->error)
             *worst = (struct worst){error, in_use[k], jac[k], p, n, row, col, !found->expected[k]};
     }
@@ -59,7 +68,7 @@ static void say_where(const struct witness *w, const struct worst *worst, char *
              worst->found, place, worst->missing ? ": its pattern lacks it" : "");
 }
 
-moray_status moray_compare_columns(const struct witness *w, double *worst, char *where, int size)
+moray_status moray_compare_columns(const struct witness *w, double *worst, double *untold, char *where, int size)
 {
     const struct transcription *t = w->solution->transcription;
     size_t room = (size_t)t->endpoint->n_in * (size_t)t->endpoint->n_out;
@@ -71,15 +80,17 @@ moray_status moray_compare_columns(const struct witness *w, double *worst, char 
     if (!in_use)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     struct worst found = {.p = -1};
+    struct tally tally = {0};
     moray_witness_in_use(w, -1, 0, in_use);
-    compare(w, -1, 0, in_use, &found);
+    compare(w, -1, 0, in_use, &found, &tally);
     for (int p = 0; p < t->ocp->phases; p++)
         for (int n = 0; n < t->layout.phase[p].nodes; n++)
             if (t->layout.phase[p].node[n].collocated) {
                 moray_witness_in_use(w, p, n, in_use);
-                compare(w, p, n, in_use, &found);
+                compare(w, p, n, in_use, &found, &tally);
             }
     *worst = found.error;
+    *untold = tally.all > 0 ? (double)tally.untold / tally.all : 0;
     where[0] = 0;
     if (found.error > 0)
         say_where(w, &found, where, size);

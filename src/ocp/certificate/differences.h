@@ -9,7 +9,8 @@
 moray_status moray_difference_solution(const moray_solution *solution, double *worst);
 
 // *worst: the largest disagreement of a derivative in use at a node or at the endpoint with the witness's, relative to
-// what its function moves by; where[size] says which. Error: MORAY_MEMORY.
-moray_status moray_compare_columns(const struct witness *w, double *worst, char *where, int size);
+// what its function moves by; where[size] says which. *untold: the share of those that are not 0 that the witness says
+// nothing of. Error: MORAY_MEMORY.
+moray_status moray_compare_columns(const struct witness *w, double *worst, double *untold, char *where, int size);
 
 #endif

@@ -271,8 +271,53 @@ static void test_late(void)
                             1e-6});
 }
 
+// ---- A constraint whose values drown in an offset: its derivative is told by no difference, those of the rest are
+// ----
+
+static void drowned(const moray_node *at, moray_rates *out, const void *data)
+{
+    out->f[0] = at->u[0];
+    out->c[0] = (*(const double *)data + at->u[0]) - *(const double *)data;
+    out->g[0] = at->u[0] * at->u[0] * (1 + at->t);
+}
+
+static double untold(const double *offset)
+{
+    const moray_phase_spec phase = {.name = "walk",
+                                    .nx = 1,
+                                    .nu = 1,
+                                    .nc = 1,
+                                    .nq = 1,
+                                    .continuous = drowned,
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(1)),
+                                    .c = MORAY_BOUNDS(moray_between(-1e3, 1e3))};
+    const moray_ocp_spec spec = {
+        .name = "walk", .phases = 1, .phase = &phase, .endpoint = first_integral, .data = offset};
+    moray_ocp *ocp;
+    moray_solution *solution;
+    moray_certificate c = {0};
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_ocp_new(&ocp, &spec), "walk");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "walk");
+    CHECK_OK(moray_certify(solution, &careful, &c), "walk");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    return c.untold;
+}
+
+static void test_untold(void)
+{
+    const double none = 0, large = 1e12;
+    CHECK(untold(&none) == 0, "every derivative is told");
+    const double share = untold(&large); // of f by u, c by u, g by u and t at each node
+    CHECK(share > 0.2 && share < 0.4, "one in three or four is not: %.3f", share);
+}
+
 int main(void)
 {
+    test_untold();
     test_late();
     test_dashes();
     test_cost("a cost of 1e-12", cheap, 1e-12);
