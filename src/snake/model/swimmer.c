@@ -56,6 +56,8 @@ moray_status moray_swimmer_set_robot(moray_swimmer *swimmer, const moray_robot *
     if (robot->links != swimmer->robot.links)
         return moray_error(MORAY_INPUT, "links = %d: the swimmer was made for %d", robot->links, swimmer->robot.links);
     swimmer->robot = *robot;
+    if (swimmer->model->prepare)
+        swimmer->model->prepare(&swimmer->robot, swimmer->scratch);
     return moray_ok();
 }
 
