@@ -33,5 +33,6 @@
 #include "moray/sim.h"
 #include "moray/status.h"
 #include "moray/table.h"
+#include "moray/water.h"
 
 #endif

@@ -57,6 +57,24 @@ static void check_rest(random_seed *seed, moray_model model, int N)
     moray_swimmer_free(swimmer);
 }
 
+// A swimmer that becomes another robot moves as one that was made as it.
+static void check_becoming(random_seed *seed, moray_model model, int N)
+{
+    const moray_robot first = random_robot(seed, N), other = random_robot(seed, N);
+    moray_swimmer *swimmer = make(&first, model), *made = make(&other, model);
+    double x[MAX_STATES], ubar[MAX_LINKS], dx[2][MAX_STATES], u[2][MAX_LINKS];
+    random_vector(seed, 1, 2 * N + 4, x);
+    random_vector(seed, 1, N - 1, ubar);
+    CHECK_OK(moray_swimmer_set_robot(swimmer, &other), "moray_swimmer_set_robot");
+    CHECK(moray_swimmer_rates(swimmer, x, ubar, dx[0], u[0]) && moray_swimmer_rates(made, x, ubar, dx[1], u[1]),
+          "both have rates");
+    CHECK(memcmp(dx[0], dx[1], (size_t)(2 * N + 4) * sizeof(double)) == 0 &&
+              memcmp(u[0], u[1], (size_t)(N - 1) * sizeof(double)) == 0,
+          "and the same");
+    moray_swimmer_free(made);
+    moray_swimmer_free(swimmer);
+}
+
 // A state with joints on the gait at time t plus the given errors.
 static void set_joints(moray_model model, int N, const double *phi, const double *v_phi, double *x)
 {
@@ -222,6 +240,7 @@ int main(void)
             check_rest(&seed, models[m], robot_links[k]);
             check_control(&seed, models[m], robot_links[k]);
             check_pose(&seed, models[m], robot_links[k]);
+            check_becoming(&seed, models[m], robot_links[k]);
             check_on_gait(&seed, models[m], robot_links[k]);
         }
     }

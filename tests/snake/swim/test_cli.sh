@@ -34,7 +34,7 @@ refuse 'twice.ini:3: links is given twice, first in line 2' --robot twice.ini
 refuse 'junk.ini:2: m_kg = heavy: must be' --robot junk.ini
 refuse 'robot file absent.ini: cannot be opened: No such file' --robot absent.ini
 refuse 'robot file directory: cannot be read: Is a directory' --robot directory
-refuse "c_n = 1?2: must be" --set "c_n=$(printf '1\n2')"
+refuse "c_n = 1 2: must be" --set "c_n=$(printf '1\n2')"
 refuse 'junk.ini:2' --robot junk.ini --set m_kg=1
 
 for unwritable in file file/below /proc/moray; do
