@@ -119,13 +119,20 @@ void moray_size_ends(struct witness *e)
             memcpy(size, e->phase[p].size, (size_t)(ocp->phase[p].nx + ocp->phase[p].nu) * sizeof *size);
 }
 
-// An integral that is 0 has only rounding for a sum.
+// What would matter to the objective, whose change by the quantity is `slope`, or by a part of what it may be at most.
+static double mattering(moray_bounds bounds, double objective, double slope)
+{
+    const double width = moray_witness_width(bounds), most = width > 0 ? width : 1;
+    return least_part * fmin(most, objective / slope);
+}
+
+// An integral that is 0 has only rounding for a sum; one that the objective knows nothing of, for a multiplier.
 static void size_integrals_by_multiplier(struct witness *e, int p, double objective)
 {
+    const struct phase *phase = &e->solution->transcription->ocp->phase[p];
     const double *lambda = e->solution->iterate.lambda + moray_witness_layout(e, p)->integral_row;
-    for (int m = 0; m < e->solution->transcription->ocp->phase[p].nq; m++)
-        if (fabs(lambda[m]) > 0)
-            e->phase[p].integral[m] = fmax(e->phase[p].integral[m], least_part * objective / fabs(lambda[m]));
+    for (int m = 0; m < phase->nq; m++)
+        e->phase[p].integral[m] = fmax(e->phase[p].integral[m], mattering(phase->q[m], objective, fabs(lambda[m])));
 }
 
 // A state whose displacement by its size would hardly change the objective, by its costate, may be larger: one that is
@@ -143,8 +150,7 @@ moray_status moray_size_by_costate(struct witness *e, int p)
         double largest = 0;
         for (int n = 0; n < nodes; n++)
             largest = fmax(largest, fabs(costate[n * nx + i]));
-        const double width = moray_witness_width(phase->x[i]), most = width > 0 ? width : 1;
-        e->phase[p].size[i] = fmax(e->phase[p].size[i], least_part * fmin(most, objective / largest));
+        e->phase[p].size[i] = fmax(e->phase[p].size[i], mattering(phase->x[i], objective, largest));
     }
     free(costate);
     size_integrals_by_multiplier(e, p, objective);
