@@ -2,6 +2,7 @@
 # Each public header stands alone and bears being included twice, in C99, C11 and C++11; moray.h and snake.h, which have
 # them all, in every standard, by gcc and clang. Arguments: the source directory, the compiler. What is not installed is
 # skipped.
+source=$1
 shift
 . "$source/tests/tap.sh"
 
