@@ -148,7 +148,8 @@ static void splice(bytes *b, int at, int cut, const char *with, int n)
     if (b->n - cut + n > LONGEST)
         return;
     memmove(b->text + at + n, b->text + at + cut, (size_t)(b->n - at - cut));
-    memcpy(b->text + at, with, (size_t)n);
+    if (n > 0)
+        memcpy(b->text + at, with, (size_t)n);
     b->n += n - cut;
 }
 
