@@ -47,11 +47,13 @@ static bool is_estimated(const identify *run, const char *line)
     return false;
 }
 
-// Lines of [robot] of the settings, but for what was estimated.
-static void write_kept(const identify *run, FILE *file)
+// Lines of a section of the settings, but for what was estimated.
+static void write_kept(const identify *run, const char *section, FILE *file)
 {
-    const char *at = run->common.ini ? strstr(run->common.ini, "\n[robot]\n") : NULL;
-    for (at = at ? at + strlen("\n[robot]\n") : ""; *at && *at != '[' && *at != '\n';) {
+    char begin[40];
+    snprintf(begin, sizeof begin, "\n[%s]\n", section);
+    const char *at = run->common.ini ? strstr(run->common.ini, begin) : NULL;
+    for (at = at ? at + strlen(begin) : ""; *at && *at != '[' && *at != '\n';) {
         const int length = (int)strcspn(at, "\n");
         if (*at != ';' && !is_estimated(run, at))
             fprintf(file, "%.*s\n", length, at);
@@ -73,8 +75,12 @@ static void write_robot(const identify *run, FILE *file)
         w->current[0], w->current[1], w->heading_bias / DEG, w->camera_rotation / DEG, w->position_delay,
         w->heading_delay, w->joint_delay);
     fprintf(file, "[robot]\n");
-    write_kept(run, file);
+    write_kept(run, "robot", file);
     write_estimates(run, file);
+    fprintf(file, "\n[motor]\n");
+    write_kept(run, "motor", file);
+    fprintf(file, "\n[battery]\n");
+    write_kept(run, "battery", file);
 }
 
 static void write_scenarios(const identify *run, FILE *file)

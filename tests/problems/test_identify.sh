@@ -74,4 +74,7 @@ refuse 'estimate: speed' --links 5 --logs one.csv --estimate c_t,speed
 refuse 'no column for phi, number 5' --links 6 --logs one.csv
 refuse 'logs: none given' --links 5
 refuse 'rot_gain' --links 5 --logs one.csv --estimate rot_gain
+refuse 'must have equal links' --robot "$source/problems/robots/head_and_fin.ini" --logs one.csv
+run --links 5 --logs one.csv --estimate c_t,c_n --set motor_efficiency=0.8 --quiet --out powered
+check "the robot found keeps its motor" grep -q "^motor_efficiency = 0.8" powered/robot.ini
 tap_done

@@ -143,7 +143,7 @@ typedef struct moray_estimate {
 MORAY_API void moray_identify_start(const moray_identify *identify, unsigned long seed, moray_estimate *estimate);
 
 // Improves it, to a step below 1e-10 of the scales or as far as rounding lets. Error: MORAY_NUMERIC where it cannot
-// be swum. Observer: false ends it, MORAY_INTERRUPTED.
+// be swum.
 MORAY_API moray_status moray_identify_solve(const moray_identify *identify, moray_estimate *estimate);
 
 // From `starts` points, the first the spec's, by so many processes; the best first in estimate[starts].
