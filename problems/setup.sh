@@ -92,7 +92,7 @@ configure_now() {
     say "Configuring $1"
     directory=$1
     shift
-    # Some two hundred programs are linked: gold, which comes with Debian's binutils, takes a third of the time of ld.bfd.
+    # More than a hundred programs are linked: gold, which comes with Debian's binutils, takes a third of the time of ld.bfd.
     if command -v ld.gold >/dev/null; then
         CC_LD=${CC_LD-gold} quietly meson setup "$directory" "$root" "$@"
     else

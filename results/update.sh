@@ -13,21 +13,12 @@ print() {
     show "$@"
     files=yes
 }
-# beside NAME [ARGUMENT...]: the other tools, where they are installed.
-beside() {
-    runner=problems/benchmark/peers/run.sh
+# by SCRIPT NAME [ARGUMENT...]: another script than run.sh, which prints its table.
+by() {
+    runner=$1
     files=
     quiet=
-    show "$@"
-    runner=problems/run.sh
-    quiet=--quiet
-    files=yes
-}
-# compare NAME BEFORE AFTER: iterations in two tables of textbook problems.
-compare() {
-    runner=tests/studies/iterations.sh
-    files=
-    quiet=
+    shift
     show "$@"
     runner=problems/run.sh
     quiet=--quiet
@@ -73,18 +64,6 @@ swept() {
     program=$2
     shift 2
     show "$name" sweep "$program" --file "build/$name.nc" "$@"
-}
-# studied NAME SCRIPT [ARGUMENT...]: a study of tests/studies, which prints its table.
-studied() {
-    runner=tests/studies/$2.sh
-    name=$1
-    shift 2
-    files=
-    quiet=
-    show "$name" "$@"
-    runner=problems/run.sh
-    quiet=--quiet
-    files=yes
 }
 # picture NAME: its page as it opens, where Chromium is installed.
 picture() {
@@ -141,19 +120,15 @@ swept sea_sweep sea_trials --grid first_seed=1:40:40 --grid seeds=1 --grid tuned
     --quantiles --show laws_PID_and_rate__ahead_rms_deg_median --show laws_receding__told_rms_deg_median \
     --show laws_receding__believing_rms_deg_median --show laws_receding__estimating_rms_deg_median \
     --show laws_plan_and_feedback_rms_deg_median
-studied sweep_kills kills build/problems/sweep 50 1
+by tests/studies/kills.sh sweep_kills build/problems/sweep 50 1
 show classics classics all
-compare classics_iterations results/classics_iterations/before.txt results/classics/table.txt
+by tests/studies/iterations.sh classics_iterations results/classics_iterations/before.txt results/classics/table.txt
 print benchmark_s1 benchmark --part s1 --set repeats=9
 print benchmark_horizon benchmark --part horizon --set repeats=3
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
-beside peers 5
+by problems/benchmark/peers/run.sh peers 5 # the other tools, where they are installed
 
 # Takes an hour: by name alone.
 case $wanted in
-*" trust "*)
-    mkdir -p results/trust || exit 1
-    echo "sh tests/studies/trust.sh build" >results/trust/command.txt
-    sh tests/studies/trust.sh build >results/trust/table.txt || exit 1
-    ;;
+*" trust "*) by tests/studies/trust.sh trust build ;;
 esac

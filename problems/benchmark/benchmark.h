@@ -29,8 +29,6 @@ typedef struct cost {
 
 double cost_evaluation(const cost *c);
 
-double processor_seconds(void);
-
 // Bytes that the process holds, from where the peak counts anew; the peak since then beyond that. NaN: not told.
 double memory_begin(void);
 double memory_peak(double before);
@@ -58,8 +56,6 @@ typedef struct subject {
 
 // Medians of `repeats` measurements, piece by piece. Error: those of begin and solve.
 moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found);
-
-double median(double *values, int n); // sorts them
 
 // Slope of log y over log x by least squares; x, y > 0 (pairs where one is not are left out; NaN with less than two).
 double fitted_exponent(const double *x, const double *y, int n);

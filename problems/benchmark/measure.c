@@ -1,20 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <stdlib.h>
-#include <time.h>
 
 #include "benchmark.h"
-
-static double clock_seconds(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-double processor_seconds(void)
-{
-    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-}
+#include "moray/clock.h"
+#include "moray/number.h"
 
 double cost_evaluation(const cost *c)
 {
@@ -70,11 +59,11 @@ static cost read_account(const moray_solution *solution, double total, double wa
 static moray_status measure_once(const subject *of, moray_linear_solver linear, cost *found)
 {
     moray_solution *solution = NULL;
-    const double before = memory_begin(), start = processor_seconds(), wall = clock_seconds(CLOCK_MONOTONIC);
+    const double before = memory_begin(), start = moray_processor_clock(), wall = moray_clock();
     moray_status status = of->solve(of->self, linear, &solution);
-    const double total = processor_seconds() - start;
+    const double total = moray_processor_clock() - start;
     if (!moray_failed(status)) {
-        *found = read_account(solution, total, clock_seconds(CLOCK_MONOTONIC) - wall);
+        *found = read_account(solution, total, moray_clock() - wall);
         found->memory = memory_peak(before);
     }
     moray_solution_free(solution);
@@ -82,24 +71,12 @@ static moray_status measure_once(const subject *of, moray_linear_solver linear, 
     return status;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-double median(double *values, int n)
-{
-    qsort(values, (size_t)n, sizeof *values, ascending);
-    return (values[(n - 1) / 2] + values[n / 2]) / 2;
-}
-
 // Of the numbers at `offset` in n costs; work[n].
 static double median_cost(const cost *costs, size_t offset, int n, double *work)
 {
     for (int k = 0; k < n; k++)
         work[k] = *(const double *)((const char *)&costs[k] + offset);
-    return median(work, n);
+    return moray_quantile(work, n, 0.5);
 }
 
 static moray_status measure_all(const subject *of, moray_linear_solver linear, int repeats, cost *costs, double *work,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <stdlib.h>
-#include <time.h>
 
 #include "benchmark.h"
+#include "moray/clock.h"
+#include "moray/number.h"
 
 static const double horizon = 45; // s, as in Sec. V-B
 
@@ -12,9 +13,9 @@ static moray_status simulate(moray_swimmer *swimmer, const moray_gait *gait, dou
     const moray_gait_change only = {0, *gait};
     const moray_swim_plan plan = {.t1 = horizon, .schedule = &only, .n_changes = 1};
     moray_swimmer_rest(swimmer, 0, 0, 0, x);
-    const clock_t start = clock();
+    const double start = moray_processor_clock();
     moray_status status = moray_swim_run(swimmer, &settings, &plan, x, NULL);
-    *seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+    *seconds = moray_processor_clock() - start;
     return status;
 }
 
@@ -32,7 +33,7 @@ moray_status simulation_rate(moray_model model, int links, int repeats, double *
     for (int k = 0; k < repeats && !moray_failed(status); k++)
         status = simulate(swimmer, &gait, x, &seconds[k]);
     if (!moray_failed(status))
-        *rate = horizon / median(seconds, repeats);
+        *rate = horizon / moray_quantile(seconds, repeats, 0.5);
     free(seconds);
     moray_swimmer_free(swimmer);
     return status;

@@ -3,9 +3,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "classics.h"
+#include "moray/clock.h"
 
 enum { samples = CLASSIC_PARTS + 1, max_phases = 5, max_states = 8, max_controls = 4 };
 
@@ -172,22 +172,15 @@ static void read_solution(const struct classic *classic, const moray_solution *s
     judge(classic, result);
 }
 
-static double processor_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
                            const moray_integrator *integrator, struct classic_result *result, char *diagnosis, int size)
 {
-    const double start = processor_seconds();
+    const double start = moray_processor_clock();
     *result = (struct classic_result){0};
     moray_ocp *ocp;
     moray_solution *solution;
     moray_status status = classic_first_solution(classic, settings, &ocp, &solution);
-    result->seconds = processor_seconds() - start;
+    result->seconds = moray_processor_clock() - start;
     if (!moray_failed(status)) {
         read_solution(classic, solution, result);
         if (diagnosis)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "identify.h"
+#include "moray/number.h"
 
 static const double wide = 5; // coefficients lie within so many times of where they start, unless told
 
@@ -81,7 +82,7 @@ static moray_status read_bounds(identify *run)
     char text[LIST_SIZE], *rest = NULL;
     snprintf(text, sizeof text, "%s", run->bounds);
     for (char *item = strtok_r(text, ", ", &rest); item; item = strtok_r(NULL, ", ", &rest)) {
-        char *value = strchr(item, '='), *middle = value ? strchr(value, ':') : NULL, *end;
+        char *value = strchr(item, '='), *middle = value ? strchr(value, ':') : NULL;
         if (!value || !middle)
             return moray_error(MORAY_INPUT, "bounds: %.60s: must be KEY=LOW:HIGH with commas between", item);
         *value++ = *middle++ = 0;
@@ -93,12 +94,12 @@ static moray_status read_bounds(identify *run)
             return moray_error(MORAY_INPUT, "bounds: %.60s: is not among what is estimated", item);
         double scale;
         identify_unit(unknown, &scale);
-        run->lower[k] = strtod(value, &end) * scale;
-        const bool low = end != value && !*end;
-        run->upper[k] = strtod(middle, &end) * scale;
-        if (!low || end == middle || *end || !(run->lower[k] < run->upper[k]))
+        if (!moray_number_read(value, &run->lower[k]) || !moray_number_read(middle, &run->upper[k]) ||
+            !(run->lower[k] < run->upper[k]))
             return moray_error(MORAY_INPUT, "bounds: %.40s=%.40s:%.40s: must be two numbers, the lower first", item,
                                value, middle);
+        run->lower[k] *= scale;
+        run->upper[k] *= scale;
     }
     return moray_ok();
 }

@@ -10,6 +10,7 @@
 
 #include "moray/app/options.h"
 #include "moray/app/program.h"
+#include "moray/number.h"
 
 enum {
     KEY_GRID = 0x100,
@@ -29,6 +30,7 @@ enum {
     KEY_MIRROR,
     KEY_PAGE,
     KEY_POINTS,
+    KEY_REPEATS,
     KEY_COLD,
     KEY_QUANTILES,
     KEY_QUIET,
@@ -62,7 +64,8 @@ static const struct argp_option options[] = {
      "silence after which a rank is taken for dead, where mpirun --enable-recovery lets the others live [30]", 3},
     {"objective", KEY_OBJECTIVE, "NUMBER", 0,
      "number that tells the better of two solutions, the lower one [the solver's objective]", 3},
-    {"points", KEY_POINTS, "N", 0, "most points of no cost for measure [100000]", 3},
+    {"repeats", KEY_REPEATS, "N", 0, "measurements of each for measure, of which the quickest counts [1]", 3},
+    {"points", KEY_POINTS, "N", 0, "most points of no cost for measure [10000]", 3},
     {"cold", KEY_COLD, NULL, 0, "every point from its own start, not from a solved neighbour", 3},
     {"quiet", KEY_QUIET, NULL, 0, "no progress", 4},
     {"json", KEY_JSON, NULL, 0, "what came of it as one JSON object", 4},
@@ -71,10 +74,7 @@ static const struct argp_option options[] = {
 
 static moray_status number(const char *flag, const char *text, double low, double high, double *value)
 {
-    char *end;
-    errno = 0;
-    *value = strtod(text, &end);
-    if (end == text || *end || errno || !(*value >= low && *value <= high))
+    if (!moray_number_read(text, value) || !(*value >= low && *value <= high))
         return moray_error(MORAY_INPUT, "--%s %.60s: must be a number within %g:%g", flag, text, low, high);
     return moray_ok();
 }
@@ -152,6 +152,10 @@ static moray_status take(reading *r, int key, char *value)
         status = whole("points", value, 1e7, &x);
         a->most = (long)x;
         return status;
+    case KEY_REPEATS:
+        status = whole("repeats", value, 100, &x);
+        a->repeats = (int)x;
+        return status;
     case KEY_RANDOM:
         status = whole("random", value, 1e9, &x);
         a->draws = (long)x;
@@ -218,21 +222,6 @@ static char *list_programs(int key, const char *text, void *input)
     return list;
 }
 
-static moray_status complete(sweep_arguments *a)
-{
-    if (!a->program)
-        return moray_error(MORAY_INPUT, "which program is to be swept? --help lists them");
-    if (!a->objective)
-        a->objective = a->program->objective;
-    if (a->file)
-        return moray_ok();
-    char name[80], *copy;
-    snprintf(name, sizeof name, "%s.nc", a->program->name);
-    MORAY_TRY(sweep_copy_of(a, name, &copy));
-    a->file = copy;
-    return moray_ok();
-}
-
 bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *exit_code)
 {
     static const struct argp parser = {
@@ -243,7 +232,7 @@ bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *ex
         NULL,
         list_programs,
         NULL};
-    *found = (sweep_arguments){.seed = 1, .most = 100000};
+    *found = (sweep_arguments){.seed = 1, .most = 10000, .repeats = 1};
     reading r = {.a = found, .status = moray_ok()};
     int own = argc;
     for (int k = 1; k < argc && own == argc; k++)
@@ -254,7 +243,7 @@ bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *ex
     argp_err_exit_status = MORAY_EXIT_USAGE; // what argp itself does not understand ends the program there
     const error_t error = argp_parse(&parser, own, argv, ARGP_IN_ORDER, NULL, &r);
     if (!moray_failed(r.status))
-        r.status = error ? moray_error(MORAY_MEMORY, "the command line: %s", strerror(error)) : complete(found);
+        r.status = error ? moray_error(MORAY_MEMORY, "the command line: %s", strerror(error)) : sweep_complete(found);
     if (!moray_failed(r.status))
         return true;
     fprintf(stderr, "sweep: %s\n", r.status.text);

@@ -26,6 +26,7 @@ typedef struct sweep_arguments {
     const char *keep[SWEEP_MOST_SHOWN]; // patterns of the numbers that the file is to have
     const char *mirror, *page;          // key whose opposite values are compared; file; NULL: none
     long most;                          // points that measure goes up to
+    int repeats;                        // of its measurements
     int shown, kept, jobs;
     double point_seconds, point_megabytes, silent_seconds;
     bool cold, quantiles, quiet, json;
@@ -43,5 +44,9 @@ moray_status sweep_add_list(sweep_arguments *a, const char *argument);
 moray_status sweep_add_files(sweep_arguments *a, const char *pattern);
 moray_status sweep_add_range(sweep_arguments *a, const char *argument);
 moray_status sweep_copy_of(sweep_arguments *a, const char *text, char **copy);
+
+// What is left to be said once all is read: the file, the objective, and that the keys go together. Error: MORAY_INPUT,
+// MORAY_MEMORY.
+moray_status sweep_complete(sweep_arguments *a);
 
 #endif

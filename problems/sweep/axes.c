@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "moray/number.h"
 #include "sweep/arguments.h"
 
 // A copy that lasts as long as the arguments.
@@ -100,14 +101,16 @@ moray_status sweep_add_list(sweep_arguments *a, const char *argument)
 moray_status sweep_add_range(sweep_arguments *a, const char *argument)
 {
     char *text, *key, *rest;
-    int used = 0;
     if (a->ranges == MORAY_SWEEP_RANGES)
         return moray_error(MORAY_INPUT, "more than %d keys to draw", MORAY_SWEEP_RANGES);
     moray_sweep_range *range = &a->range[a->ranges];
     MORAY_TRY(sweep_copy_of(a, argument, &text));
     MORAY_TRY(split(text, "range", NULL, &key, &rest));
-    if (sscanf(rest, "%lf:%lf%n", &range->low, &range->high, &used) < 2 || rest[used])
-        return moray_error(MORAY_INPUT, "--range %s=%.60s: must be LOW:HIGH", key, rest);
+    char *high = strchr(rest, ':');
+    if (high)
+        *high++ = 0;
+    if (!moray_number_read(rest, &range->low) || !moray_number_read(high, &range->high))
+        return moray_error(MORAY_INPUT, "--range %.100s: must be KEY=LOW:HIGH, both of them finite numbers", argument);
     range->key = key;
     a->ranges++;
     return moray_ok();

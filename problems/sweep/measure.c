@@ -8,19 +8,12 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "moray/app/results.h"
 #include "moray/app/run.h"
+#include "moray/clock.h"
 #include "sweep/point.h"
-
-static double seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static double size_of(const char *file, const char *end)
 {
@@ -113,7 +106,7 @@ static moray_status grow(measured *m, int k)
 static moray_status loop(const moray_sweep_axis *axis, sweep_arguments *a, double *taken, double *processor)
 {
     fflush(NULL);
-    const double begun = seconds();
+    const double begun = moray_clock();
     const pid_t pid = fork();
     if (pid == 0) {
         FILE *null = fopen("/dev/null", "w");
@@ -131,7 +124,7 @@ static moray_status loop(const moray_sweep_axis *axis, sweep_arguments *a, doubl
     struct rusage used = {0};
     if (pid > 0)
         wait4(pid, &ended, 0, &used);
-    *taken = seconds() - begun;
+    *taken = moray_clock() - begun;
     *processor = processor_of(&used);
     return ended == 0 ? moray_ok() : moray_error(MORAY_NOT_SOLVED, "the plain loop failed");
 }
@@ -155,7 +148,7 @@ static moray_status sweep_real(const moray_sweep_axis *axis, sweep_arguments *a,
     return status;
 }
 
-// The better of two measurements: what disturbs a machine makes it slower only.
+// The quickest of several measurements: what disturbs a machine makes it slower only.
 static moray_status compare(measured *m, sweep_arguments *a)
 {
     double x[REAL_POINTS];
@@ -163,7 +156,7 @@ static moray_status compare(measured *m, sweep_arguments *a)
         x[k] = 0.1 * k / (REAL_POINTS - 1);
     const moray_sweep_axis axis = {.key = "current_x", .value = x, .n = REAL_POINTS};
     m->loop = m->loop_processor = m->one.result.seconds = m->two.result.seconds = INFINITY;
-    for (int repeat = 0; repeat < 2; repeat++) {
+    for (int repeat = 0; repeat < a->repeats; repeat++) {
         double taken, processor;
         cost one, two;
         a->cold = true;

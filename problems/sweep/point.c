@@ -46,15 +46,14 @@ static double number(const moray_sweep_point *point, const char *key)
     return 0;
 }
 
-// The current by its two components, or by its speed and where it flows to.
-static const char *const current_keys[] = {"current_x", "current_y", "current_speed", "current_deg", NULL};
+static const char *const current_keys[] = {CURRENT_X, CURRENT_Y, CURRENT_SPEED, CURRENT_DEG, NULL};
 
 static void add_current(command *c, const moray_sweep_point *point)
 {
-    const char *x = setting(point, "current_x"), *y = setting(point, "current_y");
+    const char *x = setting(point, CURRENT_X), *y = setting(point, CURRENT_Y);
     char text[2][32];
-    if (setting(point, "current_speed")) {
-        const double speed = number(point, "current_speed"), angle = number(point, "current_deg");
+    if (setting(point, CURRENT_SPEED)) {
+        const double speed = number(point, CURRENT_SPEED), angle = number(point, CURRENT_DEG);
         // Whole quarters without rounding, so that a current along the course has nothing across it.
         const double quarter = angle / 90, turn = angle * M_PI / 180;
         const bool whole = quarter == floor(quarter);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/csv.h"
+#include "base/number.h"
 #include "base/table.h"
 
 // Columns of a file, one behind the other: number[n][rows], owned.
@@ -57,17 +58,11 @@ moray_status moray_spline_read(moray_spline **spline, const char *path, const ch
 
 // ---- Surfaces ----
 
-static int compare(const void *a, const void *b)
-{
-    const double one = *(const double *)a, other = *(const double *)b;
-    return (one > other) - (one < other);
-}
-
 // Sorts, and leaves each number once. Returns how many.
 static int distinct(double *x, int n)
 {
     int kept = 0;
-    qsort(x, (size_t)n, sizeof *x, compare);
+    qsort(x, (size_t)n, sizeof *x, moray_by_value);
     for (int i = 0; i < n; i++)
         if (kept == 0 || x[i] != x[kept - 1])
             x[kept++] = x[i];
@@ -76,7 +71,7 @@ static int distinct(double *x, int n)
 
 static int place(const double *x, int n, double value)
 {
-    const double *at = bsearch(&value, x, (size_t)n, sizeof *x, compare);
+    const double *at = bsearch(&value, x, (size_t)n, sizeof *x, moray_by_value);
     return (int)(at - x);
 }
 

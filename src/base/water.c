@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/csv.h"
+#include "base/number.h"
 #include "moray/table.h"
 
 enum { X, Y, T, AXES };
@@ -139,12 +140,6 @@ void moray_water_at_complex(const moray_water *water, moray_num x, moray_num y, 
 
 // ---- From a table --------------------------------------------------------------------------------------------------
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The different numbers of a column.
 static moray_status find_axis(const double *rows, int n, int columns, int column, axis *of)
 {
@@ -153,7 +148,7 @@ static moray_status find_axis(const double *rows, int n, int columns, int column
         return moray_error(MORAY_MEMORY, "no memory for a current of %d points", n);
     for (int i = 0; i < n; i++)
         of->at[i] = rows[i * columns + column];
-    qsort(of->at, (size_t)n, sizeof *of->at, ascending);
+    qsort(of->at, (size_t)n, sizeof *of->at, moray_by_value);
     for (int i = 0; i < n; i++)
         if (i == 0 || of->at[i] != of->at[of->n - 1])
             of->at[of->n++] = of->at[i];
@@ -162,7 +157,7 @@ static moray_status find_axis(const double *rows, int n, int columns, int column
 
 static int place_on(const axis *of, double value)
 {
-    const double *found = bsearch(&value, of->at, (size_t)of->n, sizeof value, ascending);
+    const double *found = bsearch(&value, of->at, (size_t)of->n, sizeof value, moray_by_value);
     return (int)(found - of->at);
 }
 

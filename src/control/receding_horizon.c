@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "moray/clock.h"
 #include "ocp/solution.h"
 
 enum { PER_INTERVAL = 4 };        // samples of a guess
@@ -25,14 +25,6 @@ struct moray_receding_horizon {
     int n;          // samples of a guess
     double guess[]; // times, states, controls
 };
-
-// Processor time of this process [s].
-static double processor(void)
-{
-    struct timespec at;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &at);
-    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
-}
 
 // ---- Plans ---------------------------------------------------------------------------------------------------------
 
@@ -161,9 +153,9 @@ moray_status moray_receding_horizon_measure(moray_receding_horizon *r, double t,
     MORAY_TRY(make_room(r));
     moray_replan made = {.t = t};
     moray_status why = moray_ok();
-    const double start = processor();
+    const double start = moray_processor_clock();
     MORAY_TRY(plan(r, t, x, &made.iterations, &why));
-    made.seconds = processor() - start;
+    made.seconds = moray_processor_clock() - start;
     made.failed = moray_failed(why);
     keep_record(r, &made, why.text);
     r->due = t + r->spec.interval;

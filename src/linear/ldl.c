@@ -4,20 +4,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "linear/parts.h"
 
 static const double worn = 4; // factorisations' worth of work by delayed pivots that another order costs
 // Growth of the factors by delayed pivots that ends a factorisation; but for the few that 8 MB hold.
 static const double hopeless = 8, few_entries = 1e6;
-
-double moray_ldl_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static moray_status no_memory(int n)
 {
@@ -126,7 +119,7 @@ static moray_status make_room(moray_ldl *ldl)
 
 static moray_status order(moray_ldl *ldl, const double *values)
 {
-    const double start = moray_ldl_clock();
+    const double start = moray_thread_clock();
     moray_status status = make_plan(ldl, values);
     if (!moray_failed(status))
         status = make_room(ldl);
@@ -139,7 +132,7 @@ static moray_status order(moray_ldl *ldl, const double *values)
     ldl->statistics.largest = ldl->plan.tallest;
     ldl->statistics.planned = ldl->plan.flops;
     ldl->statistics.entries = (double)ldl->plan.panel_room;
-    ldl->statistics.order_seconds += moray_ldl_clock() - start;
+    ldl->statistics.order_seconds += moray_thread_clock() - start;
     return status;
 }
 
@@ -190,13 +183,13 @@ static moray_status factor(moray_ldl *ldl, const double *values)
 
 moray_status moray_ldl_factor(moray_ldl *ldl, const double *values, double threshold)
 {
-    const double start = moray_ldl_clock(), ordering = ldl->statistics.order_seconds;
+    const double start = moray_thread_clock(), ordering = ldl->statistics.order_seconds;
     ldl->factored = false;
     ldl->threshold = threshold;
     const moray_status status = factor(ldl, values);
     ldl->factored = !moray_failed(status);
     ldl->statistics.factors++;
-    ldl->statistics.factor_seconds += moray_ldl_clock() - start - (ldl->statistics.order_seconds - ordering);
+    ldl->statistics.factor_seconds += moray_thread_clock() - start - (ldl->statistics.order_seconds - ordering);
     return status;
 }
 

@@ -103,7 +103,6 @@ struct moray_ldl {
     moray_ldl_statistics statistics;
 };
 
-double moray_ldl_clock(void); // of this thread
 // Sums up repeated values and equilibrates. False where a value is not finite.
 bool moray_ldl_load(moray_ldl *ldl, const double *values);
 // Lays out the front of a node behind those before and fills it from the matrix and the node's children. Error:

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "moray/clock.h"
 #include "nlp/ipopt_linear.h"
 #include "nlp/ipopt_log.h"
 #include "nlp/ipopt_options.h"
@@ -30,21 +30,9 @@ static const double as_good_as_feasible = 1e-6;
 
 enum { eval_objective, eval_gradient, eval_constraints, eval_jacobian, eval_hessian };
 
-static double now(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static double cpu(void)
-{
-    return now(CLOCK_PROCESS_CPUTIME_ID);
-}
-
 static Bool account(struct session *session, int which, double start, bool ok)
 {
-    const double spent = cpu() - start;
+    const double spent = moray_processor_clock() - start;
     session->info->evaluation_seconds += spent;
     session->info->evaluation_by[which] += spent;
     session->info->evaluations[which]++;
@@ -55,7 +43,7 @@ static Bool on_objective(Index n, Number *x, Bool fresh, Number *f, UserDataPtr 
 {
     (void)n;
     struct session *session = data;
-    const double start = cpu();
+    const double start = moray_processor_clock();
     return account(session, eval_objective, start, session->nlp->objective(session->nlp->self, x, fresh, f));
 }
 
@@ -63,7 +51,7 @@ static Bool on_gradient(Index n, Number *x, Bool fresh, Number *gradient, UserDa
 {
     (void)n;
     struct session *session = data;
-    const double start = cpu();
+    const double start = moray_processor_clock();
     return account(session, eval_gradient, start, session->nlp->gradient(session->nlp->self, x, fresh, gradient));
 }
 
@@ -72,7 +60,7 @@ static Bool on_constraints(Index n, Number *x, Bool fresh, Index m, Number *g, U
     (void)n;
     (void)m;
     struct session *session = data;
-    const double start = cpu();
+    const double start = moray_processor_clock();
     return account(session, eval_constraints, start, session->nlp->constraints(session->nlp->self, x, fresh, g));
 }
 
@@ -88,7 +76,7 @@ static Bool on_jacobian(Index n, Number *x, Bool fresh, Index m, Index nnz, Inde
         return TRUE;
     }
     memcpy(session->last, x, (size_t)n * sizeof *x);
-    const double start = cpu();
+    const double start = moray_processor_clock();
     return account(session, eval_jacobian, start, nlp->jacobian(nlp->self, x, fresh, values));
 }
 
@@ -105,7 +93,7 @@ static Bool on_hessian(Index n, Number *x, Bool fresh, Number sigma, Index m, Nu
         memcpy(col, nlp->hess_col, (size_t)nnz * sizeof *col);
         return TRUE;
     }
-    const double start = cpu();
+    const double start = moray_processor_clock();
     return account(session, eval_hessian, start, nlp->hessian(nlp->self, x, fresh, sigma, lambda, values));
 }
 
@@ -344,7 +332,7 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     *info = (moray_nlp_info){0};
     if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
         return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
-    const double wall_start = now(CLOCK_MONOTONIC), cpu_start = cpu();
+    const double wall_start = moray_clock(), cpu_start = moray_processor_clock();
     double *block = calloc(7 * n + 3 * m + 1, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for %d variables", nlp->n);
@@ -354,8 +342,8 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     copy_iterate(nlp, iterate, &start);
     const moray_status status = solve(&session, iterate, &start);
     free(block);
-    info->seconds = now(CLOCK_MONOTONIC) - wall_start;
-    info->cpu_seconds = cpu() - cpu_start;
+    info->seconds = moray_clock() - wall_start;
+    info->cpu_seconds = moray_processor_clock() - cpu_start;
     return status;
 }
 

@@ -6,7 +6,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "base/clock.h"
 
 #if __has_include(<HSLLoader.h>)
 #pragma GCC diagnostic push
@@ -19,13 +20,6 @@ static _Thread_local struct ipopt_linear *current;
 // Numbers of MA57's info[], from 0, and what they say.
 enum { needed_fact = 8, needed_ifact = 9, negative = 23, rank = 24 };
 enum { fine = 0, no_object = -1, no_factors = -2, singular = 4 };
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void set_defaults(double *cntl, ipfint *icntl)
 {
@@ -52,7 +46,7 @@ static void analyse(ipfint *n, ipfint *entries, const ipfint *row, const ipfint 
                     ipfint *work, ipfint *icntl, ipfint *info, double *rinfo)
 {
     (void)size, (void)work, (void)icntl, (void)rinfo;
-    const double start = now();
+    const double start = moray_thread_clock();
     moray_pattern pattern;
     int number = -1;
     moray_status status = moray_pattern_new(&pattern, *entries);
@@ -69,7 +63,7 @@ static void analyse(ipfint *n, ipfint *entries, const ipfint *row, const ipfint 
     keep[0] = number;
     info[0] = fine; // 3.11 goes on whatever is said here: the factorisation will tell
     info[needed_fact] = info[needed_ifact] = 1;
-    current->seconds += now() - start;
+    current->seconds += moray_thread_clock() - start;
 }
 
 static void factor(ipfint *n, ipfint *entries, double *values, double *fact, ipfint *fact_size, ipfint *ifact,
@@ -77,7 +71,7 @@ static void factor(ipfint *n, ipfint *entries, double *values, double *fact, ipf
                    ipfint *info, double *rinfo)
 {
     (void)entries, (void)fact, (void)fact_size, (void)ifact_size, (void)keep_size, (void)work, (void)icntl, (void)rinfo;
-    const double start = now();
+    const double start = moray_thread_clock();
     info[0] = no_object;
     ifact[0] = keep[0];
     if (keep[0] < 0)
@@ -91,7 +85,7 @@ static void factor(ipfint *n, ipfint *entries, double *values, double *fact, ipf
         info[0] = moray_failed(status) || inertia.zero > 0 ? singular : fine;
     info[negative] = inertia.negative;
     info[rank] = *n - inertia.zero;
-    current->seconds += now() - start;
+    current->seconds += moray_thread_clock() - start;
 }
 
 static void solve(ipfint *job, ipfint *n, double *fact, ipfint *fact_size, ipfint *ifact, ipfint *ifact_size,
@@ -100,14 +94,14 @@ static void solve(ipfint *job, ipfint *n, double *fact, ipfint *fact_size, ipfin
 {
     (void)job, (void)n, (void)fact, (void)fact_size, (void)ifact_size, (void)B_size, (void)work, (void)work_size;
     (void)iwork, (void)icntl;
-    const double start = now();
+    const double start = moray_thread_clock();
     moray_ldl *ldl = current->ldl[ifact[0]];
     const moray_status status = moray_ldl_solve(ldl, *columns, B);
     const double error = moray_ldl_statistics_of(ldl).error;
     if (!(error <= current->error)) // a NaN too
         current->error = error;
     info[0] = moray_failed(status) ? no_factors : fine;
-    current->seconds += now() - start;
+    current->seconds += moray_thread_clock() - start;
 }
 
 // Never called, as no work array is ever too small.

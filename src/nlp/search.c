@@ -7,7 +7,8 @@
 #include <nlopt.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "moray/clock.h"
 
 static const struct method {
     const char *name;
@@ -62,13 +63,6 @@ struct session {
 };
 
 enum { MOST_REPEATS = 20 }; // a local method that asks more often for one point gets no further for rounding
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static bool all_finite(const double *values, int n)
 {
@@ -314,12 +308,12 @@ moray_status moray_search(const moray_search_problem *problem, const moray_searc
     const struct method *method = &methods[settings->method];
     MORAY_TRY(check_problem(problem, method));
     struct session s = {.problem = problem, .settings = settings, .info = info};
-    const double start = now();
+    const double start = moray_clock();
     MORAY_TRY(make_memory(&s));
     s.opt = nlopt_create(problem->m > 0 ? method->constrained : method->plain, (unsigned)problem->n);
     moray_status status = s.opt ? run(&s, x) : moray_error(MORAY_MEMORY, "no memory for a search");
     nlopt_destroy(s.opt);
     free(s.last.x);
-    info->seconds = now() - start;
+    info->seconds = moray_clock() - start;
     return status;
 }

@@ -9,16 +9,11 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "moray/clock.h"
+
 extern char **environ;
 
 enum { PATIENCE = 20 }; // seconds for one picture, which takes a tenth of one
-
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 // In a process group of its own, so that it ends with all that it started. Returns 0 or errno.
 static int start(FILE *script, FILE *picture, FILE *complaints, pid_t *process)
@@ -44,7 +39,7 @@ static int start(FILE *script, FILE *picture, FILE *complaints, pid_t *process)
 // Until it ends or patience does: then it is made to, and ETIMEDOUT is returned.
 static int wait_for(pid_t process, int *exit_status)
 {
-    const double until = now() + PATIENCE;
+    const double until = moray_clock() + PATIENCE;
     struct timespec pause = {.tv_nsec = 2000000};
     for (;;) {
         const pid_t ended = waitpid(process, exit_status, WNOHANG);
@@ -52,7 +47,7 @@ static int wait_for(pid_t process, int *exit_status)
             return 0;
         if (ended < 0 && errno != EINTR)
             return errno;
-        if (now() > until) {
+        if (moray_clock() > until) {
             kill(-process, SIGKILL);
             while (waitpid(process, exit_status, 0) < 0 && errno == EINTR)
                 continue;

@@ -3,24 +3,18 @@
 
 #include <stdarg.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "moray/clock.h"
 
 enum { A_MINUTE = 60 };
 
 static _Thread_local double last_line; // where there is no terminal: when one was written
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 moray_ticker moray_ticker_start(FILE *stream, bool quiet)
 {
     const bool terminal = isatty(fileno(stream));
-    last_line = now();
+    last_line = moray_clock();
     return (moray_ticker){
         .stream = stream, .live = !quiet && terminal, .plain = !quiet && !terminal, .started = last_line};
 }
@@ -37,7 +31,7 @@ static int room(FILE *stream)
 // A line a minute is enough for a file.
 static void show_plain(const moray_ticker *ticker, const char *line)
 {
-    const double time = now();
+    const double time = moray_clock();
     if (time - last_line < A_MINUTE)
         return;
     last_line = time;
@@ -79,7 +73,7 @@ void moray_ticker_count(const moray_ticker *ticker, int done, int of, const char
     n = n < (int)sizeof line ? n : (int)sizeof line - 1;
     n += snprintf(line + n, sizeof line - (size_t)n, ", %d of %d", done + 1, of);
     if (done > 0 && n < (int)sizeof line) {
-        const double left = (now() - ticker->started) / done * (of - done);
+        const double left = (moray_clock() - ticker->started) / done * (of - done);
         snprintf(line + n, sizeof line - (size_t)n,
                  left < A_MINUTE ? ", less than a minute left" : ", some %.0f min left", left / A_MINUTE);
     }

@@ -5,7 +5,6 @@
 // which is "home" where a rank is lost, for whom nobody is to wait at the end.
 #include "sweep/sweep.h"
 
-#include <errno.h>
 #include <math.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -40,7 +39,7 @@ void moray_crew_free(struct crew *crew)
     for (int k = 1; crew->other && crew->rank == 0 && k < crew->ranks; k++)
         if (!crew->other[k].lost)
             moray_ranks_send(k, crew->lost ? "leave" : "home");
-    if (crew->lost)
+    if (crew->leaves || crew->lost)
         moray_ranks_leave();
     free(crew->worker);
     free(crew->poll);
@@ -83,7 +82,7 @@ moray_status moray_crew_begin(struct crew *crew, const struct task *task)
     return moray_ok();
 }
 
-// One who is silent for too long has died with its machine, and what it had in hand is for another.
+// One who is silent for too long may have died with its machine, and what it had in hand is for another.
 static void miss_ranks(struct crew *crew)
 {
     const double now = moray_clock(), asked = crew->grid->spec->silent_seconds, most = asked > 0 ? asked : 30;
@@ -93,21 +92,23 @@ static void miss_ranks(struct crew *crew)
             continue;
         other->lost = true;
         crew->lost++;
-        if (other->busy)
+        if (other->busy && !other->given_away)
             crew->orphan[crew->orphans++] = other->task;
+        other->given_away = other->busy;
     }
 }
 
-// A lost one may have been slow only: it is heard again, but its point has been given away.
+// A lost one that is heard again was slow only: it works on, but a point that was given away is another's.
 static moray_status hear(struct crew *crew, int from, const char *text, struct record *record, bool *found)
 {
     struct other *other = &crew->other[from];
     other->heard = moray_clock();
+    crew->lost -= other->lost;
+    other->lost = false;
     if (strcmp(text, "alive") == 0)
         return moray_ok();
-    const bool given_away = other->lost;
-    crew->lost -= given_away;
-    other->lost = other->busy = false;
+    const bool given_away = other->given_away;
+    other->busy = other->given_away = false;
     if (given_away)
         return moray_ok();
     const moray_status status = moray_record_read(text, record);
@@ -197,52 +198,52 @@ moray_status moray_crew_wait(struct crew *crew, double seconds, struct record *r
 static void show_life(struct crew *crew)
 {
     const double now = moray_clock(), asked = crew->grid->spec->silent_seconds;
-    if (now - crew->other[0].heard < fmin(2, asked > 0 ? asked / 5 : 2))
+    if (now - crew->shown < fmin(2, asked > 0 ? asked / 5 : 2))
         return;
-    crew->other[0].heard = now;
+    crew->shown = now;
     moray_ranks_send(0, "alive");
 }
 
-static moray_status wait_for_worker(struct crew *crew, struct record *record, bool *found)
+static moray_status answer(const struct record *record)
 {
-    sleep_until_heard(crew, 1);
-    show_life(crew);
-    return answer_of_worker(crew, record, found);
+    char *line = moray_record_line(record);
+    if (!line)
+        return moray_error(MORAY_MEMORY, "no memory for a record");
+    moray_ranks_send(0, line);
+    free(line);
+    return moray_ok();
 }
 
-static moray_status serve_one(struct crew *crew, const struct task *task)
+// What the first rank says, if anything: a task, or that this one is to go home, whatever it has in hand.
+static moray_status obey(struct crew *crew, bool *home)
 {
-    struct record record = {0};
-    bool found = false;
-    MORAY_TRY(moray_worker_begin(&crew->worker[0], crew->grid, task));
-    while (!found)
-        MORAY_TRY(wait_for_worker(crew, &record, &found));
-    char *line = moray_record_line(&record);
-    if (line)
-        moray_ranks_send(0, line);
-    free(line);
-    moray_record_free(&record);
-    return line ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a record");
+    int from;
+    struct task task;
+    char *text = moray_ranks_receive(&from);
+    if (!text)
+        return moray_ok();
+    crew->leaves = strcmp(text, "leave") == 0;
+    *home = crew->leaves || strcmp(text, "home") == 0;
+    const int read = sscanf(text, "task %ld %ld %d %d", &task.point, &task.start, &task.round, &task.start_round);
+    free(text);
+    return read == 4 ? moray_worker_begin(&crew->worker[0], crew->grid, &task) : moray_ok();
 }
 
 moray_status moray_crew_serve(struct crew *crew)
 {
-    for (;;) {
-        int from;
-        struct task task;
-        char *text = moray_ranks_receive(&from);
-        show_life(crew);
-        if (!text) {
-            poll(NULL, 0, 1);
-            continue;
-        }
-        const bool leave = strcmp(text, "leave") == 0, home = leave || strcmp(text, "home") == 0;
-        crew->lost += leave;
-        const int read = sscanf(text, "task %ld %ld %d %d", &task.point, &task.start, &task.round, &task.start_round);
-        free(text);
+    for (bool home = false;;) {
+        struct record record;
+        bool found = false;
+        MORAY_TRY(obey(crew, &home));
         if (home)
             return moray_ok();
-        if (read == 4)
-            MORAY_TRY(serve_one(crew, &task));
+        show_life(crew);
+        sleep_until_heard(crew, 1);
+        MORAY_TRY(answer_of_worker(crew, &record, &found));
+        if (!found)
+            continue;
+        const moray_status status = answer(&record);
+        moray_record_free(&record);
+        MORAY_TRY(status);
     }
 }

@@ -2,8 +2,9 @@
 //
 // Round 0 goes down the trees of parents: a point begins with the solution of the nearest solved point above it, and
 // from the default where that fails or is not there. The rounds behind it look for branches: where a line through two
-// neighbours promises a better value than a point has, the point is solved once more from the nearer of the two. All
-// decisions of a round rest on what the round before left, so that they do not depend on who was first.
+// neighbours promises a better value than a point has, the point is solved once more from the nearer of the two; from
+// the second of these rounds on only where the round before has bettered that one, so that no attempt is made twice.
+// All decisions of a round rest on what the round before left, so that they do not depend on who was first.
 #include "sweep/sweep.h"
 
 #include <math.h>
@@ -84,13 +85,20 @@ static double further(const struct grid *grid, long point, long near, long behin
     return (moray_grid_coordinate(grid, point, axis) - at_near) / (at_near - moray_grid_coordinate(grid, behind, axis));
 }
 
+// Whether what the neighbour has is new to the point.
+static bool is_new(const struct plan *plan, long point, long near)
+{
+    return plan->round == 1 ? near != solved_above(plan, point) : plan->store->round[near] == plan->round - 1;
+}
+
 // What the line through the neighbour and the point behind it promises, and how sure that is.
 static bool promises(const struct plan *plan, long point, int axis, int side, long *neighbour, double *lead)
 {
     const struct store *store = plan->store;
     const long near = moray_grid_step(plan->grid, point, axis, side),
                behind = moray_grid_step(plan->grid, point, axis, 2 * side);
-    if (near < 0 || store->state[near] != POINT_SOLVED || !isfinite(store->objective[near]))
+    if (near < 0 || store->state[near] != POINT_SOLVED || !isfinite(store->objective[near]) ||
+        !is_new(plan, point, near))
         return false;
     const double at_near = store->objective[near];
     const bool line = behind >= 0 && store->state[behind] == POINT_SOLVED && isfinite(store->objective[behind]);
@@ -99,7 +107,7 @@ static bool promises(const struct plan *plan, long point, int axis, int side, lo
     const double promised = at_near + rise, margin = fabs(rise) / 2 + 1e-4 * fabs(at_near);
     *neighbour = near;
     *lead = store->state[point] == POINT_SOLVED ? store->objective[point] - promised - margin : INFINITY;
-    return *lead > 0 && store->start[point] != near;
+    return *lead > 0;
 }
 
 static void add_branches(struct plan *plan)

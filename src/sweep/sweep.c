@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "sweep/sweep.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
-#include <unistd.h>
 
-#include "moray/app/options.h"
 #include "moray/app/results.h"
 
 typedef struct run {
@@ -28,50 +22,14 @@ typedef struct run {
     bool all_refused;
 } run;
 
-static void path_of(const moray_sweep_spec *spec, const char *end, char path[4200])
-{
-    snprintf(path, 4200, "%s.%s", spec->file, end);
-}
-
-static moray_status make_folder(const moray_sweep_spec *spec)
-{
-    char path[4200];
-    path_of(spec, "solutions", path);
-    if (!spec->warm || mkdir(path, 0777) == 0 || errno == EEXIST)
-        return moray_ok();
-    return moray_error(MORAY_IO, "%.200s: %s", path, strerror(errno));
-}
-
-static void remove_folder(const moray_sweep_spec *spec)
-{
-    char path[4200], name[4600];
-    path_of(spec, "solutions", path);
-    DIR *folder = opendir(path);
-    for (const struct dirent *entry; folder && (entry = readdir(folder));) {
-        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
-        if (entry->d_name[0] != '.')
-            unlink(name);
-    }
-    if (folder)
-        closedir(folder);
-    rmdir(path);
-}
-
-static double processor(void)
-{
-    struct timespec used;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-    return (double)used.tv_sec + 1e-9 * (double)used.tv_nsec;
-}
-
 static moray_status save(run *r, bool finished)
 {
-    const double begun = moray_clock(), used = processor();
+    const double begun = moray_clock(), used = moray_processor_clock();
     const moray_status status = moray_store_write(&r->store, finished);
     r->saved = moray_clock();
     r->saving = r->saved - begun;
     r->result->saving += r->saving;
-    r->result->handing += processor() - used;
+    r->result->handing += moray_processor_clock() - used;
     return status;
 }
 
@@ -122,8 +80,7 @@ static moray_status take(run *r, const struct record *record)
     r->result->solved += (now == POINT_SOLVED) - (before == POINT_SOLVED);
     r->refused += record->code == MORAY_INPUT;
     r->all_refused = r->refused == r->plan.answered && (r->refused >= enough_refused || r->refused >= r->grid.points);
-    return r->all_refused ? moray_error(MORAY_INPUT, "every point so far is refused: %s", record->reason)
-                          : moray_ok();
+    return r->all_refused ? moray_error(MORAY_INPUT, "every point so far is refused: %s", record->reason) : moray_ok();
 }
 
 static moray_status wait_for_one(run *r)
@@ -132,14 +89,14 @@ static moray_status wait_for_one(run *r)
     bool found;
     MORAY_TRY(moray_crew_wait(&r->crew, 0.5, &record, &found));
     if (found) {
-        const double begun = moray_clock(), used = processor();
+        const double begun = moray_clock(), used = moray_processor_clock();
         moray_status status = moray_journal_add(&r->journal, &record);
         r->result->saving += moray_clock() - begun;
         r->result->busy += record.seconds;
         r->fresh++;
         if (!moray_failed(status))
             status = take(r, &record);
-        r->result->handing += processor() - used;
+        r->result->handing += moray_processor_clock() - used;
         moray_record_free(&record);
         MORAY_TRY(status);
     }
@@ -175,20 +132,10 @@ static moray_status solve_all(run *r)
     }
 }
 
-// Of a sweep whose every point was refused nothing is worth going on with.
-static void remove_all(const moray_sweep_spec *spec)
-{
-    char path[4200];
-    path_of(spec, "journal", path);
-    unlink(path);
-    unlink(spec->file);
-    remove_folder(spec);
-}
-
 static moray_status finish(run *r, moray_status status)
 {
     if (r->all_refused && r->journal.made) {
-        remove_all(r->spec);
+        moray_files_remove_all(r->spec);
         return status;
     }
     const bool finished = !moray_failed(status);
@@ -198,37 +145,20 @@ static moray_status finish(run *r, moray_status status)
     if (!moray_failed(status) && !r->journal.finished)
         status = moray_journal_add(&r->journal, NULL);
     if (!moray_failed(status))
-        remove_folder(r->spec);
+        moray_files_remove_solutions(r->spec);
     return status;
-}
-
-// A file that is there and is not this sweep's is not written over.
-static moray_status check_file(const moray_sweep_spec *spec)
-{
-    char journal[4200];
-    struct stat about;
-    path_of(spec, "journal", journal);
-    if (stat(spec->file, &about) != 0)
-        return moray_ok();
-    if (!S_ISREG(about.st_mode))
-        return moray_error(MORAY_INPUT, "%.200s is not a regular file", spec->file);
-    return access(journal, F_OK) == 0 ? moray_ok()
-                                      : moray_error(MORAY_INPUT,
-                                                    "%.90s is there and %.90s, from which it would be gone on with, is "
-                                                    "not: give another file, or remove it",
-                                                    spec->file, journal);
 }
 
 static moray_status lead(run *r)
 {
-    MORAY_TRY(check_file(r->spec));
-    char path[4200], *identity = moray_identity_line(&r->grid);
-    path_of(r->spec, "journal", path);
+    MORAY_TRY(moray_files_check(r->spec));
+    char path[BESIDE_SIZE], *identity = moray_identity_line(&r->grid);
+    moray_files_beside(r->spec, "journal", path);
     moray_status status = identity ? moray_journal_open(&r->journal, path, identity)
                                    : moray_error(MORAY_MEMORY, "no memory for a journal");
     free(identity);
     MORAY_TRY(status);
-    status = make_folder(r->spec);
+    status = moray_files_begin(r->spec);
     if (!moray_failed(status))
         status = tell(r, false);
     if (!moray_failed(status))

@@ -10,6 +10,7 @@
 #include <sys/types.h>
 
 #include "moray/app/sweep.h"
+#include "moray/clock.h"
 
 // ---- Grid ----------------------------------------------------------------------------------------------------------
 
@@ -91,6 +92,18 @@ char *moray_identity_line(const struct grid *grid);
 // MORAY_INPUT, with the first thing in which two of them differ. path: for the text.
 moray_status moray_identity_refuse(const char *path, const char *there, const char *asked);
 
+// ---- Files ---------------------------------------------------------------------------------------------------------
+
+enum { BESIDE_SIZE = 4200 };
+void moray_files_beside(const moray_sweep_spec *spec, const char *end, char path[BESIDE_SIZE]); // FILE.end
+// A file that is there and is not this sweep's is not written over. Error: MORAY_INPUT.
+moray_status moray_files_check(const moray_sweep_spec *spec);
+// The folder in which points leave their solutions, where they are to. Error: MORAY_IO.
+moray_status moray_files_begin(const moray_sweep_spec *spec);
+void moray_files_remove_solutions(const moray_sweep_spec *spec);
+// Of a sweep whose every point was refused nothing is worth going on with.
+void moray_files_remove_all(const moray_sweep_spec *spec);
+
 // ---- Journal -------------------------------------------------------------------------------------------------------
 
 // Lines of records behind a first line that says of which sweep they are; every line with its checksum. A line that is
@@ -154,7 +167,11 @@ moray_status moray_plan_answer(struct plan *plan, const struct record *record, b
 
 // ---- Processes -----------------------------------------------------------------------------------------------------
 
-double moray_clock(void); // seconds
+// In the process of a point: solves it, leaves its summary in the one pipe and what else it says in the other, and
+// ends. The text of its status stands behind a REASON_MARK. Ends with its parent.
+enum { REASON_MARK = 036 };
+_Noreturn void moray_child_run(const struct grid *grid, const struct task *task, const int summary[2],
+                               const int errors[2], pid_t parent);
 
 // A point being solved in a process of its own.
 struct worker {
@@ -183,10 +200,11 @@ void moray_worker_kill(struct worker *worker);
 // Where a point leaves its solution, into path[size].
 void moray_solution_path(const moray_sweep_spec *spec, long point, int round, char *path, size_t size);
 
-// A rank other than this one, as this one knows it.
+// A rank other than this one, as the first one knows it.
 struct other {
-    bool busy, lost; // has a task; was silent for too long
-    double heard;    // clock; of the first rank, as others have it: when it last heard of this one
+    bool busy, lost; // has a task; has been silent for too long
+    bool given_away; // its task, when it was lost: what it finds is no longer wanted
+    double heard;    // clock
     struct task task;
 };
 
@@ -197,10 +215,12 @@ struct crew {
     struct worker *worker;
     struct pollfd *poll; // [3 n_workers]
     int ranks, rank;
-    int lost;            // ranks
+    int lost;            // ranks, at present
+    bool leaves;         // without waiting for the others at its end: one of them is lost
     struct other *other; // [ranks]
     struct task *orphan; // [ranks], orphans of them: tasks of those who are lost
     int orphans;
+    double shown; // clock; when this rank last showed the first one that it is alive
 };
 
 moray_status moray_crew_new(struct crew *crew, const struct grid *grid);

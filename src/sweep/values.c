@@ -5,12 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool number(const char *text, double *value)
-{
-    char *end;
-    *value = strtod(text, &end);
-    return end != text && !*end && isfinite(*value);
-}
+#include "moray/number.h"
 
 static moray_status no_memory(int n)
 {
@@ -18,19 +13,26 @@ static moray_status no_memory(int n)
 }
 
 // low:high:count
-static moray_status spread(const char *text, double **value, int *n)
+static moray_status spread(char *text, double **value, int *n)
 {
-    double low, high;
-    int count, used = 0;
-    enum { most = 1000000 };
-    if (sscanf(text, "%lf:%lf:%d%n", &low, &high, &count, &used) < 3 || text[used] || !isfinite(low) ||
-        !isfinite(high) || count < 1 || count > most || (count == 1 && low != high))
+    enum { most = 1000000, LOW = 0, HIGH, COUNT, PARTS };
+    char shown[64], *rest = text;
+    double part[PARTS];
+    bool good = true;
+    snprintf(shown, sizeof shown, "%s", text);
+    for (int k = 0; k < PARTS; k++)
+        good = moray_number_read(strsep(&rest, ":"), &part[k]) && good;
+    if (good && part[COUNT] == 1 && part[LOW] != part[HIGH])
+        return moray_error(MORAY_INPUT, "%.60s: one value cannot be both %g and %g: give it alone", shown, part[LOW],
+                           part[HIGH]);
+    if (!good || rest || !(part[COUNT] >= 1 && part[COUNT] <= most) || part[COUNT] != floor(part[COUNT]))
         return moray_error(MORAY_INPUT, "%.60s: must be LOW:HIGH:COUNT, finite, with a count within 1:%d, or V,V,...",
-                           text, most);
+                           shown, most);
+    const int count = (int)part[COUNT];
     if (!(*value = calloc((size_t)count, sizeof **value)))
         return no_memory(count);
     for (int k = 0; k < count; k++) // symmetric, so that a middle of -1:1 is 0
-        (*value)[k] = count == 1 ? low : (low * (count - 1 - k) + high * k) / (count - 1);
+        (*value)[k] = count == 1 ? part[LOW] : (part[LOW] * (count - 1 - k) + part[HIGH] * k) / (count - 1);
     *n = count;
     return moray_ok();
 }
@@ -38,7 +40,7 @@ static moray_status spread(const char *text, double **value, int *n)
 static bool all_numbers(const char *const *word, int n, double *value)
 {
     for (int k = 0; k < n; k++)
-        if (!number(word[k], &value[k]))
+        if (!moray_number_read(word[k], &value[k]))
             return false;
     return true;
 }

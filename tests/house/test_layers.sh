@@ -26,7 +26,7 @@ public_headers() {
         header=${path#include/}
         case $header in
         moray/moray.h | moray/snake.h) continue ;;
-        moray/export.h | moray/status.h | moray/key_value.h | moray/num.h | moray/angle.h | moray/map.h | moray/casadi.h | moray/dense.h | moray/ode.h | moray/parallel.h | moray/table.h | moray/water.h) room=base ;;
+        moray/export.h | moray/status.h | moray/key_value.h | moray/num.h | moray/angle.h | moray/map.h | moray/casadi.h | moray/clock.h | moray/number.h | moray/dense.h | moray/ode.h | moray/parallel.h | moray/table.h | moray/water.h) room=base ;;
         moray/nlp.h | moray/search.h) room=nlp ;;
         moray/delay.h | moray/fit.h | moray/ocp.h | moray/scheme.h | moray/sensitivity.h) room=ocp ;;
         moray/sim.h) room=sim ;;

@@ -117,6 +117,10 @@ refuse 'must be LOW:HIGH:COUNT' simulate --grid current_x=0:1:0
 refuse 'more than' simulate --grid current_x=0:1:1000000 --grid current_y=0:1:1000000
 refuse 'is there twice' simulate --list same.ini same.ini
 refuse 'varied twice' simulate --grid links=4,5 --grid links=6,7
+refuse 'whose speed is missing' simulate --grid current_deg=0,90
+refuse 'not both' simulate --grid current_speed=0.1 --grid current_y=0,0.1
+refuse 'one of them' simulate --grid current_y=0,0.1 -- --current 0.1,0
+refuse 'must be KEY=LOW:HIGH' simulate --random 2 --range omega_deg_s=60:nan
 refuse 'unknown key link' simulate --grid link=4,5 --file wrong.nc
 check "of which no file is left" [ ! -e wrong.nc ]
 refuse 'either needs the other' simulate --random 5 --grid links=4,5

@@ -5,6 +5,7 @@
 #include "tap.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -190,6 +191,47 @@ static void test_branches(void)
     spec.jobs = 1;
     CHECK_OK(moray_sweep(&spec, &result), "by one job");
     CHECK(all_same("two.nc", "two_by_one.nc"), "the same, whoever solves it");
+}
+
+// No start solves x = 1, and x = 4 only its own: every attempt is noted, by the point and what it began with.
+static moray_status solve_some(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    char line[100];
+    const char *start = point->guess ? strrchr(point->guess, '/') : "default";
+    const int n = snprintf(line, sizeof line, "%ld %s\n", point->index, start);
+    const int file = open("attempts", O_WRONLY | O_CREAT | O_APPEND, 0666);
+    const bool noted = write(file, line, (size_t)n) == n; // at once, by whoever it is
+    close(file);
+    if (!noted)
+        return moray_error(MORAY_IO, "an attempt is not noted");
+    if (point->value[0] == 1)
+        return moray_error(MORAY_NOT_SOLVED, "nobody solves this");
+    return solve_two(point, summary, self);
+}
+
+static void test_attempts(void)
+{
+    moray_sweep_spec spec = spec_of("some.nc", &no_time);
+    moray_sweep_result result;
+    static char line[400][100];
+    int n = 0, twice = 0, hopeless = 0;
+    spec.solve = solve_some;
+    CHECK_OK(moray_sweep(&spec, &result), "points that nobody solves");
+    CHECK(result.failed == 3 && result.solved == points - 3, "%ld of them", result.failed);
+    CHECK(result.improved > 0, "among others that are bettered: %ld", result.improved);
+    FILE *file = fopen("attempts", "r");
+    while (file && n < 400 && fgets(line[n], sizeof line[n], file))
+        n++;
+    if (file)
+        fclose(file);
+    for (int k = 0; k < n; k++) {
+        for (int other = 0; other < k; other++)
+            twice += strcmp(line[k], line[other]) == 0;
+        hopeless += strtol(line[k], NULL, 10) / 3 == 3; // x = 1
+    }
+    CHECK(n > points && twice == 0, "%d attempts, %d of them made before", n, twice);
+    // From the parent, from its own start, and from what each of the three rounds behind may bring forth beside it.
+    CHECK(hopeless <= 3 * 5, "%d at what nobody solves", hopeless);
 }
 
 static moray_status misbehave(const moray_sweep_point *point, FILE *summary, void *self)
@@ -426,6 +468,7 @@ int main(void)
     test_values();
     test_closed_form();
     test_branches();
+    test_attempts();
     test_misbehaviour();
     test_going_on();
     test_torn_journal();

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "job.h"
+#include "moray/number.h"
 
 static moray_status refuse_name(const gait_job *job, const char *name)
 {
@@ -19,13 +20,6 @@ static moray_status refuse_name(const gait_job *job, const char *name)
                        name, names);
 }
 
-static bool read_number(const char *text, double *value)
-{
-    char *end;
-    *value = text ? strtod(text, &end) : NAN;
-    return text && end != text && !*end && isfinite(*value);
-}
-
 // "NAME" in the current of the job, or "NAME@VX", and then "VY" is what stands behind the next comma.
 static moray_status read_scenario(const gait_job *job, char *text, char **rest, scenario *at)
 {
@@ -36,7 +30,7 @@ static moray_status read_scenario(const gait_job *job, char *text, char **rest, 
     }
     *at = (scenario){.rung = moray_rung_named(text), .current = {job->snake.current[0], job->snake.current[1]}};
     snprintf(at->name, sizeof at->name, x ? "%s@%s,%s" : "%s", text, x, y ? y : "");
-    if (at->rung < 0 || (x && !(read_number(x, &at->current[0]) && read_number(y, &at->current[1]))))
+    if (at->rung < 0 || (x && !(moray_number_read(x, &at->current[0]) && moray_number_read(y, &at->current[1]))))
         return refuse_name(job, at->name);
     return moray_ok();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "moray/clock.h"
 #include "moray/parallel.h"
 #include "search_gait.h"
 
@@ -14,13 +14,6 @@ static const moray_search_method global_methods[] = {MORAY_SEARCH_SLSQP, MORAY_S
                                                      MORAY_SEARCH_DIRECT}; // "none" is not run
 
 static const double KEPT = 1e-6; // violation of a limit, relative to it, that an optimum may have
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static double theta_max_of(const search_gait *run, const moray_gait *gait)
 {
@@ -68,7 +61,7 @@ typedef struct descent {
 static void search_from(search_gait *run, moray_gait_search *search, descent *d)
 {
     const moray_search_settings settings = local_settings(run);
-    const double start = now();
+    const double start = moray_clock();
     double before = INFINITY;
     bool found = true;
     for (int round = 0; round < 3 && found && !moray_interrupted(); round++) {
@@ -78,7 +71,7 @@ static void search_from(search_gait *run, moray_gait_search *search, descent *d)
             break;
         before = d->info.violation <= KEPT ? d->info.objective : INFINITY;
     }
-    d->seconds = now() - start;
+    d->seconds = moray_clock() - start;
     d->found = found && d->info.outcome != MORAY_SEARCH_FAILED && d->info.violation <= KEPT;
 }
 

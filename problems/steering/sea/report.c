@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "moray/number.h"
+
 static const struct scale {
     const char *key[SEA_SCORES], *json[SEA_SCORES];
     double unit[SEA_SCORES];
@@ -18,20 +20,6 @@ static int judged_by(const sea_job *job)
     return job->task == SEA_HEADING ? 0 : 2;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double part(double *values, int n, double share)
-{
-    qsort(values, (size_t)n, sizeof *values, ascending);
-    const double at = share * (n - 1);
-    const int k = (int)at;
-    return k + 1 < n ? values[k] + (at - k) * (values[k + 1] - values[k]) : values[n - 1];
-}
-
 // A share of the trials' values of a law, or of their differences to another's (other < 0: none).
 static double quantile(const sea_job *job, int law, int other, int which, double share)
 {
@@ -40,7 +28,7 @@ static double quantile(const sea_job *job, int law, int other, int which, double
         const sea_score *of = &job->score[k * SEA_LAWS];
         values[k] = of[law].value[which] - (other < 0 ? 0 : of[other].value[which]);
     }
-    return part(values, job->seeds, share) / scales[job->task].unit[which];
+    return moray_quantile(values, job->seeds, share) / scales[job->task].unit[which];
 }
 
 static double wins(const sea_job *job, int law, int other)
@@ -128,7 +116,7 @@ static double estimate_quantile(const sea_job *job, int estimator, int which, do
     for (int k = 0; k < job->seeds; k++)
         if (job->estimate[k].known)
             values[n++] = job->estimate[k].value[estimator][which];
-    return n ? part(values, n, share) : NAN;
+    return moray_quantile(values, n, share);
 }
 
 static void fill_estimates(const sea_job *job, moray_table_row *rows)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "moray/number.h"
 #include "snake/identify/log.h"
 
 enum { LEAST_ROWS = 20 };
@@ -24,19 +25,6 @@ static void note(moray_swim_log *log, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(log->notes + strlen(log->notes), size - strlen(log->notes), format, arguments);
     va_end(arguments);
-}
-
-static int ascending(const void *one, const void *other)
-{
-    const double a = *(const double *)one, b = *(const double *)other;
-    return (a > b) - (a < b);
-}
-
-// The median of n numbers, which are sorted.
-static double median(double *x, int n)
-{
-    qsort(x, (size_t)n, sizeof *x, ascending);
-    return n % 2 ? x[n / 2] : (x[n / 2 - 1] + x[n / 2]) / 2;
 }
 
 // ---- Time ----------------------------------------------------------------------------------------------------------
@@ -62,7 +50,7 @@ static moray_status note_gaps(moray_swim_log *log)
         return moray_error(MORAY_MEMORY, "no memory for a log of %d rows", log->n);
     for (int k = 1; k < log->n; k++)
         step[k - 1] = log->t[k] - log->t[k - 1];
-    const double usual = median(step, log->n - 1);
+    const double usual = moray_quantile(step, log->n - 1, 0.5);
     free(step);
     for (int k = 1; k < log->n; k++) {
         const double width = log->t[k] - log->t[k - 1];
@@ -129,7 +117,7 @@ static moray_status check_speed(const struct log_reader *r, const moray_swim_log
             speed[steps++] = way / (log->t[k] - log->t[last]);
         last = k;
     }
-    const double usual = steps > 0 ? median(speed, steps) : 0;
+    const double usual = steps > 0 ? moray_quantile(speed, steps, 0.5) : 0;
     free(speed);
     if (usual > most_speed)
         return moray_csv_error(&r->csv, -1,

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "base/clock.h"
+
+#include <time.h>
+
+static double seconds(clockid_t clock)
+{
+    struct timespec at;
+    clock_gettime(clock, &at);
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
+double moray_clock(void)
+{
+    return seconds(CLOCK_MONOTONIC);
+}
+
+double moray_processor_clock(void)
+{
+    return seconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double moray_thread_clock(void)
+{
+    return seconds(CLOCK_THREAD_CPUTIME_ID);
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+//
+// Ranks that fall silent, come back, and answer too late, as the first one hears them; and a rank that is sent home
+// while it works. What ranks say goes through this test in place of MPI.
+#include "tap.h"
+
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "sweep/sweep.h"
+
+// ---- In place of ranks.c -------------------------------------------------------------------------------------------
+
+typedef struct message {
+    int rank; // from or to
+    char text[200];
+} message;
+
+static struct ranks here = {3, 0};
+static message said[16], sent[16]; // by others; by us
+static int n_said, heard, n_sent;
+static bool left;
+
+struct ranks moray_ranks_begin(void)
+{
+    return here;
+}
+
+void moray_ranks_leave(void)
+{
+    left = true;
+}
+
+void moray_ranks_send(int to, const char *text)
+{
+    sent[n_sent].rank = to;
+    snprintf(sent[n_sent].text, sizeof sent[n_sent].text, "%s", text);
+    n_sent += n_sent + 1 < 16;
+}
+
+char *moray_ranks_receive(int *from)
+{
+    if (heard == n_said)
+        return NULL;
+    *from = said[heard].rank;
+    return strdup(said[heard++].text);
+}
+
+static void say(int rank, const char *text)
+{
+    said[n_said].rank = rank;
+    snprintf(said[n_said++].text, sizeof said->text, "%s", text);
+}
+
+static void say_answer(int rank, const struct task *task)
+{
+    struct record record = {.task = *task, .code = MORAY_OK};
+    char *line = moray_record_line(&record);
+    say(rank, line ? line : "");
+    free(line);
+}
+
+// ---- Tests ---------------------------------------------------------------------------------------------------------
+
+static const double silence = 0.05;
+static const double values[] = {1, 2, 3};
+static const moray_sweep_axis axis = {.key = "x", .value = values, .n = 3};
+
+static moray_status sleep_long(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    (void)point, (void)summary, (void)self;
+    sleep(60);
+    return moray_ok();
+}
+
+static const moray_sweep_spec spec = {
+    .file = "crew.nc", .axis = &axis, .axes = 1, .solve = sleep_long, .silent_seconds = silence};
+static struct grid grid;
+
+static struct crew begin(int rank)
+{
+    struct crew crew = {0};
+    here.rank = rank;
+    n_said = heard = n_sent = 0;
+    left = false;
+    CHECK_OK(moray_crew_new(&crew, &grid), "a crew of three ranks");
+    if (rank == 0)
+        crew.n_workers = 0; // the first one solves nothing, so that all goes to the others
+    return crew;
+}
+
+// Hears what has been said; whether an answer was among it.
+static bool listen(struct crew *crew)
+{
+    struct record record = {0};
+    bool found = false;
+    CHECK_OK(moray_crew_wait(crew, 0, &record, &found), "listening");
+    moray_record_free(&record);
+    return found;
+}
+
+static void be_silent(void)
+{
+    nanosleep(&(struct timespec){.tv_nsec = (long)(1.5e9 * silence)}, NULL);
+}
+
+static bool has_sent(int to, const char *text)
+{
+    return n_sent > 0 && sent[n_sent - 1].rank == to && strcmp(sent[n_sent - 1].text, text) == 0;
+}
+
+static void test_idle(void)
+{
+    const struct task one = {.point = 1, .start = -1};
+    struct crew crew = begin(0);
+    be_silent();
+    listen(&crew);
+    CHECK(crew.lost == 2 && !moray_crew_idle(&crew), "ranks that are silent are lost: %d", crew.lost);
+    say(2, "alive");
+    listen(&crew);
+    CHECK(crew.lost == 1 && moray_crew_idle(&crew), "an idle one that is heard again is lost no longer: %d", crew.lost);
+    CHECK_OK(moray_crew_begin(&crew, &one), "a task");
+    CHECK(has_sent(2, "task 1 -1 0 0"), "is for it");
+    say_answer(2, &one);
+    CHECK(listen(&crew), "and its answer counts");
+    moray_crew_free(&crew);
+    CHECK(has_sent(2, "leave") && left, "at the end nobody waits for the other one");
+}
+
+static void test_busy(void)
+{
+    const struct task one = {.point = 1, .start = -1}, two = {.point = 2, .start = 0};
+    struct crew crew = begin(0);
+    CHECK_OK(moray_crew_begin(&crew, &one), "a task for the first");
+    be_silent();
+    say(2, "alive");
+    listen(&crew);
+    CHECK(crew.lost == 1 && has_sent(2, "task 1 -1 0 0"), "what a lost one had in hand is another's");
+    say(1, "alive");
+    listen(&crew);
+    CHECK(crew.lost == 0 && !moray_crew_idle(&crew), "heard again it is not lost, but works on what is not wanted");
+    be_silent();
+    say(2, "alive");
+    const int before = n_sent;
+    listen(&crew);
+    CHECK(crew.lost == 1 && crew.orphans == 0 && n_sent == before, "silent again, its task is not given away again");
+    say_answer(1, &one);
+    CHECK(!listen(&crew) && crew.lost == 0, "its late answer does not count");
+    CHECK(moray_crew_idle(&crew), "and it is free");
+    say_answer(2, &one);
+    CHECK(listen(&crew), "that of the other one does");
+    CHECK_OK(moray_crew_begin(&crew, &two), "the next task");
+    CHECK(has_sent(1, "task 2 0 0 0"), "is for whoever is free");
+    moray_crew_free(&crew);
+    CHECK(has_sent(2, "home") && !left, "at the end all are sent home");
+}
+
+static void test_waiting(void)
+{
+    const struct task one = {.point = 0, .start = -1}, two = {.point = 1, .start = -1};
+    struct crew crew = begin(0);
+    CHECK_OK(moray_crew_begin(&crew, &one), "one task each");
+    CHECK_OK(moray_crew_begin(&crew, &two), "one task each");
+    be_silent();
+    listen(&crew);
+    CHECK(crew.lost == 2 && crew.orphans == 2, "where all are lost their tasks wait: %d", crew.orphans);
+    say_answer(1, &one);
+    CHECK(!listen(&crew) && crew.orphans == 1 && crew.other[1].busy, "for the first who comes back");
+    moray_crew_free(&crew);
+}
+
+static void test_sent_home(void)
+{
+    struct crew crew = begin(1);
+    say(0, "task 2 -1 0 0");
+    say(0, "home");
+    const time_t begun = time(NULL);
+    CHECK_OK(moray_crew_serve(&crew), "a rank that is sent home");
+    CHECK(crew.worker[0].pid > 0 && time(NULL) - begun < 30, "goes at once, whatever it has in hand");
+    moray_crew_free(&crew);
+}
+
+int main(void)
+{
+    setvbuf(stdout, NULL, _IOLBF, 0); // processes that are made here have nothing of it to write
+    CHECK_OK(moray_grid_new(&spec, &grid), "a grid");
+    test_idle();
+    test_busy();
+    test_waiting();
+    test_sent_home();
+    return tap_done();
+}
