@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#define _GNU_SOURCE // open_memstream
 #include "sweep/arguments.h"
 
 #include <argp.h>
@@ -207,19 +206,7 @@ static error_t parse_one(int key, char *value, struct argp_state *state)
 static char *list_programs(int key, const char *text, void *input)
 {
     (void)input;
-    if (key != ARGP_KEY_HELP_POST_DOC)
-        return (char *)(uintptr_t)text;
-    char *list = NULL;
-    size_t size;
-    FILE *file = open_memstream(&list, &size);
-    if (!file)
-        return NULL;
-    fprintf(file, "Programs:");
-    for (const sweepable *one = sweepables; one->name; one++)
-        fprintf(file, " %s", one->name);
-    fprintf(file, "\n");
-    fclose(file);
-    return list;
+    return key == ARGP_KEY_HELP_POST_DOC ? sweepables_list() : (char *)(uintptr_t)text;
 }
 
 bool sweep_arguments_read(int argc, char **argv, sweep_arguments *found, int *exit_code)

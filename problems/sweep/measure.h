@@ -9,7 +9,7 @@
 // with --json, on standard output; with --out a report. Error: MORAY_IO, MORAY_MEMORY, MORAY_NOT_SOLVED.
 moray_status sweep_measure(sweep_arguments *a, int argc, char **argv);
 
-enum { REAL_POINTS = 6, SIZES = 3, NUMBERS = 20 };
+enum { REAL_POINTS = 8, SIZES = 3, NUMBERS = 20 };
 
 // One sweep in a process of its own.
 typedef struct cost {
@@ -18,8 +18,12 @@ typedef struct cost {
     double file, journal;                // bytes
 } cost;
 
+typedef struct plain_loop {
+    double seconds, processor; // on the clock; on the processor, all loops together
+} plain_loop;
+
 typedef struct measured {
-    double loop, loop_processor;   // seconds, on the clock and on the processor
+    plain_loop loop, two_loops;    // one; two at once, each with half of the points
     cost one, two, warm;           // of the same points
     long size[SIZES];              // points of no cost
     cost made[SIZES], read[SIZES]; // and the same files once more, where nothing is left to do

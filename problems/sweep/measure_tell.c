@@ -8,17 +8,27 @@
 #include "sweep/measure.h"
 #include "sweep/report.h"
 
-// What the process that hands out does for a point, on the processor: takes in an answer, writes a line, and its share
-// of the file.
+// What the process that hands out does for an answer of max_speed's length, on the processor.
 static double handing(const measured *m)
 {
-    return m->made[SIZES - 1].result.handing / (double)m->size[SIZES - 1];
+    return m->one.result.handing / REAL_POINTS;
 }
 
 // On the processor: all of the sweep over the loop.
 static double overhead(const measured *m)
 {
-    return 100 * ((m->one.processor + m->one.points) / m->loop_processor - 1);
+    return 100 * ((m->one.processor + m->one.points) / m->loop.processor - 1);
+}
+
+// Of two cores, by what one does; and of what two plain loops at once get out of them.
+static double efficiency(const measured *m)
+{
+    return 50 * m->one.result.seconds / m->two.result.seconds;
+}
+
+static double of_loops(const measured *m)
+{
+    return 100 * m->two_loops.seconds / m->two.result.seconds;
 }
 
 // Memory by the line through the first and the last size.
@@ -29,19 +39,24 @@ static double memory_of(const measured *m, double points)
     return m->made[0].megabytes + slope * points;
 }
 
-enum { WORK = 11, PAPER = 8 };
+enum { WORK = 14, PAPER = 8 };
 
 static void tell_work(const measured *m, moray_table_row row[WORK])
 {
     const double n = REAL_POINTS;
     const moray_table_row all[WORK] = {
         {.label = "points", .value = {n}},
-        {.label = "plain loop, one core", .value = {m->loop / n}, .unit = "s a point"},
+        {.label = "plain loop, one core", .value = {m->loop.seconds / n}, .unit = "s a point"},
         {.label = "sweep, one core", .value = {m->one.result.seconds / n}, .unit = "s a point"},
-        {.label = "overhead, on the clock", .value = {100 * (m->one.result.seconds / m->loop - 1)}, .unit = "%"},
+        {.label = "overhead, on the clock",
+         .value = {100 * (m->one.result.seconds / m->loop.seconds - 1)},
+         .unit = "%"},
         {.label = "overhead, on the processor", .value = {overhead(m)}, .unit = "%"},
+        {.label = "two plain loops at once", .value = {m->two_loops.seconds / n}, .unit = "s a point"},
         {.label = "sweep, two cores", .value = {m->two.result.seconds / n}, .unit = "s a point"},
-        {.label = "efficiency", .value = {50 * m->one.result.seconds / m->two.result.seconds}, .unit = "%"},
+        {.label = "efficiency", .value = {efficiency(m)}, .unit = "%"},
+        {.label = "of what two plain loops reach", .value = {of_loops(m)}, .unit = "%"},
+        {.label = "answers, in the process that hands out", .value = {1e3 * handing(m)}, .unit = "ms a point"},
         {.label = "the same from neighbours", .value = {m->warm.result.seconds / n}, .unit = "s a point"},
         {.label = "begun from a neighbour", .value = {(double)m->warm.result.warm}},
         {.label = "of these, solved so", .value = {(double)m->warm.result.held}},
@@ -56,7 +71,7 @@ static void tell_growth(const measured *m, moray_table_row row[GROWTH])
     static const char *const labels[GROWTH] = {"points",
                                                "clock, both cores",
                                                "processor, the process that hands out",
-                                               "of it, on plan, store, file and journal",
+                                               "of it, on answers: plan, store and journal",
                                                "journal and file, on the clock",
                                                "results file",
                                                "journal",
@@ -84,11 +99,13 @@ static void tell_growth(const measured *m, moray_table_row row[GROWTH])
 static void tell_paper(const measured *m, moray_table_row row[PAPER])
 {
     const double points = 1e6, cores = 1000, largest = (double)m->size[SIZES - 1];
-    const double one = m->loop / REAL_POINTS, grown = points / largest, answer = handing(m);
+    const double one = m->loop.seconds / REAL_POINTS, grown = points / largest, answer = handing(m);
     const double hours = points * one / cores / 3600;
     const moray_table_row all[PAPER] = {
         {.label = "the points' own time, on 1,000 cores", .value = {hours}, .unit = "h"},
-        {.label = "first rank, busy of it", .value = {100 * points * answer / (3600 * hours)}, .unit = "%"},
+        {.label = "first rank, busy with answers of it",
+         .value = {100 * points * answer / (3600 * hours)},
+         .unit = "%"},
         {.label = "cores at which it has no time left", .value = {one / answer}},
         {.label = "time a point below which 1,000 cores wait", .value = {answer * cores}, .unit = "s"},
         {.label = "its memory", .value = {memory_of(m, points)}, .unit = "MB"},
@@ -105,13 +122,15 @@ static void summarise(const measured *m, moray_json *json)
     const int last = SIZES - 1;
     moray_json_text(json, "problem", "sweep measure");
     moray_json_text(json, "version", moray_version());
-    moray_json_members(
-        json, MORAY_MEMBERS({"loop_s", m->loop}, {"one_core_s", m->one.result.seconds},
-                            {"two_cores_s", m->two.result.seconds}, {"overhead_percent", overhead(m)},
-                            {"efficiency_percent", 50 * m->one.result.seconds / m->two.result.seconds},
-                            {"points", (double)m->size[last]}, {"file_bytes", m->made[last].file},
-                            {"journal_bytes", m->made[last].journal}, {"handing_s", handing(m)},
-                            {"growth", handing(m) * (double)m->size[last - 1] / m->made[last - 1].result.handing}));
+    moray_json_members(json,
+                       MORAY_MEMBERS({"loop_s", m->loop.seconds}, {"two_loops_s", m->two_loops.seconds},
+                                     {"one_core_s", m->one.result.seconds}, {"two_cores_s", m->two.result.seconds},
+                                     {"overhead_percent", overhead(m)}, {"efficiency_percent", efficiency(m)},
+                                     {"of_two_loops_percent", of_loops(m)}, {"points", (double)m->size[last]},
+                                     {"file_bytes", m->made[last].file}, {"journal_bytes", m->made[last].journal},
+                                     {"handing_s", handing(m)},
+                                     {"growth", m->made[last].result.handing / (double)m->size[last] *
+                                                    (double)m->size[last - 1] / m->made[last - 1].result.handing}));
 }
 
 moray_status measured_tell(const measured *m, const sweep_arguments *a, int argc, char **argv)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#define _GNU_SOURCE // open_memstream
 #include "sweep/programs.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // meson.build compiles NAME.c once more with main under this name.
@@ -30,4 +32,19 @@ const sweepable *sweepable_find(const char *name)
         if (strcmp(one->name, name) == 0)
             return one;
     return NULL;
+}
+
+char *sweepables_list(void)
+{
+    char *list = NULL;
+    size_t size;
+    FILE *file = open_memstream(&list, &size);
+    if (!file)
+        return NULL;
+    fprintf(file, "Programs:");
+    for (const sweepable *one = sweepables; one->name; one++)
+        fprintf(file, " %s", one->name);
+    fprintf(file, "\n");
+    fclose(file);
+    return list;
 }

@@ -18,5 +18,6 @@ typedef struct sweepable {
 
 extern const sweepable sweepables[]; // ends with a NULL name
 const sweepable *sweepable_find(const char *name);
+char *sweepables_list(void); // a line of them for --help, to be freed; NULL: no memory
 
 #endif

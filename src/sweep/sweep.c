@@ -24,12 +24,11 @@ typedef struct run {
 
 static moray_status save(run *r, bool finished)
 {
-    const double begun = moray_clock(), used = moray_processor_clock();
+    const double begun = moray_clock();
     const moray_status status = moray_store_write(&r->store, finished);
     r->saved = moray_clock();
     r->saving = r->saved - begun;
     r->result->saving += r->saving;
-    r->result->handing += moray_processor_clock() - used;
     return status;
 }
 
@@ -83,23 +82,27 @@ static moray_status take(run *r, const struct record *record)
     return r->all_refused ? moray_error(MORAY_INPUT, "every point so far is refused: %s", record->reason) : moray_ok();
 }
 
+static moray_status keep_and_take(run *r, const struct record *record)
+{
+    const double begun = moray_clock();
+    MORAY_TRY(moray_journal_add(&r->journal, record));
+    r->result->saving += moray_clock() - begun;
+    r->result->busy += record->seconds;
+    r->fresh++;
+    return take(r, record);
+}
+
 static moray_status wait_for_one(run *r)
 {
     struct record record = {0};
-    bool found;
-    MORAY_TRY(moray_crew_wait(&r->crew, 0.5, &record, &found));
-    if (found) {
-        const double begun = moray_clock(), used = moray_processor_clock();
-        moray_status status = moray_journal_add(&r->journal, &record);
-        r->result->saving += moray_clock() - begun;
-        r->result->busy += record.seconds;
-        r->fresh++;
-        if (!moray_failed(status))
-            status = take(r, &record);
-        r->result->handing += moray_processor_clock() - used;
-        moray_record_free(&record);
-        MORAY_TRY(status);
-    }
+    bool found = false;
+    const double used = moray_processor_clock();
+    moray_status status = moray_crew_wait(&r->crew, 0.5, &record, &found);
+    if (!moray_failed(status) && found)
+        status = keep_and_take(r, &record);
+    r->result->handing += moray_processor_clock() - used;
+    moray_record_free(&record);
+    MORAY_TRY(status);
     MORAY_TRY(tell(r, false));
     return save_at_times(r);
 }

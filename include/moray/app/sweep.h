@@ -80,7 +80,7 @@ typedef struct moray_sweep_result {
     long improved;               // points that a neighbour's branch made better
     double seconds, busy;        // on the clock; in the points' processes, on theirs
     double saving;               // spent on the file and the journal
-    double handing;              // on the processor, on plan, store, file and journal; without the points' processes
+    double handing;              // on the processor, on answers: plan, store and journal; without making processes
     int ranks, jobs, lost;       // lost: ranks that died on the way; what they had in hand others did
 } moray_sweep_result;
 
