@@ -63,14 +63,37 @@ moray_status moray_store_write(const struct store *store, bool finished)
     return moray_error(failed == NC_ENOMEM ? MORAY_MEMORY : MORAY_IO, "%.200s cannot be written: %s", name, why);
 }
 
-static int read_numbers(int file, const char *name, double **value, size_t *n)
+// The path of a number, which its variable has as long name; "" where there is none.
+static void path_of(int file, int id, char path[NETCDF_NAME])
 {
-    char plain[NETCDF_NAME];
-    int id, axes, dimension[NC_MAX_VAR_DIMS];
-    moray_netcdf_name(name, plain);
-    int error = nc_inq_varid(file, plain, &id);
-    if (error == NC_NOERR)
-        error = nc_inq_varndims(file, id, &axes);
+    size_t length = 0;
+    memset(path, 0, NETCDF_NAME);
+    if (nc_inq_attlen(file, id, "long_name", &length) != NC_NOERR || length >= NETCDF_NAME ||
+        nc_get_att_text(file, id, "long_name", path) != NC_NOERR)
+        path[0] = 0;
+}
+
+// The variable of a number, by its path, since names of two paths can be alike; else by its name.
+static int find(int file, const char *path, int *id)
+{
+    char there[NETCDF_NAME];
+    int variables = 0;
+    const int error = nc_inq_nvars(file, &variables);
+    if (error != NC_NOERR)
+        return error;
+    for (*id = 0; *id < variables; ++*id) {
+        path_of(file, *id, there);
+        if (strcmp(there, path) == 0)
+            return NC_NOERR;
+    }
+    moray_netcdf_name(path, there);
+    return nc_inq_varid(file, there, id);
+}
+
+static int read_numbers(int file, int id, double **value, size_t *n)
+{
+    int axes, dimension[NC_MAX_VAR_DIMS];
+    int error = nc_inq_varndims(file, id, &axes);
     if (error == NC_NOERR)
         error = nc_inq_vardimid(file, id, dimension);
     *n = 1;
@@ -95,13 +118,15 @@ static moray_status tell(int error, const char *path, const char *name)
 
 moray_status moray_sweep_numbers(const char *path, const char *name, double **value, long *n)
 {
-    int file;
+    int file, id = 0;
     size_t count = 0;
     *value = NULL;
     int error = nc_open(path, NC_NOWRITE, &file);
     if (error != NC_NOERR)
         return tell(error, path, name);
-    error = read_numbers(file, name, value, &count);
+    error = find(file, name, &id);
+    if (error == NC_NOERR)
+        error = read_numbers(file, id, value, &count);
     nc_close(file);
     *n = (long)count;
     if (error != NC_NOERR) {
@@ -119,18 +144,16 @@ static void widen(double *least, double *most, const double *value, size_t n)
     }
 }
 
-// Takes in variable `id` where its long name, the path of the number, matches.
+// Takes in variable `id` where its path matches.
 static int match(int file, int id, const char *pattern, double **least, double **most, size_t *n)
 {
-    char path[NETCDF_NAME] = "", name[NETCDF_NAME];
-    size_t length = 0, count = 0;
+    char path[NETCDF_NAME];
+    size_t count = 0;
     double *value = NULL;
-    if (nc_inq_attlen(file, id, "long_name", &length) != NC_NOERR || length >= sizeof path ||
-        nc_get_att_text(file, id, "long_name", path) != NC_NOERR || fnmatch(pattern, path, 0) != 0)
+    path_of(file, id, path);
+    if (!*path || fnmatch(pattern, path, 0) != 0)
         return NC_NOERR;
-    int error = nc_inq_varname(file, id, name);
-    if (error == NC_NOERR)
-        error = read_numbers(file, name, &value, &count);
+    const int error = read_numbers(file, id, &value, &count);
     if (error != NC_NOERR || (*least && count != *n)) { // of another shape: no result
         free(value);
         return error;

@@ -23,14 +23,19 @@ static void call(writer *w, int error)
         w->error = error;
 }
 
-// Letters, digits and underscores, as CF recommends.
+// Letters, digits and underscores, as CF recommends; signs of numbers in words, so that c_n+20 and c_n-20 differ.
 void moray_netcdf_name(const char *path, char name[NETCDF_NAME])
 {
     int n = 0;
     if (!isalpha((unsigned char)path[0]))
         name[n++] = 'p';
-    for (; *path && n < NC_MAX_NAME; path++)
-        name[n++] = isalnum((unsigned char)*path) ? *path : '_';
+    for (; *path && n + 6 < NC_MAX_NAME; path++) {
+        const bool sign = (*path == '+' || *path == '-') && isdigit((unsigned char)path[1]);
+        if (sign)
+            n += snprintf(name + n, 7, *path == '+' ? "_plus" : "_minus");
+        else
+            name[n++] = isalnum((unsigned char)*path) ? *path : '_';
+    }
     name[n] = 0;
 }
 
@@ -62,7 +67,7 @@ static int define(writer *w, const char *name, nc_type type, int n, const int *d
     moray_netcdf_name(name, plain);
     if (w->error != NC_NOERR)
         return id;
-    if (nc_inq_varid(w->file, plain, &id) == NC_NOERR && strlen(plain) + 6 < sizeof plain) { // a key, say
+    while (nc_inq_varid(w->file, plain, &id) == NC_NOERR && strlen(plain) + 6 < sizeof plain) { // a key, say
         memmove(plain + 6, plain, strlen(plain) + 1);
         memcpy(plain, "found_", 6);
     }

@@ -78,6 +78,30 @@ static void test_grids(void)
     refused(&spec, "without a function");
 }
 
+static moray_status alike(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    (void)point, (void)self;
+    fprintf(summary, "{\"c+1\": 1, \"c-1\": 2, \"c 1\": 3, \"c_1\": 4, \"c\": {\"1\": 5}}\n");
+    return moray_ok();
+}
+
+// Paths that differ only in what no name of the file may have.
+static void test_names(void)
+{
+    static const char *const paths[] = {"c+1", "c-1", "c 1", "c_1", "c.1"};
+    moray_sweep_spec spec = spec_of("alike.nc", &good);
+    moray_sweep_result result;
+    spec.solve = alike;
+    CHECK_OK(moray_sweep(&spec, &result), "numbers of like names");
+    for (int k = 0; k < 5; k++) {
+        double *value = NULL;
+        long n = 0;
+        CHECK_OK(moray_sweep_numbers("alike.nc", paths[k], &value, &n), paths[k]);
+        CHECK(n == 4 && value && value[0] == k + 1 && value[3] == k + 1, "%s is its own", paths[k]);
+        free(value);
+    }
+}
+
 static void write_file(const char *path, const char *text)
 {
     FILE *file = fopen(path, "w");
@@ -206,6 +230,7 @@ int main(void)
     if (!mkdtemp(folder) || chdir(folder) != 0)
         return 1;
     test_grids();
+    test_names();
     test_files_of_others();
     test_damage();
     test_processes();
