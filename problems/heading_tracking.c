@@ -24,12 +24,27 @@ static const moray_option options[] = {
     STEER_TUNING_OPTIONS(heading_job),
 };
 
+static bool on_fig8(const void *settings)
+{
+    return heading_is_fig8(settings);
+}
+
+static const moray_idle idle[] = {STEER_IDLE_RECEDING,
+                                  STEER_IDLE_MESH,
+                                  STEER_IDLE_GAIT("gait_evaluations"),
+                                  {"gait_evaluations", on_fig8, "on the gait of fig8"},
+                                  {"theta_max_deg", on_fig8, "on the gait of fig8"},
+                                  {"omega_deg_s", on_fig8, "on the gait of fig8"},
+                                  {"delta_deg", on_fig8, "on the gait of fig8"},
+                                  {NULL, NULL, NULL}};
+
 static const moray_program program = {
     .name = "heading_tracking",
     .summary = "Optimises gait and joint offset of an underwater snake robot to follow a heading in a current, "
                "and proves them on the first-principles model against tuned feedback.",
     .options = options,
-    .n_options = sizeof options / sizeof *options};
+    .n_options = sizeof options / sizeof *options,
+    .idle = idle};
 
 int main(int argc, char **argv)
 {

@@ -82,13 +82,7 @@ static const moray_option options[] = {
               .help =
                   "principal axes of what is not known, the longest first, whose two ends go to scenarios.csv, which "
                   "max_speed --over takes"),
-    {.flag = "jobs",
-     .argument = "N",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(identify, jobs),
-     .min = 0,
-     .max = 10000,
-     .help = "processes; 0: one a processor"},
+    MORAY_JOBS_OPTION(identify, jobs, "processes"),
 };
 
 static const char *const without[] = {"scheme", "intervals", "tol", "course", NULL};

@@ -29,20 +29,7 @@ typedef struct ladder {
     }
 
 static const moray_option options[] = {
-    SHAPE(1),
-    SHAPE(2),
-    SHAPE(3),
-    SHAPE(4),
-    SHAPE(5),
-    SHAPE(6),
-    SHAPE(7),
-    {.flag = "jobs",
-     .argument = "N",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(ladder, jobs),
-     .min = 0,
-     .max = 1000,
-     .help = "processes; 0: one a processor"},
+    SHAPE(1), SHAPE(2), SHAPE(3), SHAPE(4), SHAPE(5), SHAPE(6), SHAPE(7), MORAY_JOBS_OPTION(ladder, jobs, "processes"),
 };
 static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(ladder, snake)}};
 static const char *const without[] = {"model", "scheme", "intervals", "tol", "linear_solver", "ipopt.KEY", NULL};

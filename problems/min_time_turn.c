@@ -21,13 +21,16 @@ static const moray_option options[] = {
     STEER_TUNING_OPTIONS(turn_job),
 };
 
+static const moray_idle idle[] = {STEER_IDLE_MESH, STEER_IDLE_WATER, {NULL, NULL, NULL}};
+
 static const moray_program program = {
     .name = "min_time_turn",
     .summary = "Optimises the joint offset of an underwater snake robot for the fastest change of heading, or "
                "from pose to pose, and proves it on the first-principles model against tuned bang-bang "
                "steering.",
     .options = options,
-    .n_options = sizeof options / sizeof *options};
+    .n_options = sizeof options / sizeof *options,
+    .idle = idle};
 
 // The paper's gait.
 int main(int argc, char **argv)

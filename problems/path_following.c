@@ -32,12 +32,16 @@ static const moray_option options[] = {
     STEER_TUNING_OPTIONS(path_job),
 };
 
+static const moray_idle idle[] = {
+    STEER_IDLE_RECEDING, STEER_IDLE_MESH, STEER_IDLE_WATER, STEER_IDLE_GAIT("find_gait"), {NULL, NULL, NULL}};
+
 static const moray_program program = {
     .name = "path_following",
     .summary = "Optimises gait and joint offset of an underwater snake robot to follow a path in a current, "
                "and proves them on the first-principles model against tuned line-of-sight guidance.",
     .options = options,
-    .n_options = sizeof options / sizeof *options};
+    .n_options = sizeof options / sizeof *options,
+    .idle = idle};
 
 int main(int argc, char **argv)
 {

@@ -4,10 +4,10 @@
 // receding horizon by planners that are told the truth, that believe something else, and that estimate it on the way.
 #include <string.h>
 
+#include "steering/options.h"
 #include "steering/sea/sea.h"
 
-#define SEA_NUMBER(kind, field, part, name, low, high, in, text)                                                       \
-    MORAY_ROW(kind, sea_job, field, part, name, .min = low, .max = high, .unit = in, .help = text)
+#define SEA_NUMBER(kind, field, ...) STEER_NUMBER(kind, sea_job, field, __VA_ARGS__)
 
 static const char *const tasks[] = {"heading", "path", NULL};
 static const char *const waters[] = {"paper", "consistent", NULL};
@@ -18,9 +18,7 @@ static const moray_option options[] = {
     SEA_NUMBER(REAL, duration, "problem", "duration_s", 10, 1e4, "s", "how long; of a path at most"),
     MORAY_ROW(TEXT, sea_job, path_text, "problem", "path", .help = "waypoints X,Y X,Y ... in m"),
     SEA_NUMBER(REAL, radius, "problem", "radius_m", 1e-3, 1e4, "m", "of the arcs that join the legs"),
-    SEA_NUMBER(REAL, offset, "problem", "phi0_max_m", 1e-6, 0.5, "m",
-               "largest joint offset of the control-oriented model; of the other in the ratio of amplitudes"),
-    SEA_NUMBER(REAL, offset_rate, "problem", "phi0_rate_m_s", 1e-6, 10, "m/s", "largest rate of it, likewise"),
+    STEER_OFFSET_OPTIONS(sea_job, offset, offset_rate),
     MORAY_ROW(TEXT, sea_job, rung, "plant", "rung", .flag = "rung", .argument = "NAME",
               .help = "hydrodynamics that are true: own, as of the robot, or a rung of the ladder"),
     SEA_NUMBER(REAL, spread, "plant", "spread", 0, 0.9, NULL,
@@ -39,11 +37,15 @@ static const moray_option options[] = {
     SEA_NUMBER(REAL, sensors.heading, "sensors", "heading_deg", 0, 90, "deg", "standard deviation of the compass"),
     SEA_NUMBER(REAL, sensors.joints, "sensors", "joints_deg", 0, 90, "deg", "of every joint angle"),
     SEA_NUMBER(REAL, sensors.position, "sensors", "position_m", 0, 100, "m", "of either coordinate"),
+    MORAY_ROW(LIMIT, sea_job, gyro, "sensors", "gyro_deg_s", .max = INFINITY, .unit = "deg/s",
+              .help = "of the rate of the mean heading, by a gyro and the joints; none: it is not measured"),
     SEA_NUMBER(REAL, sensors.sampling, "sensors", "sampling_s", 0, 100, "s", "between two readings"),
     SEA_NUMBER(REAL, sensors.delay, "sensors", "delay_s", 0, 20, "s", "of a reading"),
     SEA_NUMBER(REAL, sensors.drop_out, "sensors", "drop_outs", 0, 0.99, NULL, "share of the readings that is lost"),
     SEA_NUMBER(REAL, actuators.dead_time, "actuators", "dead_time_s", 0, 20, "s", "of the joint offset"),
     SEA_NUMBER(REAL, actuators.rate, "actuators", "rate", 0, 10, NULL, "of the offset at most, m/s or rad/s; 0: any"),
+    SEA_NUMBER(REAL, actuators.torque, "actuators", "torque_N_m", 0, 1e6, "N m",
+               "of every joint at most, first-principles model: joints that would need more do not follow; 0: any"),
     MORAY_ROW(INT, sea_job, seeds, "trials", "seeds", .flag = "seeds", .argument = "N", .min = 1, .max = SEA_MOST_SEEDS,
               .help = "draws that are scored"),
     SEA_NUMBER(INT, first_seed, "trials", "first_seed", 0, 1000000, NULL, "of them; the same seed is the same draw"),
@@ -51,13 +53,7 @@ static const moray_option options[] = {
               .help = "file to which every trial is added; a run that was ended goes on from it"),
     MORAY_ROW(TEXT, sea_job, tuned, "trials", "tuned",
               .help = "file of the numbers that the rivals are tuned to: read where it is there, else written"),
-    {.flag = "jobs",
-     .argument = "N",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(sea_job, jobs),
-     .min = 0,
-     .max = 10000,
-     .help = "processes; 0: one a processor"},
+    MORAY_JOBS_OPTION(sea_job, jobs, "processes"),
     STEER_TIME_OPTION(sea_job, clock),
     SEA_NUMBER(INT, training, "baseline", "training", 1, 200, NULL, "further draws on which the rivals are tuned"),
     SEA_NUMBER(INT, starts, "baseline", "starts", 1, 1000, NULL, "searches for the numbers of each rival"),
@@ -73,6 +69,29 @@ static const char *const without[] = {"current", "course",        "scheme",    "
                                       "tol",     "linear_solver", "ipopt.KEY", NULL};
 static const moray_option_group groups[] = {{&moray_snake_option_table, offsetof(sea_job, snake)}};
 
+static bool follows_heading(const void *settings)
+{
+    return ((const sea_job *)settings)->task == SEA_HEADING;
+}
+
+// The rung says all of them.
+static bool rung_given(const void *settings)
+{
+    const char *rung = ((const sea_job *)settings)->rung;
+    return strcmp(rung, "own") != 0 && !strpbrk(rung, "+-"); // those of coefficients keep the robot's own
+}
+
+static const char beside_rung[] = "beside this rung", for_heading[] = "with task = heading";
+static const moray_idle idle[] = {{"path", follows_heading, for_heading},
+                                  {"radius_m", follows_heading, for_heading},
+                                  {"hydrodynamics", rung_given, beside_rung},
+                                  {"rotation", rung_given, beside_rung},
+                                  {"drag", rung_given, beside_rung},
+                                  {"added_mass", rung_given, beside_rung},
+                                  {"frame", rung_given, beside_rung},
+                                  {"pieces", rung_given, beside_rung},
+                                  {NULL, NULL, NULL}};
+
 static const moray_program program = {
     .name = "sea_trials",
     .summary = "Swims many draws of an underwater snake robot, current and noise under tuned feedback and in receding "
@@ -81,7 +100,8 @@ static const moray_program program = {
     .n_options = sizeof options / sizeof *options,
     .groups = groups,
     .n_groups = 1,
-    .without = without};
+    .without = without,
+    .idle = idle};
 
 static moray_status work(sea_job *job)
 {
@@ -111,6 +131,7 @@ int main(int argc, char **argv)
                                 .sampling = 0.2,
                                 .delay = 0.1,
                                 .drop_out = 0.02},
+                    .gyro = INFINITY,
                     .actuators = {.dead_time = 0.1},
                     .clock = {.limit = 3600},
                     .seeds = 20,

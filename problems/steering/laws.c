@@ -114,8 +114,8 @@ void steer_add_plans(steer_job *job, const steer_law *blind, const steer_law *bo
                                            {"first-principles plan", "first-pr. plan + feedback"}};
     for (int model = 0; model <= (int)job->snake.model; model++) {
         const int gait = job->program->one_gait ? 0 : 1 + model;
-        steer_add(job, names[model][0], blind, gait, (moray_model)model);
-        steer_add(job, names[model][1], both, gait, (moray_model)model);
+        const steer_trial *alone = steer_add(job, names[model][0], blind, gait, (moray_model)model);
+        steer_add(job, names[model][1], both, gait, (moray_model)model)->subset[0] = alone;
     }
 }
 

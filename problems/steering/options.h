@@ -14,6 +14,12 @@
 #define STEER_WEIGHT(settings, place, name, low, text)                                                                 \
     STEER_NUMBER(REAL, settings, place, "problem", name, low, 1e6, NULL, text)
 
+#define STEER_OFFSET_OPTIONS(settings, most, fastest)                                                                  \
+    STEER_NUMBER(REAL, settings, most, "problem", "phi0_max_m", 1e-6, 0.5, "m",                                        \
+                 "largest joint offset of the control-oriented model; of the other in the ratio of amplitudes"),       \
+        STEER_NUMBER(REAL, settings, fastest, "problem", "phi0_rate_m_s", 1e-6, 10, "m/s",                             \
+                     "largest rate of the offset, likewise")
+
 #define STEER_GAIT_OPTIONS(settings)                                                                                   \
     STEER_NUMBER(RANGE, settings, steer.input.theta_max, "problem", "theta_max_deg", 0.1, 89, "deg",                   \
                  "link-angle amplitude of (24)"),                                                                      \
@@ -21,10 +27,7 @@
                      "gait frequency"),                                                                                \
         STEER_NUMBER(RANGE, settings, steer.input.delta, "problem", "delta_deg", 1, 179, "deg",                        \
                      "phase shift between joints"),                                                                    \
-        STEER_NUMBER(REAL, settings, steer.input.offset, "problem", "phi0_max_m", 1e-6, 0.5, "m",                      \
-                     "largest joint offset of the control-oriented model; of the other in the ratio of amplitudes"),   \
-        STEER_NUMBER(REAL, settings, steer.input.offset_rate, "problem", "phi0_rate_m_s", 1e-6, 10, "m/s",             \
-                     "largest rate of the offset, likewise"),                                                          \
+        STEER_OFFSET_OPTIONS(settings, steer.input.offset, steer.input.offset_rate),                                   \
         STEER_LIMIT(settings, steer.input.power, "power_W", "W",                                                       \
                     "mean joint power; by default what the paper's gait uses straight ahead in the same model, none "  \
                     "where the gait is given")
@@ -54,9 +57,30 @@
                  "rivals that have fewer numbers"),                                                                    \
         STEER_NUMBER(INT, settings, steer.evaluations, "baseline", "evaluations", 1, 10000, NULL,                      \
                      "simulations spent on each search, for every number"),                                            \
+        MORAY_JOBS_OPTION(settings, steer.jobs, "processes that tune")
+
+// Keys without a use, for a moray_program's `idle`.
+bool steer_without_receding(const void *settings);
+bool steer_mesh_given(const void *settings);
+bool steer_water_given(const void *settings);
+bool steer_one_plan(const void *settings); // no gait to be found for the first-principles model
+
+#define STEER_IDLE_RECEDING                                                                                            \
+    {"replan_periods", steer_without_receding, "without receding horizon (receding = no)"},                            \
     {                                                                                                                  \
-        .flag = "jobs", .argument = "N", .type = MORAY_OPTION_INT, MORAY_AT(settings, steer.jobs), .min = 0,           \
-        .max = 10000, .help = "processes that tune; 0: one a processor"                                                \
+        "look_ahead_periods", steer_without_receding, "without receding horizon (receding = no)"                       \
+    }
+#define STEER_IDLE_MESH                                                                                                \
+    {                                                                                                                  \
+        "intervals_per_period", steer_mesh_given, "beside --intervals"                                                 \
+    }
+#define STEER_IDLE_WATER                                                                                               \
+    {                                                                                                                  \
+        "current", steer_water_given, "beside --water"                                                                 \
+    }
+#define STEER_IDLE_GAIT(name)                                                                                          \
+    {                                                                                                                  \
+        name, steer_one_plan, "where the gait is given or the model is control"                                        \
     }
 
 #endif

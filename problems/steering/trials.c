@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // A trial swims on both models, its numbers tuned on the first-principles one.
-#include "steer.h"
+#include "trials.h"
 
 #include <string.h>
 
-// How a simulation is run: with the joints' own dynamics to a tolerance, or exactly on the gait; samples a second.
-typedef struct accuracy {
-    const moray_swim_on_gait *on_gait;
-    double tolerance, per_second;
-    bool timed; // ended by the clock
-} accuracy;
-static const accuracy careful = {.tolerance = 1e-8, .per_second = 20, .timed = true};
-static const accuracy drawn = {.tolerance = 1e-8, .per_second = 20};
-static const moray_swim_on_gait quick = {.steps = 24};
+static const steer_accuracy careful = {.tolerance = 1e-8, .per_second = 20, .timed = true};
+static const steer_accuracy drawn = {.tolerance = 1e-8, .per_second = 20};
 
 // ---- Swimming ------------------------------------------------------------------------------------------------------
 
@@ -45,7 +38,7 @@ static bool look_on(const moray_swim_sample *sample, void *self)
 }
 
 // The steersman's receding horizon must be freed, after an error too. Error: MORAY_NOT_SOLVED where the clock ended it.
-static moray_status swim(steer_steersman *h, accuracy how, moray_swim_closed_loop *closed_loop)
+static moray_status swim(steer_steersman *h, steer_accuracy how, moray_swim_closed_loop *closed_loop)
 {
     const steer_job *job = h->job;
     MORAY_TRY(set_controller(h));
@@ -78,7 +71,7 @@ moray_status steer_swim(const steer_job *job, const steer_trial *trial, moray_sw
     return status;
 }
 
-static moray_status try(const steer_job *job, steer_trial *trial, moray_model model, accuracy how)
+moray_status steer_try(const steer_job *job, steer_trial *trial, moray_model model, steer_accuracy how)
 {
     steer_steersman h = {.job = job, .trial = trial, .model = model};
     moray_swim_closed_loop closed_loop = {0};
@@ -90,90 +83,6 @@ static moray_status try(const steer_job *job, steer_trial *trial, moray_model mo
     moray_swim_receding_horizon_free(h.receding);
     moray_swim_closed_loop_free(&closed_loop);
     return status;
-}
-
-// ---- Tuning --------------------------------------------------------------------------------------------------------
-
-typedef struct tuning {
-    const steer_job *job;
-    const steer_trial *trial;
-} tuning;
-
-static bool tuned(const steer_trial *trial, int number)
-{
-    return trial->law->tuned & 1u << number;
-}
-
-static void set_numbers(steer_trial *trial, const double *x)
-{
-    for (int k = 0; k < STEER_NUMBERS; k++)
-        if (tuned(trial, k))
-            trial->number[k] = *x++;
-}
-
-static bool evaluate(void *self, const double *x, double *cost)
-{
-    const tuning *t = self;
-    const accuracy how = {.on_gait = &quick, .per_second = t->job->program->rough_per_second, .timed = true};
-    steer_trial own = *t->trial;
-    set_numbers(&own, x);
-    const moray_status status = try(t->job, &own, MORAY_FIRST_PRINCIPLES, how);
-    *cost = own.cost[MORAY_FIRST_PRINCIPLES];
-    return !moray_failed(status);
-}
-
-static bool go_on(void *observer)
-{
-    const steer_job *job = observer;
-    return !moray_interrupted() && !steer_clock_up(&job->clock);
-}
-
-// Where the search starts besides: the law's own numbers, and those of the laws that leave some of them out.
-static int starts_of(const steer_trial *trial, double *at)
-{
-    int rows = 0;
-    for (int i = -1; i < STEER_SUBSETS; i++) {
-        const steer_trial *of = i < 0 ? trial : trial->subset[i];
-        if (!of)
-            continue;
-        for (int k = 0; k < STEER_NUMBERS; k++)
-            if (tuned(trial, k))
-                *at++ = of->number[k];
-        rows++;
-    }
-    return rows;
-}
-
-static moray_status tune(steer_job *job, steer_trial *trial)
-{
-    moray_tuned_number number[STEER_NUMBERS];
-    double from[(STEER_SUBSETS + 1) * STEER_NUMBERS], x[STEER_NUMBERS];
-    tuning t = {job, trial};
-    moray_tuning_problem problem = {.number = number, .cost = evaluate, .self = &t};
-    moray_tuning_settings settings = moray_tuning_settings_default();
-    moray_tuning_info info;
-    for (int k = 0; k < STEER_NUMBERS; k++)
-        if (tuned(trial, k))
-            number[problem.n++] = job->number[k].searched;
-    settings.starts = job->starts;
-    settings.evaluations = job->evaluations;
-    settings.jobs = job->jobs;
-    settings.go_on = go_on;
-    settings.observer = job;
-    const int rows = starts_of(trial, from);
-    const moray_status status = moray_tune(&problem, &settings, from, rows, x, &info);
-    MORAY_TRY(steer_interruption());
-    trial->cut = status.code == MORAY_INTERRUPTED;
-    if (trial->cut && !isfinite(info.cost))
-        return moray_error(MORAY_NOT_SOLVED, "%s: not tuned in the time given", trial->name);
-    if (!trial->cut)
-        MORAY_TRY(status);
-    set_numbers(trial, x);
-    trial->tuned_cost = info.cost;
-    trial->evaluations = info.evaluations;
-    trial->searches = info.searches;
-    trial->agree = info.agree;
-    return moray_ok();
 }
 
 // ---- All -----------------------------------------------------------------------------------------------------------
@@ -194,6 +103,16 @@ static double still_to_run(const steer_job *job)
     return n;
 }
 
+static moray_status try_both(const steer_job *job, steer_trial *trial)
+{
+    for (int model = 0; model < 2; model++) {
+        const moray_status status = steer_try(job, trial, (moray_model)model, careful);
+        MORAY_TRY(steer_interruption());
+        MORAY_TRY(status);
+    }
+    return moray_ok();
+}
+
 static moray_status run_trial(steer_job *job, steer_trial *trial)
 {
     const double tuning_share = 0.7;
@@ -202,13 +121,14 @@ static moray_status run_trial(steer_job *job, steer_trial *trial)
     if (trial->law->tuned) {
         moray_ticker_show(&job->ticker, "%s: tuning %s", job->name, trial->name);
         steer_clock_give(&job->clock, tuning_share / still_to_run(job));
-        MORAY_TRY(tune(job, trial));
+        MORAY_TRY(steer_tune(job, trial));
     }
     steer_clock_give(&job->clock, 1 / still_to_run(job));
-    for (int model = 0; model < 2; model++) {
-        const moray_status status = try(job, trial, (moray_model)model, careful);
-        MORAY_TRY(steer_interruption());
-        MORAY_TRY(status);
+    MORAY_TRY(try_both(job, trial));
+    const steer_trial *better = steer_better_subset(trial);
+    if (better) {
+        steer_take_numbers(trial, better);
+        MORAY_TRY(try_both(job, trial));
     }
     trial->run = true;
     moray_ticker_note(&job->ticker, "%s: %s %.4g on the control-oriented model, %.4g on the first-principles model",
@@ -245,7 +165,8 @@ void steer_keep_trials(steer_job *job, const steer_trial *before, int n)
 bool steer_go_on(void *observer, const moray_search_progress *progress)
 {
     (void)progress;
-    return go_on(observer);
+    const steer_job *job = observer;
+    return !moray_interrupted() && !steer_clock_up(&job->clock);
 }
 
 moray_status steer_interruption(void)

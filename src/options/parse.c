@@ -2,6 +2,7 @@
 #include "options/options.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/number.h"
 
@@ -71,15 +72,54 @@ static moray_status finish_telling(const moray_program *program, const moray_opt
     return status;
 }
 
+static const moray_option *row_of(const moray_options *options, const moray_idle *idle)
+{
+    const moray_option *row = moray_option_find(options, idle->key);
+    for (int i = 0; i < options->n && !row; i++)
+        if (options->row[i].flag && strcmp(options->row[i].flag, idle->key) == 0)
+            row = &options->row[i];
+    return row;
+}
+
+static bool same(const moray_option *row, const char *before, const void *settings)
+{
+    const char *was = before + row->offset, *is = (const char *)settings + row->offset;
+    const bool text = row->type == MORAY_OPTION_TEXT || row->type == MORAY_OPTION_RUN;
+    return text ? strcmp(was, is) == 0 : memcmp(was, is, row->size) == 0;
+}
+
+// Refuses what the mode chosen leaves idle, unless it is as in `before`, the defaults.
+static moray_status refuse_idle(const moray_program *program, const moray_options *options, const char *before,
+                                const void *settings)
+{
+    for (const moray_idle *idle = program->idle; idle && idle->key; idle++) {
+        const moray_option *row = row_of(options, idle);
+        if (row && !same(row, before, settings) && idle->idle(settings))
+            return moray_error(MORAY_INPUT, "%s: %s has no use for it %s", idle->key, program->name, idle->why);
+    }
+    return moray_ok();
+}
+
+// Bytes of the settings that the rows reach to.
+static size_t reach_of(const moray_options *options)
+{
+    size_t reach = 0;
+    for (int i = 0; i < options->n; i++)
+        if (options->row[i].offset + options->row[i].size > reach)
+            reach = options->row[i].offset + options->row[i].size;
+    return reach;
+}
+
 // The command line is assigned before the files, so that its errors come first, and after them, to override them.
 static moray_status fill(const moray_program *program, const moray_options *options, const moray_arguments *arguments,
-                         void *settings, char **ini)
+                         const char *before, void *settings, char **ini)
 {
     MORAY_TRY(assign(options, arguments, settings));
     MORAY_TRY(read_files(options, arguments, settings));
     if (options->words)
         MORAY_TRY(moray_words_check(options->words, settings));
     MORAY_TRY(assign(options, arguments, settings));
+    MORAY_TRY(refuse_idle(program, options, before, settings));
     return finish_telling(program, options, settings, ini);
 }
 
@@ -101,7 +141,14 @@ moray_status moray_options_parse(const moray_program *program, int argc, char **
     if (!moray_failed(status) && *request == MORAY_REQUEST_RUN) {
         common->argc = argc;
         common->argv = argv;
-        status = fill(program, &options, &arguments, settings, ini);
+        const size_t reach = reach_of(&options);
+        char *before = malloc(reach + 1);
+        status = before ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for the settings");
+        if (before)
+            memcpy(before, settings, reach);
+        if (!moray_failed(status))
+            status = fill(program, &options, &arguments, before, settings, ini);
+        free(before);
     }
     free(arguments.item);
     free(options.own);

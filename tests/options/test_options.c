@@ -449,6 +449,57 @@ static void test_words(void)
     CHECK(status.code == MORAY_INPUT && strstr(status.text, "course: w has no use for it"), "%s", status.text);
 }
 
+// Keys without a use in a mode.
+typedef struct moody {
+    moray_common common;
+    bool asleep;
+    double depth;
+    char name[8];
+} moody;
+
+static bool sleeps(const void *self)
+{
+    return ((const moody *)self)->asleep;
+}
+
+static moray_status parse_moody(moody *s, const char *const arguments[4])
+{
+    static const moray_option moods[] = {
+        MORAY_ROW(BOOL, moody, asleep, "problem", "asleep", .help = "h"),
+        MORAY_ROW(REAL, moody, depth, "problem", "depth_m", .flag = "depth", .argument = "M", .help = "h"),
+        MORAY_ROW(TEXT, moody, name, "problem", "name", .help = "h")};
+    static const moray_idle idle[] = {{"depth_m", sleeps, "asleep"}, {"name", sleeps, "asleep"}, {NULL, NULL, NULL}};
+    static const moray_program moody_program = {
+        .name = "m", .summary = "s", .options = moods, .n_options = 3, .idle = idle};
+    command_line line;
+    command_set(&line, "m", arguments, 4);
+    moray_request request;
+    *s = (moody){.common = moray_common_default(), .depth = 3, .name = "eel"};
+    return moray_app_parse(&moody_program, line.argc, line.argv, s, &request);
+}
+#define PARSE_MOODY(s, ...) parse_moody((s), (const char *const[4]){__VA_ARGS__})
+
+static void test_idle(void)
+{
+    moody s;
+    CHECK_OK(PARSE_MOODY(&s, "--depth", "5"), "a key where it has a use");
+    CHECK_OK(PARSE_MOODY(&s, "--set", "asleep=yes"), "the mode without it");
+    CHECK_OK(PARSE_MOODY(&s, "--set", "asleep=yes", "--depth", "3"), "what it is anyway says nothing else");
+    CHECK_OK(PARSE_MOODY(&s, "--set", "asleep=yes", "--set", "name=eel"), "nor does a word");
+    moray_status status = PARSE_MOODY(&s, "--depth", "5", "--set", "asleep=yes");
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "depth_m: m has no use for it asleep"), "%s", status.text);
+    status = PARSE_MOODY(&s, "--set", "name=cod", "--set", "asleep=yes");
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "name: m has no use for it asleep"), "%s", status.text);
+    FILE *file = fopen("moody.ini", "w");
+    fputs("[problem]\nasleep = yes\ndepth_m = 4\n", file);
+    fclose(file);
+    status = PARSE_MOODY(&s, "--config", "moody.ini");
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "depth_m: m has no use for it"), "of a file: %s",
+          status.text);
+    CHECK_OK(PARSE_MOODY(&s, "--config", "moody.ini", "--depth", "3"), "unless the command line has the default");
+    unlink("moody.ini");
+}
+
 static void test_small_parts(void)
 {
     CHECK(moray_edit_distance("kitten", "sitting") == 3 && moray_edit_distance("", "abc") == 3 &&
@@ -476,6 +527,7 @@ int main(void)
     test_help();
     test_plain();
     test_words();
+    test_idle();
     test_small_parts();
     rmdir(directory);
     return tap_done();

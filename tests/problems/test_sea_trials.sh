@@ -7,9 +7,9 @@ few='--seeds 2 --jobs 1 --set training=1 --set starts=1 --set evaluations=1 --se
 run --json $few --set results=done.txt
 check "swum: $(cat err)" [ $code -eq 0 ]
 check "one JSON object" eval 'python3 -c "import json, sys; json.load(sys.stdin)" <out'
-check "of all laws" eval '[ "$(grep -c "\"told\"" out)" -eq 10 ]'
+check "of all laws" eval '[ "$(grep -c "\"told\"" out)" -eq 11 ]'
 cp out first
-check "every trial is in the file" eval '[ "$(grep -vc "^#" done.txt)" -eq 20 ]'
+check "every trial is in the file" eval '[ "$(grep -vc "^#" done.txt)" -eq 22 ]'
 head -9 done.txt >half.txt && printf '2 3 0.1' >>half.txt
 run --json $few --set results=half.txt
 check "a run that was cut off goes on to the same" eval '[ $code -eq 0 ] && cmp -s out first'

@@ -43,6 +43,39 @@ useless ladder model scheme intervals tol linear_solver ipopt
 useless simulate scheme intervals tol linear_solver ipopt
 useless paper model course scheme intervals tol linear_solver ipopt
 
+# idle PROGRAM KEY OPTION...: a mode in which the key has no use, given by flag, by key and in a file.
+idle() {
+    program=$programs/$1
+    name=$1
+    key=$2
+    shift 2
+    run "$@" --out fresh
+    check "$name, $key: exit 2: $(cat err)" eval '[ $code -eq 2 ] && one_line && grep -q "^$name: $key: $name has no use for it" err && [ ! -e fresh ]'
+}
+
+idle sea_trials path --set "path=0,0 9,0"
+idle sea_trials radius_m --set radius_m=3
+idle sea_trials hydrodynamics --rung split3 --hydrodynamics consistent
+idle sea_trials drag --rung split3 --set drag=both
+idle heading_tracking replan_periods --set receding=no --set replan_periods=2
+idle heading_tracking look_ahead_periods --set receding=no --set look_ahead_periods=9
+idle heading_tracking intervals_per_period --intervals 40 --set intervals_per_period=3
+idle heading_tracking gait_evaluations --model control --set gait_evaluations=3
+idle heading_tracking theta_max_deg --reference fig8 --set theta_max_deg=9
+idle heading_tracking gait_evaluations --reference fig8 --set gait_evaluations=3
+idle path_following replan_periods --set receding=no --set replan_periods=2
+idle path_following find_gait --model control --set find_gait=no
+idle path_following current --water water.csv --current 0.1,0
+idle min_time_turn current --water water.csv --current 0.1,0
+idle min_time_turn intervals_per_period --intervals 40 --set intervals_per_period=3
+printf '[problem]\nradius_m = 4\n' >file.ini
+idle sea_trials radius_m --config file.ini
+# A run's own file, in which every key stands, is taken again.
+program=$programs/sea_trials
+run --seeds 1 --jobs 1 --set training=1 --set starts=1 --set evaluations=1 --set duration_s=10 --set replan_periods=9 --out done --quiet
+run --config done/run.ini --seeds 1 --set planner_current=some
+check "run.ini is taken: $(cat err)" eval 'grep -q planner_current err'
+
 # A number that the program chooses is no default of 0, which would be refused.
 for name in heading_tracking path_following min_time_turn classics; do
     program=$programs/$name

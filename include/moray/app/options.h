@@ -56,6 +56,13 @@ typedef struct moray_option {
         .section = part, .key = name, .type = MORAY_OPTION_##kind, MORAY_AT(settings, field), __VA_ARGS__              \
     }
 
+// The row of --jobs, from 0 on, an int; `text` says what is done side by side.
+#define MORAY_JOBS_OPTION(settings, field, text)                                                                       \
+    {                                                                                                                  \
+        .flag = "jobs", .argument = "N", .type = MORAY_OPTION_INT, MORAY_AT(settings, field), .min = 0, .max = 10000,  \
+        .help = text "; 0: one a processor"                                                                            \
+    }
+
 enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };
 
 // Options of Ipopt that the user names, for moray_settings.ipopt.
@@ -111,6 +118,13 @@ typedef struct moray_words {
     size_t offset;   // of bool[n] in the settings: which are given
 } moray_words;
 
+// A key that a mode of the program has no use for: other than its default it is then refused, wherever it was given.
+typedef struct moray_idle {
+    const char *key; // NULL ends a list
+    bool (*idle)(const void *settings);
+    const char *why; // behind "has no use for it", as "without a receding horizon"
+} moray_idle;
+
 typedef struct moray_program {
     const char *name, *summary;  // summary: what it does, for --help
     const moray_option *options; // its own rows, offsets from the start of its settings
@@ -119,6 +133,7 @@ typedef struct moray_program {
     int n_groups;
     const moray_words *words;   // NULL: no arguments without a flag
     const char *const *without; // flags, or keys, of groups that it has no use for, NULL-terminated; NULL: uses all
+    const moray_idle *idle;     // keys that it has no use for in a mode; NULL: uses all
 } moray_program;
 
 typedef enum { MORAY_REQUEST_RUN, MORAY_REQUEST_HELP, MORAY_REQUEST_VERSION, MORAY_REQUEST_LIST } moray_request;

@@ -18,8 +18,10 @@ typedef struct moray_swim_closed_loop_spec {
     double heading;                          // mean, at the start [rad]
     double position[2];                      // there [m]
     double current[2];                       // [m/s]
+    double current_turning;                  // from the start on [rad/s]
     const moray_water *water;                // in place of it; NULL: uniform
     const moray_swim_controller *controller; // NULL: nobody steers
+    double torque;                           // of every joint at most [N m]; 0: no limit
     double duration;                         // [s]
     int intervals;                           // recorded, of equal length
     double tolerance;                        // of the simulation, relative and absolute

@@ -7,6 +7,7 @@
 #include "moray/export.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/heading.h"
+#include "moray/snake/instruments.h"
 
 MORAY_BEGIN
 
@@ -22,13 +23,15 @@ typedef struct moray_heading_gains {
 } moray_heading_gains;
 
 // Target and feed of a moray_feedback, whose gain is scale x proportional. The integral rests while the offset is at
-// its limit and would be driven further; the heading's rate is filtered over `smoothing`.
+// its limit and would be driven further; the heading's rate is that of a gyro, or taken from the heading, in either
+// case filtered over `smoothing`.
 typedef struct moray_heading_law {
     moray_heading_gains gains;
     const moray_reference *reference;
     const moray_feedback *feedback; // the one it serves: undulation, limits, period
     double scale;                   // offsets of the swimmer per offset of the control-oriented model
     double smoothing;               // [s]
+    const moray_reading *reading;   // with the rate of a gyro; NULL: there is none
     double integral;                // now: y [rad s]
     double heading, rate;           // filtered [rad], [rad/s]
     bool begun;

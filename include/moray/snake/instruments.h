@@ -15,6 +15,8 @@ typedef struct moray_sensors {
     double heading;     // standard deviation of the compass in the head link [rad]
     double joints;      // of every joint angle, by which the mean heading follows from the head's [rad]
     double position;    // of either coordinate [m]
+    bool gyro;          // the rate of the mean heading is measured too, by a gyro and the joints
+    double rate;        // standard deviation of it [rad/s]
     double sampling;    // between two readings [s]
     double delay;       // of a reading until it is to be had [s]
     double drop_out;    // chance of a reading to be lost
@@ -24,12 +26,14 @@ typedef struct moray_sensors {
 typedef struct moray_actuators {
     double dead_time; // [s], to whole periods of the controller
     double rate;      // of the offset at most [m/s or rad/s]; 0: no limit
+    double torque;    // of every joint at most [N m], first-principles model; 0: no limit. The swimmer's, not seen here
 } moray_actuators;
 
 // The newest reading to be had.
 typedef struct moray_reading {
     double t, heading, p_x, p_y; // when it was taken, what it says
     bool fresh;                  // for the first time
+    double rate;                 // of the heading without its undulation [rad/s]; NaN without a gyro
 } moray_reading;
 
 typedef struct moray_instruments moray_instruments;

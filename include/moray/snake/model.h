@@ -175,6 +175,11 @@ MORAY_API void moray_swimmer_current(const moray_swimmer *swimmer, double V[2]);
 typedef void moray_swimmer_extra_fn(const moray_swimmer *swimmer, const double *x, double *dx);
 MORAY_API void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *extra);
 
+// The largest torque of every joint of the first-principles model [N m], 0: none. The joints give what their motion
+// asked for would take, cut off there, and then do not follow it. Error: MORAY_INPUT, MORAY_MEMORY.
+MORAY_API moray_status moray_swimmer_set_torque(moray_swimmer *swimmer, double most);
+MORAY_API double moray_swimmer_torque(const moray_swimmer *swimmer);
+
 // State at rest over ground: all velocities zero, straight body at heading
 // theta, position (p_x, p_y). x[2N+4].
 MORAY_API void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x);
@@ -207,8 +212,9 @@ MORAY_API void moray_swimmer_on_gait(const moray_swimmer *swimmer, const moray_g
 MORAY_API void moray_swimmer_with_joints(const moray_swimmer *swimmer, const double *phi, const double *v_phi,
                                          const double body[MORAY_BODY_STATES], double *x);
 
-// State derivative with joint accelerations ubar[N-1]; also the joint efforts u[N-1] (force in N by (22), or torque in
-// N m by inverse dynamics of (5)) unless NULL. False where the dynamics are singular or not finite.
+// State derivative with joint accelerations ubar[N-1], or those that the limit of the torques leaves of them; also the
+// joint efforts u[N-1] (force in N by (22), or torque in N m by inverse dynamics of (5)) unless NULL. False where the
+// dynamics are singular or not finite.
 MORAY_API bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
 
 // Power of the joints at efforts u and rates v_phi: at the terminals of its motors where the model has them, else sum

@@ -38,6 +38,7 @@ typedef struct moray_navigator_spec {
     double current_doubt;                 // standard deviation of either component [m/s]; 0: known
     double factor_doubt;                  // of the logarithms of the two factors; 0: known
     double heading_error, position_error; // of the readings; both above 0
+    double rate_error;                    // of the heading's rate, likewise; 0: it is not read
 } moray_navigator_spec;
 
 typedef struct moray_navigator moray_navigator;
@@ -52,6 +53,9 @@ MORAY_API moray_status moray_navigator_advance(moray_navigator *navigator, doubl
 
 // Takes a reading in, heading without undulation, as of now. Error: MORAY_NUMERIC.
 MORAY_API moray_status moray_navigator_read(moray_navigator *navigator, double heading, double p_x, double p_y);
+
+// The heading's rate without undulation, of a gyro. Error: MORAY_NUMERIC.
+MORAY_API moray_status moray_navigator_read_rate(moray_navigator *navigator, double rate);
 
 MORAY_API moray_belief moray_navigator_belief(const moray_navigator *navigator);
 
@@ -70,7 +74,7 @@ typedef struct moray_adaptive_spec {
     moray_steering_limits limits;          // of the control-oriented model; only those of the offset count
     moray_heading_replanner *heading;      // one of the two; its model averaged
     moray_path_replanner *path;
-    moray_settings settings;        // of each solve
+    moray_settings settings; // of each solve
     double dead_time; // known, of the actuators [s]: what is estimated and planned from is the state so much later
     double horizon, interval, look; // length of a plan; between two plans; between two measurements [s]
 } moray_adaptive_spec;

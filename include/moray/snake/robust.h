@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Gains of heading feedback found by collocation over scenarios at once: the best fixed controller for a set of robots,
-// currents and references.
+// Heading control found by collocation over scenarios at once: gains, the best fixed controller for a set of robots,
+// currents and references; or a whole manoeuvre, one offset over time with one gain for all of them.
 #ifndef MORAY_SNAKE_ROBUST_H
 #define MORAY_SNAKE_ROBUST_H
 
@@ -32,6 +32,7 @@ typedef struct moray_robust_spec {
     int n;
     double duration; // [s]
     moray_heading_gains start;
+    double weight_steering;  // of a plan: of the mean square of wanted' in units of offset_rate, above 0
     moray_settings settings; // of the solve
 } moray_robust_spec;
 
@@ -40,6 +41,26 @@ typedef struct moray_robust_spec {
 // scenarios and time of the squared error, in units of 10 deg. Leads and derivatives stay 0. Error: MORAY_INPUT,
 // MORAY_NOT_SOLVED with the diagnosis, those of moray_ocp_new and moray_solve.
 MORAY_API moray_status moray_robust_gains(moray_heading_gains *found, double *objective, const moray_robust_spec *spec);
+
+// The command wanted(t) + gain (heading(t) - theta), the same for all scenarios; heading(t) is the mean of their
+// headings. Offsets and gain are those of the control-oriented model.
+typedef struct moray_robust_plan {
+    double duration; // [s], from 0 on
+    int n;
+    double *wanted, *heading; // [n] at equal times [m], [rad]; owned
+    double gain;              // [m/rad]; 0: blind
+} moray_robust_plan;
+
+// One phase with the states of all scenarios, as above, which share wanted(t), whose rate is the control, and the gain;
+// blind: without a gain. The objective is that of the gains and the weighted square of the rate. Error: MORAY_INPUT,
+// MORAY_MEMORY, MORAY_NOT_SOLVED with the diagnosis; the plan is then empty. Free with moray_robust_plan_free.
+MORAY_API moray_status moray_robust_plan_make(moray_robust_plan *plan, double *objective, const moray_robust_spec *spec,
+                                              bool blind);
+MORAY_API void moray_robust_plan_free(moray_robust_plan *plan); // safe on a zeroed plan, and twice
+
+// At t, of the nearest end beyond the ends.
+MORAY_API double moray_robust_plan_wanted(const moray_robust_plan *plan, double t);
+MORAY_API double moray_robust_plan_heading(const moray_robust_plan *plan, double t);
 
 MORAY_END
 

@@ -53,6 +53,7 @@ typedef struct moray_swim_plan {
     const moray_swim_controller *controller; // steers in place of the gait's own offset; NULL: nobody does
     const double *times;                     // of the samples: ascending, within [t0, t1]; may be NULL with n_times 0
     int n_times;
+    double current_turning;   // of the swimmer's current, from t0 on [rad/s]
     const moray_water *water; // in place of the swimmer's current, as it is where its centre of mass is
     moray_swim_observer *observe;
     void *observer;
@@ -69,13 +70,13 @@ MORAY_API moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_se
 
 // How a swimmer is simulated whose joints are on its gait.
 typedef struct moray_swim_on_gait {
-    int steps;              // of the classical Runge-Kutta method, at least so many a period; at least 8
-    double current_turning; // of the swimmer's current, from t0 on [rad/s]
+    int steps; // of the classical Runge-Kutta method, at least so many a period; at least 8
 } moray_swim_on_gait;
 
 // The same for a swimmer whose joints begin on the gait, one without a series, with the offset first commanded: (34)
 // keeps them on it, and how the offset follows its command is known in closed form, so that only the body is
-// integrated. Ten times faster. Error: MORAY_INPUT, MORAY_MEMORY, MORAY_NUMERIC, that of the controller's `measure`.
+// integrated. Ten times faster. Not where torques are limited. Error: MORAY_INPUT, MORAY_MEMORY, MORAY_NUMERIC, that of
+// the controller's `measure`.
 MORAY_API moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_plan *plan,
                                               const moray_swim_on_gait *how, double *x, double *energy);
 

@@ -30,13 +30,7 @@ static const moray_option shared[] = {
         .help =
             "random gaits to start from, besides the paper's gait, one past twice its delta and the control-oriented "
             "optimum"),
-    {.flag = "jobs",
-     .argument = "N",
-     .type = MORAY_OPTION_INT,
-     MORAY_AT(gait_job, jobs),
-     .min = 0,
-     .max = 1000,
-     .help = "processes for what can be done at the same time; 0: one a processor"},
+    MORAY_JOBS_OPTION(gait_job, jobs, "processes for what can be done at the same time"),
 };
 
 static const moray_option continuation[2] = {MORAY_CONTINUE(gait_job, from_file), MORAY_LEAVE(gait_job, solution_file)};

@@ -114,6 +114,11 @@ moray_status sea_prepare(sea_job *job)
     const moray_gait mapped = moray_gait_map(&job->snake.robot, &job->gait, MORAY_CONTROL_ORIENTED, model);
     job->scale = model == MORAY_CONTROL_ORIENTED ? 1 : -mapped.amplitude / job->gait.amplitude; // erratum E3
     MORAY_TRY(moray_snake_turning(&job->snake));
+    if (job->actuators.torque > 0 && model == MORAY_CONTROL_ORIENTED)
+        return moray_error(MORAY_INPUT, "torque_N_m = %g: the control-oriented model has no torques",
+                           job->actuators.torque);
+    job->sensors.gyro = isfinite(job->gyro);
+    job->sensors.rate = job->sensors.gyro ? job->gyro : 0;
     if (job->task == SEA_PATH)
         MORAY_TRY(moray_path_read(&job->path, job->path_text, job->radius));
     MORAY_TRY(believe(job));

@@ -53,7 +53,8 @@ static const sea_law heading_laws[] = {
     {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
     {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
     {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING},
-    {"plan and feedback", "beliefs", 1 << GAIN, {0.12}, NO_SUBSET, false, SEA_BEFOREHAND}};
+    {"plan and feedback", "beliefs", 1 << GAIN, {0.12}, NO_SUBSET, false, SEA_BEFOREHAND},
+    {"robust plan", "training", 0, {0.12}, NO_SUBSET, false, SEA_OVER_ALL}};
 
 static const sea_law path_laws[] = {
     {"LOS", "nothing", 7, {0.06, 2.8, 0.4}, NO_SUBSET, false, 0},
@@ -73,6 +74,10 @@ int sea_laws(const sea_job *job, const sea_law **laws)
 
 typedef struct steersman {
     moray_plan plan;
+    moray_robust_plan robust; // owned
+    int unplanned;            // plans that failed, with another in their place
+    double early;             // by which what a plan feeds forward is to be asked for, for what is late behind it [s]
+    const moray_reading *reading; // the newest: a plan's heading is that of when it was taken
     moray_feedback feedback;
     moray_heading_law law;
     moray_guidance guidance;
@@ -88,8 +93,9 @@ static double planned_heading(const moray_swim_sample *sample, void *self)
 {
     const steersman *h = self;
     double t0, t1, x[MORAY_STEERING_STATES];
+    (void)sample;
     moray_solution_times(h->plan.solution, 0, &t0, &t1);
-    moray_solution_at(h->plan.solution, 0, fmin(sample->t, t1), x, NULL);
+    moray_solution_at(h->plan.solution, 0, fmin(h->reading->t, t1), x, NULL);
     return x[MORAY_STATE_THETA];
 }
 
@@ -97,15 +103,30 @@ static double planned_offset(const moray_swim_sample *sample, double t, void *se
 {
     const steersman *h = self;
     (void)sample;
-    return moray_plan_offset(&h->plan, t).value;
+    return moray_plan_offset(&h->plan, t + h->early).value;
 }
 
 static void follow_plan(steersman *h, const sea_job *job, const sea_draw *draw)
 {
     h->plan = (moray_plan){draw->plan.solution, job->scale};
+    h->early = job->actuators.dead_time;
     h->feedback.target = planned_heading;
     h->feedback.feed = planned_offset;
     h->feedback.self = h;
+}
+
+static double robust_heading(const moray_swim_sample *sample, void *self)
+{
+    const steersman *h = self;
+    (void)sample;
+    return moray_robust_plan_heading(&h->robust, h->reading->t);
+}
+
+static double robust_offset(const moray_swim_sample *sample, double t, void *self)
+{
+    const steersman *h = self;
+    (void)sample;
+    return h->plan.scale * moray_robust_plan_wanted(&h->robust, t + h->early);
 }
 
 static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw, bool planned, const double *number)
@@ -140,6 +161,22 @@ static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw,
         h->feedback.self = &h->guidance;
     }
     h->controller = moray_feedback_controller(&h->feedback);
+}
+
+// Without a plan over all robots, that of the robot believed.
+static moray_status set_robust(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law)
+{
+    set_feedback(h, job, draw, true, law->start);
+    const moray_status status = sea_robust_plan(job, draw, law->start, &h->robust);
+    h->unplanned = status.code == MORAY_NOT_SOLVED;
+    if (h->unplanned)
+        return moray_ok();
+    MORAY_TRY(status);
+    h->early = job->actuators.dead_time - sea_lag(job); // the plan has the lag of what is fed back too
+    h->feedback.gain = job->scale * h->robust.gain;
+    h->feedback.target = robust_heading;
+    h->feedback.feed = robust_offset;
+    return moray_ok();
 }
 
 moray_heading_spec sea_heading_spec(const sea_job *job, const sea_draw *draw)
@@ -179,6 +216,7 @@ moray_navigator_spec sea_navigator_spec(const sea_job *job, const sea_draw *draw
 {
     const bool told = knows == SEA_TOLD, estimates = knows == SEA_ESTIMATING, path = job->task == SEA_PATH;
     const double current_doubt = 0.1, factor_doubt = 0.15, least_heading = 0.5 * DEG, least_position = 0.02;
+    const double least_rate = 1 * DEG; // what the averaged plant leaves of a stroke
     double rate;
     return (moray_navigator_spec){.robot = job->believed,
                                   .gait = job->gait,
@@ -190,7 +228,8 @@ moray_navigator_spec sea_navigator_spec(const sea_job *job, const sea_draw *draw
                                   .current_doubt = estimates ? current_doubt : 0,
                                   .factor_doubt = estimates ? factor_doubt : 0,
                                   .heading_error = hypot(job->sensors.heading, least_heading),
-                                  .position_error = hypot(job->sensors.position, least_position)};
+                                  .position_error = hypot(job->sensors.position, least_position),
+                                  .rate_error = job->sensors.gyro ? hypot(job->sensors.rate, least_rate) : 0};
 }
 
 static moray_status set_receding(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law)
@@ -243,16 +282,19 @@ static void judge(const sea_job *job, const sea_draw *draw, const moray_swim_clo
 static moray_status swim(const sea_job *job, const sea_draw *draw, steersman *h, moray_swim_closed_loop *closed_loop)
 {
     const moray_swim_controller outer = moray_instruments_controller(h->instruments);
-    const moray_swim_on_gait how = {.steps = 24, .current_turning = draw->current_turning};
+    const moray_swim_on_gait how = {.steps = 24};
     double rate;
     moray_swim_closed_loop_spec spec = {.robot = &draw->robot,
                                         .straight = &draw->straight,
                                         .heading = moray_reference_at(&draw->reference, 0, &rate),
                                         .current = {draw->current[0], draw->current[1]},
+                                        .current_turning = draw->current_turning,
                                         .controller = &outer,
+                                        .torque = job->actuators.torque,
                                         .duration = job->duration,
                                         .intervals = (int)ceil(10 * job->duration),
-                                        .on_gait = &how};
+                                        .tolerance = 1e-5,
+                                        .on_gait = job->actuators.torque > 0 ? NULL : &how};
     if (job->task == SEA_PATH) {
         spec.heading = job->path.piece->course;
         spec.position[1] = SEA_BESIDE;
@@ -263,6 +305,17 @@ static moray_status swim(const sea_job *job, const sea_draw *draw, steersman *h,
     return moray_swim_closed_loop_run(closed_loop, &spec);
 }
 
+static moray_status set_law(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law,
+                            const double *number)
+{
+    if (law->knows == SEA_OVER_ALL)
+        return set_robust(h, job, draw, law);
+    if (!law->tuned)
+        return set_receding(h, job, draw, law);
+    set_feedback(h, job, draw, law->knows == SEA_BEFOREHAND, number);
+    return moray_ok();
+}
+
 static moray_status set_out(const sea_job *job, const sea_draw *draw, int which, const double *number, steersman *h,
                             moray_swim_closed_loop *closed_loop)
 {
@@ -270,15 +323,20 @@ static moray_status set_out(const sea_job *job, const sea_draw *draw, int which,
     moray_sensors sensors = job->sensors;
     sea_laws(job, &laws);
     sensors.seed = draw->seed; // the same errors for every law
-    if (laws[which].tuned)
-        set_feedback(h, job, draw, laws[which].knows == SEA_BEFOREHAND, number);
-    else
-        MORAY_TRY(set_receding(h, job, draw, &laws[which]));
+    MORAY_TRY(set_law(h, job, draw, &laws[which], number));
     MORAY_TRY(moray_instruments_new(&h->instruments, &sensors, &job->actuators, &draw->straight, draw->robot.links,
                                     &h->controller));
+    h->law.reading = h->reading = moray_instruments_reading(h->instruments);
     if (h->adaptive)
-        moray_adaptive_look_at(h->adaptive, moray_instruments_reading(h->instruments));
+        moray_adaptive_look_at(h->adaptive, h->reading);
     return swim(job, draw, h, closed_loop);
+}
+
+static void dismiss(steersman *h)
+{
+    moray_adaptive_free(h->adaptive);
+    moray_instruments_free(h->instruments);
+    moray_robust_plan_free(&h->robust);
 }
 
 moray_status sea_record(const sea_job *job, const sea_draw *draw, int which, const double *number,
@@ -286,8 +344,7 @@ moray_status sea_record(const sea_job *job, const sea_draw *draw, int which, con
 {
     steersman h = {0};
     const moray_status status = set_out(job, draw, which, number, &h, closed_loop);
-    moray_adaptive_free(h.adaptive);
-    moray_instruments_free(h.instruments);
+    dismiss(&h);
     return status;
 }
 
@@ -301,9 +358,7 @@ moray_status sea_swim(const sea_job *job, const sea_draw *draw, int which, const
         judge(job, draw, &closed_loop, score);
         moray_swim_closed_loop_free(&closed_loop);
     }
-    if (h.adaptive)
-        score->failures = moray_adaptive_record(h.adaptive)->failures;
-    moray_adaptive_free(h.adaptive);
-    moray_instruments_free(h.instruments);
+    score->failures = h.adaptive ? moray_adaptive_record(h.adaptive)->failures : h.unplanned;
+    dismiss(&h);
     return status;
 }

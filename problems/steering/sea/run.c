@@ -151,6 +151,8 @@ void sea_signature(const sea_job *job, char *text, size_t size)
                              s->drop_out,
                              job->actuators.dead_time,
                              job->actuators.rate,
+                             job->actuators.torque,
+                             job->gyro,
                              job->current_most,
                              job->current_turning,
                              job->spread,

@@ -12,7 +12,7 @@
 
 enum { SEA_HEADING, SEA_PATH }; // tasks
 #define SEA_BESIDE 0.5          // of a path, where it begins [m]
-enum { SEA_MOST_SEEDS = 2000, SEA_LAWS = 10, SEA_NUMBERS = 5, SEA_SCORES = 3, SEA_COEFFICIENTS = 4 };
+enum { SEA_MOST_SEEDS = 2000, SEA_LAWS = 11, SEA_NUMBERS = 5, SEA_SCORES = 3, SEA_COEFFICIENTS = 4 };
 
 typedef struct sea_job sea_job;
 
@@ -35,8 +35,9 @@ typedef struct sea_law {
     double start[SEA_NUMBERS];
     int subset[3];   // laws that leave some of the numbers out; -1: none
     bool collocated; // its numbers come from a robust plan over the training draws, not from the tuner
-    // Of who plans, anew and anew or beforehand; a plan made beforehand is one with tuned feedback, and no rival.
-    enum { SEA_TOLD, SEA_BELIEVING, SEA_ESTIMATING, SEA_BEFOREHAND } knows;
+    // Of who plans, anew and anew or beforehand; a plan made beforehand is one with tuned feedback, and no rival. Over
+    // all: beforehand too, one plan with its gain for all robots of the training draws.
+    enum { SEA_TOLD, SEA_BELIEVING, SEA_ESTIMATING, SEA_BEFOREHAND, SEA_OVER_ALL } knows;
 } sea_law;
 
 // Of a trial. Heading: RMS and largest error [rad], power [W]; path: RMS distance [m], time to its end (the longest
@@ -71,6 +72,7 @@ struct sea_job {
     char believed_current[64];       // "unknown" or "VX,VY"
     // instruments
     moray_sensors sensors;
+    double gyro; // its standard deviation [rad/s]; infinite: there is none
     moray_actuators actuators;
     // draws
     int seeds, first_seed, training;
@@ -146,6 +148,13 @@ moray_status sea_tuned_write(const sea_job *job);
 // Gain, forward and integral numbers of a law by collocation over the training draws; those it began with where that
 // does not solve, told. Error: those of moray_robust_gains.
 moray_status sea_robust(const sea_job *job, double number[SEA_NUMBERS]);
+
+// From a heading to the offset that answers it, on average [s].
+double sea_lag(const sea_job *job);
+
+// The draw's reference planned for the robots of all training draws together, its gain from that of `number` on. Error:
+// those of moray_robust_plan_make. Free with moray_robust_plan_free.
+moray_status sea_robust_plan(const sea_job *job, const sea_draw *draw, const double *number, moray_robust_plan *plan);
 
 // Largest multipliers of the stroboscopic map of the believed robot with a law's gain around its heading and, with a
 // lookahead, its offset; without numbers of nobody's steering. NaN where there are none.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "snake/model/model.h"
+#include "snake/model/torque.h"
 
 struct moray_swimmer {
     moray_robot robot;
@@ -12,6 +14,8 @@ struct moray_swimmer {
     moray_swimmer_extra_fn *extra; // NULL: none
     void *scratch;                 // of the model
     double *reference;             // phi, phi_ref and their rates, N-1 each
+    torque_limit torque;
+    double *real; // accelerations of the joints, N-1, where torques are limited
 };
 
 static const snake_model *model_of(moray_model model)
@@ -47,6 +51,7 @@ void moray_swimmer_free(moray_swimmer *swimmer)
         return;
     free(swimmer->scratch);
     free(swimmer->reference);
+    free(swimmer->torque.room);
     free(swimmer);
 }
 
@@ -93,6 +98,29 @@ void moray_swimmer_set_extra(moray_swimmer *swimmer, moray_swimmer_extra_fn *ext
     swimmer->extra = extra;
 }
 
+moray_status moray_swimmer_set_torque(moray_swimmer *swimmer, double most)
+{
+    const int n = swimmer->robot.links - 1;
+    if (!(most >= 0))
+        return moray_error(MORAY_INPUT, "torque = %g N m: must be at least 0", most);
+    if (most > 0 && swimmer->kind != MORAY_FIRST_PRINCIPLES)
+        return moray_error(MORAY_INPUT, "torque = %g N m: the control-oriented model has no torques", most);
+    if (most > 0 && !swimmer->torque.room) {
+        swimmer->torque.room = malloc((TORQUE_ROOM(n) + (size_t)n) * sizeof(double));
+        if (!swimmer->torque.room)
+            return moray_error(MORAY_MEMORY, "torques of %d joints: no memory", n);
+        swimmer->real = swimmer->torque.room + TORQUE_ROOM(n);
+    }
+    swimmer->torque.n = n;
+    swimmer->torque.most = most;
+    return moray_ok();
+}
+
+double moray_swimmer_torque(const moray_swimmer *swimmer)
+{
+    return swimmer->torque.most;
+}
+
 void moray_swimmer_rest(const moray_swimmer *swimmer, double theta, double p_x, double p_y, double *x)
 {
     swimmer->model->rest(swimmer->robot.links, theta, p_x, p_y, x);
@@ -131,9 +159,29 @@ static bool all_finite(const double *values, int n)
     return true;
 }
 
+typedef struct state {
+    moray_swimmer *swimmer;
+    const double *x;
+    double *dx; // scratch
+} state;
+
+static bool efforts(void *self, const double *ubar, double *u)
+{
+    const state *at = self;
+    moray_swimmer *swimmer = at->swimmer;
+    return swimmer->model->rates(&swimmer->robot, swimmer->current, at->x, ubar, at->dx, u, swimmer->scratch);
+}
+
 bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u)
 {
-    const bool regular = swimmer->model->rates(&swimmer->robot, swimmer->current, x, ubar, dx, u, swimmer->scratch);
+    state at = {swimmer, x, dx};
+    bool regular = true;
+    if (swimmer->torque.most > 0) {
+        memcpy(swimmer->real, ubar, (size_t)swimmer->torque.n * sizeof *ubar);
+        regular = moray_torque_limited(&swimmer->torque, efforts, &at, swimmer->real);
+        ubar = swimmer->real;
+    }
+    regular = efforts(&at, ubar, u) && regular;
     if (swimmer->extra)
         swimmer->extra(swimmer, x, dx);
     return regular && all_finite(dx, moray_swimmer_states(swimmer)) &&

@@ -38,6 +38,8 @@ static moray_status navigate(moray_adaptive *a, const moray_swim_sample *sample)
         return moray_ok();
     const double age = spec->dead_time + (a->reading ? sample->t - a->reading->t : 0);
     moray_navigator_state(a->navigator, state);
+    if (a->reading && isfinite(a->reading->rate) && spec->navigator.rate_error > 0)
+        MORAY_TRY(moray_navigator_read_rate(a->navigator, a->reading->rate));
     const double c = cos(state[0]), s = sin(state[0]), v_t = state[MORAY_STATE_V_1], v_n = state[MORAY_STATE_V_2];
     return moray_navigator_read(a->navigator,
                                 moray_straight_motion_heading(spec->measured, sample->t, sample->pose.heading) +

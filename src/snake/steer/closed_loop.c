@@ -52,6 +52,7 @@ static moray_status sail(moray_swim_closed_loop *closed_loop, const moray_swim_c
                                   .controller = plan->controller,
                                   .times = times,
                                   .n_times = n,
+                                  .current_turning = plan->current_turning,
                                   .water = plan->water,
                                   .observe = record,
                                   .observer = &recorder};
@@ -73,6 +74,8 @@ moray_status moray_swim_closed_loop_run(moray_swim_closed_loop *closed_loop, con
         scratch && closed_loop->offset ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a closed_loop");
     if (!moray_failed(status))
         status = moray_swimmer_new(&closed_loop->swimmer, plan->robot, plan->straight->model);
+    if (!moray_failed(status))
+        status = moray_swimmer_set_torque(closed_loop->swimmer, plan->torque);
     if (!moray_failed(status))
         status = moray_swim_track_new(&closed_loop->track, closed_loop->swimmer, n);
     if (!moray_failed(status)) {

@@ -19,6 +19,11 @@ static void filter(moray_heading_law *law, double heading)
     law->begun = true;
 }
 
+static void filter_rate(moray_heading_law *law, double rate)
+{
+    law->rate += (1 - exp(-law->feedback->period / law->smoothing)) * (rate - law->rate);
+}
+
 double moray_heading_law_feed(const moray_swim_sample *sample, double t, void *self)
 {
     moray_heading_law *law = self;
@@ -29,7 +34,10 @@ double moray_heading_law_feed(const moray_swim_sample *sample, double t, void *s
     const double target = moray_reference_at(law->reference, sample->t + gains->lead, &rate);
     const double error = remainder(target - heading, 2 * M_PI);
     (void)t;
-    filter(law, heading);
+    if (law->reading && isfinite(law->reading->rate))
+        filter_rate(law, law->reading->rate);
+    else
+        filter(law, heading);
     const double rest =
         law->scale * (gains->forward * rate + gains->proportional * gains->derivative * (rate - law->rate));
     const double gain = law->scale * gains->proportional * gains->integral;

@@ -13,6 +13,7 @@ struct moray_instruments {
     moray_actuators actuators;
     const moray_straight_motion *straight;
     const moray_swim_controller *inner;
+    int links;
     unsigned long seed;
     double heading_error; // of the mean heading: compass and joints together
     double due;           // time of the next reading
@@ -50,12 +51,28 @@ static double swing(const moray_instruments *w, double t)
     return -moray_straight_motion_heading(w->straight, t, 0);
 }
 
+// Rate of the mean heading without that of its undulation.
+static double turning(const moray_instruments *w, const moray_swim_sample *sample)
+{
+    const moray_straight_motion *straight = w->straight;
+    const double phase = straight->gait.omega * sample->t;
+    double body[MORAY_BODY_STATES];
+    moray_state_body(straight->model, w->links, sample->x, body);
+    return body[MORAY_STATE_V_THETA] +
+           straight->gait.omega * (straight->undulation[0] * sin(phase) - straight->undulation[1] * cos(phase));
+}
+
 static void take_reading(moray_instruments *w, const moray_swim_sample *sample)
 {
     const moray_pose *pose = &sample->pose;
-    const moray_reading reading = {sample->t, pose->heading + w->heading_error * moray_random_normal(&w->seed),
-                                   pose->p_x + w->sensors.position * moray_random_normal(&w->seed),
-                                   pose->p_y + w->sensors.position * moray_random_normal(&w->seed), true};
+    moray_reading reading = {sample->t,
+                             pose->heading + w->heading_error * moray_random_normal(&w->seed),
+                             pose->p_x + w->sensors.position * moray_random_normal(&w->seed),
+                             pose->p_y + w->sensors.position * moray_random_normal(&w->seed),
+                             true,
+                             NAN};
+    if (w->sensors.gyro)
+        reading.rate = turning(w, sample) + w->sensors.rate * moray_random_normal(&w->seed);
     const bool lost = moray_random(&w->seed) < w->sensors.drop_out;
     w->due += w->sensors.sampling > 0 ? w->sensors.sampling : w->inner->period;
     if ((!lost || !w->any) && w->waiting < QUEUE)
@@ -132,10 +149,12 @@ const moray_reading *moray_instruments_reading(const moray_instruments *w)
 
 static moray_status check(const moray_sensors *s, const moray_actuators *a, const moray_swim_controller *controller)
 {
-    const double values[] = {s->heading, s->joints, s->position, s->sampling, s->delay, a->dead_time, a->rate};
-    static const char *const names[] = {"heading noise",           "joint noise",          "position noise",
-                                        "sampling of the sensors", "delay of the sensors", "dead time",
-                                        "rate of the actuators"};
+    const double values[] = {s->heading, s->joints,    s->position, s->rate,  s->sampling,
+                             s->delay,   a->dead_time, a->rate,     a->torque};
+    static const char *const names[] = {
+        "heading noise",           "joint noise",          "position noise", "noise of the heading's rate",
+        "sampling of the sensors", "delay of the sensors", "dead time",      "rate of the actuators",
+        "torque of the actuators"};
     for (size_t k = 0; k < sizeof values / sizeof *values; k++)
         if (!(values[k] >= 0 && isfinite(values[k])))
             return moray_error(MORAY_INPUT, "%s = %g: must be at least 0", names[k], values[k]);
@@ -164,6 +183,7 @@ moray_status moray_instruments_new(moray_instruments **result, const moray_senso
     w->sensors = *sensors;
     w->actuators = *actuators;
     w->straight = straight;
+    w->links = links;
     w->inner = controller;
     w->seed = sensors->seed;
     w->heading_error = sqrt(sensors->heading * sensors->heading + sensors->joints * sensors->joints * squares);

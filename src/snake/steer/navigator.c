@@ -157,7 +157,8 @@ static moray_status start(moray_navigator *n)
 moray_status moray_navigator_new(moray_navigator **result, const moray_navigator_spec *spec)
 {
     *result = NULL;
-    if (!(spec->heading_error > 0 && spec->position_error > 0 && spec->current_doubt >= 0 && spec->factor_doubt >= 0))
+    if (!(spec->heading_error > 0 && spec->position_error > 0 && spec->rate_error >= 0 && spec->current_doubt >= 0 &&
+          spec->factor_doubt >= 0))
         return moray_error(MORAY_INPUT, "errors of the readings, %g rad and %g m: must be above 0, doubts at least 0",
                            spec->heading_error, spec->position_error);
     moray_navigator *n = calloc(1, sizeof *n);
@@ -207,6 +208,18 @@ moray_status moray_navigator_read(moray_navigator *n, double heading, double p_x
 {
     const double z[3] = {heading, p_x, p_y}, a = n->spec.heading_error, p = n->spec.position_error;
     return moray_kalman_update(n->filter, 3, see, NULL, z, (double[]){a * a, p * p, p * p}, 1);
+}
+
+static void see_rate(void *self, const double *x, double *z)
+{
+    (void)self;
+    z[0] = x[MORAY_STATE_V_THETA];
+}
+
+moray_status moray_navigator_read_rate(moray_navigator *n, double rate)
+{
+    const double error = n->spec.rate_error;
+    return moray_kalman_update(n->filter, 1, see_rate, NULL, &rate, (double[]){error * error}, 0);
 }
 
 moray_belief moray_navigator_belief(const moray_navigator *n)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "moray/snake/robust.h"
+#include "snake/steer/robust.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,88 +7,51 @@
 #include <tgmath.h>
 
 #include "moray/angle.h"
-#include "snake/plant/average.h"
 
-enum { THETA, V_THETA, V_T, V_N, PHI_0, INTEGRAL, states };
+enum { INTEGRAL = ROBUST_STATES, states };
 enum { GAIN, FORWARD, INTEGRAL_GAIN, gains }; // the first as its logarithm
 enum { inputs = states + gains + 1, outputs = states + 1 };
-enum { plant_inputs = MORAY_STEERING_STATES + 1 + MORAY_STEERING_PARAMETERS + 1 };
-
-static const double error_unit = 10 * MORAY_DEGREE;
 
 typedef struct scenario {
-    const moray_robust_spec *spec;
-    const moray_scenario *own;
-    moray_average *plant;
+    robust_robot robot;
     moray_map map;
 } scenario;
-
-// Keeps a value within its limit, rounded off.
-static double complex limited(double complex value, double limit)
-{
-    return limit * tanh(value / limit);
-}
 
 // in = [state, gains, t], out = [state', squared error]
 static void closed_loop(void *self, const double complex *in, double complex *out)
 {
-    const scenario *at = self;
-    const moray_robust_spec *spec = at->spec;
-    const moray_gait *gait = &spec->gait;
+    const robust_robot *robot = self;
+    const double limit = robot->spec->offset;
     const double complex *s = in + states, t = s[gains];
     double rate;
-    const double now = moray_reference_at(at->own->reference, creal(t), &rate);
-    const double complex error = now + rate * (t - creal(t)) - in[THETA], gain = exp(s[GAIN]);
+    const double complex error = moray_robust_reference(robot, t, &rate) - in[ROBUST_THETA], gain = exp(s[GAIN]);
     const double complex wanted = gain * (error + s[INTEGRAL_GAIN] * in[INTEGRAL]) + s[FORWARD] * rate;
-    const double complex command = limited(wanted, spec->offset), within = command / spec->offset;
-    const double complex v_phi_0 = limited((command - in[PHI_0]) / spec->lag, spec->offset_rate);
-    const double turning = at->own->belief.turning;
-    double complex full[plant_inputs] = {[MORAY_STATE_THETA] = in[THETA],
-                                         [MORAY_STATE_V_THETA] = in[V_THETA],
-                                         [MORAY_STATE_V_1] = in[V_T],
-                                         [MORAY_STATE_V_2] = in[V_N],
-                                         [MORAY_STATE_PHI_0] = turning * in[PHI_0],
-                                         [MORAY_STATE_V_PHI_0] = turning * v_phi_0};
-    double complex rates[MORAY_STEERING_STATES + 1];
-    double complex *p = full + MORAY_STEERING_STATES + 1;
-    p[MORAY_STEERING_AMPLITUDE] = gait->amplitude * at->own->belief.amplitude;
-    p[MORAY_STEERING_OMEGA] = gait->omega;
-    p[MORAY_STEERING_DELTA] = gait->delta;
-    moray_average_rates(at->plant, full, rates);
-    out[THETA] = in[V_THETA];
-    out[V_THETA] = rates[MORAY_STATE_V_THETA];
-    out[V_T] = rates[MORAY_STATE_V_1];
-    out[V_N] = rates[MORAY_STATE_V_2];
-    out[PHI_0] = v_phi_0;
+    const double complex command = moray_robust_limited(wanted, limit), within = command / limit;
+    moray_robust_rates(robot, in, command, out);
     out[INTEGRAL] = error * (1 - within * within); // rests at the limit
-    out[states] = error * error / (error_unit * error_unit);
+    out[states] = error * error / (ROBUST_ERROR_UNIT * ROBUST_ERROR_UNIT);
 }
 
 static void release_scenario(scenario *at)
 {
     moray_map_release(&at->map);
-    free(at->plant);
+    free(at->robot.plant);
 }
 
-// In still water: how a robot turns in a uniform current is how it turns without.
 static moray_status make_scenario(scenario *at, const moray_robust_spec *spec, const moray_scenario *own)
 {
-    const moray_plant_spec plant = {.robot = spec->robot, .joints = MORAY_JOINTS_STEERED};
     const double probe[inputs] = {0.1,  0.05,     own->speed, 0.01, 0.2 * spec->offset,
                                   0.02, log(0.1), 0.2,        0.1,  0.37 * spec->duration};
-    *at = (scenario){.spec = spec, .own = own};
-    MORAY_TRY(moray_average_new(&at->plant, &plant));
-    return moray_map_from_complex(&at->map, inputs, outputs, closed_loop, at, NULL, probe);
+    MORAY_TRY(moray_robust_robot_new(&at->robot, spec, own));
+    return moray_map_from_complex(&at->map, inputs, outputs, closed_loop, &at->robot, NULL, probe);
 }
 
 static void mean_error(const moray_ends *at, moray_end_values *out, const void *data)
 {
     const moray_robust_spec *spec = data;
-    const moray_num gain = exp(at->s[GAIN]);
-    const double noise = spec->noise * spec->noise * spec->sampling / (2 * error_unit * error_unit);
-    out->objective = 0;
+    out->objective = moray_robust_noise(spec, exp(at->s[GAIN]));
     for (int k = 0; k < spec->n; k++)
-        out->objective += (at->phase[k].q[0] / spec->duration + noise * gain * fabs(spec->scenario[k].turn)) / spec->n;
+        out->objective += at->phase[k].q[0] / spec->duration / spec->n;
 }
 
 // ---- Solving -------------------------------------------------------------------------------------------------------
@@ -103,31 +66,21 @@ typedef struct room {
 
 enum { points = 401 };
 
-// The reference as though it were followed, somewhat late: the sizes of all that is solved for are taken from here.
 static void make_guess(room *r, const moray_robust_spec *spec, int k)
 {
-    double *time = r->guess + (size_t)k * points * (1 + states), *x = time + points, rate;
-    const double late = 1;
-    memset(x, 0, points * states * sizeof *x);
+    double *time = r->guess + (size_t)k * points * (1 + states), *x = time + points;
     for (int i = 0; i < points; i++) {
         time[i] = spec->duration * i / (points - 1);
-        x[i * states + THETA] = moray_reference_at(spec->scenario[k].reference, fmax(time[i] - late, 0), &rate);
-        x[i * states + V_THETA] = rate;
-        x[i * states + V_T] = spec->scenario[k].speed;
-        x[i * states + PHI_0] = rate / spec->scenario[k].turn;
+        moray_robust_guess(&spec->scenario[k], time[i], x + i * states);
+        x[i * states + INTEGRAL] = 0;
     }
     r->samples[k] = (moray_samples){.n = points, .time = time, .x = x};
 }
 
-// Wide, but such that the robot swims ahead, as the averaged plant takes for granted.
 static void bound_states(room *r, const moray_robust_spec *spec)
 {
-    const double speed = spec->scenario->speed, all_round = 4 * M_PI;
-    r->x[THETA] = moray_between(-all_round, all_round);
-    r->x[V_THETA] = moray_between(-1, 1);
-    r->x[V_T] = moray_between(0.1 * speed, 3 * speed);
-    r->x[V_N] = moray_between(-speed, speed);
-    r->x[PHI_0] = moray_between(-spec->offset, spec->offset);
+    const double all_round = 4 * M_PI;
+    moray_robust_bounds(spec, r->x);
     r->x[INTEGRAL] = moray_between(-all_round * spec->duration, all_round * spec->duration);
     r->q = moray_at_least(0);
 }
@@ -135,16 +88,11 @@ static void bound_states(room *r, const moray_robust_spec *spec)
 static moray_status make_phase(room *r, const moray_robust_spec *spec, int k)
 {
     static const char *const names[states] = {"theta", "v_theta", "v_t", "v_n", "phi_0", "integral"};
-    const moray_scenario *own = &spec->scenario[k];
-    double rate;
-    MORAY_TRY(make_scenario(&r->at[k], spec, own));
-    const moray_bounds x0[states] = {moray_fixed(moray_reference_at(own->reference, 0, &rate)),
-                                     moray_fixed(0),
-                                     moray_fixed(own->speed),
-                                     moray_fixed(0),
-                                     moray_fixed(0),
-                                     moray_fixed(0)};
-    memcpy(r->x0[k], x0, sizeof x0);
+    double start[states] = {0};
+    MORAY_TRY(make_scenario(&r->at[k], spec, &spec->scenario[k]));
+    moray_robust_start(&spec->scenario[k], start);
+    for (int i = 0; i < states; i++)
+        r->x0[k][i] = moray_fixed(start[i]);
     r->phase[k] = (moray_phase_spec){.nx = states,
                                      .nq = 1,
                                      .map = &r->at[k].map,
@@ -191,12 +139,7 @@ static moray_status solve(room *r, const moray_robust_spec *spec, moray_heading_
 
 moray_status moray_robust_gains(moray_heading_gains *found, double *objective, const moray_robust_spec *spec)
 {
-    if (spec->n < 1 || spec->n > MORAY_ROBUST_SCENARIOS)
-        return moray_error(MORAY_INPUT, "%d scenarios: must be from 1 to %d", spec->n, MORAY_ROBUST_SCENARIOS);
-    if (!(spec->start.proportional > 0 && spec->lag > 0 && spec->offset > 0 && spec->offset_rate > 0 &&
-          spec->noise >= 0 && spec->sampling >= 0))
-        return moray_error(MORAY_INPUT, "gain to start from = %g, lag = %g s, limits %g, %g: must be above 0",
-                           spec->start.proportional, spec->lag, spec->offset, spec->offset_rate);
+    MORAY_TRY(moray_robust_check(spec));
     room *r = calloc(1, sizeof *r);
     if (!r)
         return moray_error(MORAY_MEMORY, "no memory for %d scenarios", spec->n);

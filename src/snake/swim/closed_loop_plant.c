@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "snake/swim/closed_loop_plant.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 moray_status moray_swim_plant_new(swim_plant *plant, moray_swimmer *swimmer, const moray_gait *gait)
@@ -43,6 +44,21 @@ void moray_swim_stir(moray_swimmer *swimmer, const moray_water *water, double t,
     moray_swimmer_set_current(swimmer, V[0], V[1]);
 }
 
+swim_current moray_swim_current(const moray_swimmer *swimmer, const moray_swim_plan *plan)
+{
+    swim_current current = {.start = plan->t0, .turning = plan->current_turning};
+    moray_swimmer_current(swimmer, current.V);
+    return current;
+}
+
+void moray_swim_turn(moray_swimmer *swimmer, const swim_current *current, double t)
+{
+    const double angle = current->turning * (t - current->start), c = cos(angle), s = sin(angle);
+    if (current->turning != 0)
+        moray_swimmer_set_current(swimmer, c * current->V[0] - s * current->V[1],
+                                  s * current->V[0] + c * current->V[1]);
+}
+
 moray_status moray_swim_afloat(const moray_water *water, const moray_swim_sample *sample)
 {
     double low[3], high[3];
@@ -58,6 +74,7 @@ moray_status moray_swim_afloat(const moray_water *water, const moray_swim_sample
 
 static bool rates(swim_plant *plant, double t, const double *x, double *dx)
 {
+    moray_swim_turn(plant->swimmer, &plant->current, t);
     if (plant->water)
         moray_swim_stir(plant->swimmer, plant->water, t, x);
     moray_swimmer_control(plant->swimmer, &plant->gait, t, x, plant->ubar);

@@ -23,8 +23,8 @@ typedef struct on_gait {
     moray_gait gait;
     int n, n_joints;
     double t, start, y[states];
-    double direction, speed; // of the current at the start
-    double deviation[2];     // of the offset from what is commanded, and its rate, at t
+    swim_current current;
+    double deviation[2]; // of the offset from what is commanded, and its rate, at t
     int measurements;
     double *x, *dx, *phi, *v_phi, *ubar, *u;
 } on_gait;
@@ -62,18 +62,11 @@ static void set_offset(const on_gait *r, double t, moray_gait *gait)
 
 // ---- Body ----------------------------------------------------------------------------------------------------------
 
-static void set_current(on_gait *r, double t)
-{
-    const double direction = r->direction + r->how->current_turning * (t - r->start);
-    if (r->how->current_turning != 0)
-        moray_swimmer_set_current(r->swimmer, r->speed * cos(direction), r->speed * sin(direction));
-}
-
 // Of the gait as it is at t; leaves the full state in x and the efforts in u.
 static bool rates(on_gait *r, const moray_gait *gait, double t, const double *y, double *dy)
 {
     const moray_robot *robot = moray_swimmer_robot(r->swimmer);
-    set_current(r, t);
+    moray_swim_turn(r->swimmer, &r->current, t);
     moray_gait_reference(gait, r->n_joints, t, r->phi, r->v_phi, r->ubar);
     moray_swimmer_on_gait(r->swimmer, gait, t, y, r->x);
     if (r->plan->water)
@@ -182,8 +175,11 @@ static moray_status run(on_gait *r)
     return go(r, plan->t1);
 }
 
-static moray_status check(const moray_swim_plan *plan, const moray_swim_on_gait *how)
+static moray_status check(const moray_swimmer *swimmer, const moray_swim_plan *plan, const moray_swim_on_gait *how)
 {
+    if (moray_swimmer_torque(swimmer) > 0)
+        return moray_error(MORAY_INPUT, "joints exactly on a gait: not with torques of at most %g N m",
+                           moray_swimmer_torque(swimmer));
     if (plan->n_changes != 1 || plan->schedule[0].gait.series)
         return moray_error(MORAY_INPUT, "joints exactly on a gait: one gait without a series is needed");
     if (how->steps < 8)
@@ -196,12 +192,11 @@ static moray_status check(const moray_swim_plan *plan, const moray_swim_on_gait 
 moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_plan *plan, const moray_swim_on_gait *how,
                                     double *x, double *energy)
 {
-    MORAY_TRY(check(plan, how));
+    MORAY_TRY(check(swimmer, plan, how));
     const int n = moray_swimmer_states(swimmer), n_joints = moray_swimmer_robot(swimmer)->links - 1;
-    double V[2], *memory = calloc((size_t)(2 * n + 4 * n_joints), sizeof *memory);
+    double *memory = calloc((size_t)(2 * n + 4 * n_joints), sizeof *memory);
     if (!memory)
         return moray_error(MORAY_MEMORY, "no memory to simulate a swimmer of %d states", n);
-    moray_swimmer_current(swimmer, V);
     on_gait r = {.swimmer = swimmer,
                  .plan = plan,
                  .how = how,
@@ -210,8 +205,7 @@ moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_pla
                  .n_joints = n_joints,
                  .t = plan->t0,
                  .start = plan->t0,
-                 .direction = atan2(V[1], V[0]),
-                 .speed = hypot(V[0], V[1]),
+                 .current = moray_swim_current(swimmer, plan),
                  .x = memory,
                  .dx = memory + n,
                  .phi = memory + 2 * n,
@@ -224,7 +218,7 @@ moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_pla
     memcpy(x, r.x, (size_t)n * sizeof *x);
     if (energy)
         *energy = r.y[ENERGY];
-    moray_swimmer_set_current(swimmer, V[0], V[1]);
+    moray_swim_turn(swimmer, &r.current, r.start);
     free(memory);
     return status;
 }

@@ -106,6 +106,7 @@ static moray_status prepare(swim_run *r, moray_swimmer *swimmer, const double *x
     const moray_swim_plan *plan = r->plan;
     MORAY_TRY(moray_swim_plant_new(&r->plant, swimmer, &plan->schedule[0].gait));
     r->plant.water = plan->water;
+    r->plant.current = moray_swim_current(swimmer, plan);
     r->ode = moray_swim_plant_ode(&r->plant);
     r->change = calloc((size_t)plan->n_changes, sizeof *r->change);
     if (!r->change)
@@ -126,6 +127,7 @@ moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *se
         status = run(&r, settings);
         if (!moray_failed(status))
             status = r.left;
+        moray_swim_turn(swimmer, &r.plant.current, plan->t0);
         memcpy(x, r.plant.x, (size_t)r.plant.n_states * sizeof *x);
         if (energy)
             *energy = r.plant.x[r.plant.n_states];

@@ -111,6 +111,37 @@ static void test_noise(void)
     CHECK(first == again, "the same seed has the same errors");
 }
 
+// The rate of the mean heading without that of the undulation, with an error of its own.
+static void test_gyro(void)
+{
+    enum { n = 4000, v_theta = 21, states = 24 };
+    const double turning = 0.3, error = 2 * DEG;
+    listener l = {0};
+    const moray_swim_controller controller = {say, listen, 0.1, &l};
+    double sum = 0, squares = 0;
+    moray_instruments *w =
+        around(&controller, &(moray_sensors){.gyro = true, .rate = error, .seed = 5}, &(moray_actuators){0});
+    const moray_swim_controller outer = moray_instruments_controller(w);
+    for (int k = 0; k < n; k++) {
+        const double t = 0.1 * k;
+        double x[states] = {[v_theta] = turning - 0.2 * sin(2 * t) - 0.1 * cos(2 * t)}; // of swing
+        const moray_swim_sample sample = {.t = t, .x = x};
+        if (moray_failed(outer.measure(&sample, outer.self)))
+            break;
+        const double off = moray_instruments_reading(w)->rate - turning;
+        sum += off / n;
+        squares += off * off / n;
+    }
+    CHECK_NEAR(sum, 0, 0.05 * error, "mean error of the rate [rad/s]");
+    CHECK_NEAR(sqrt(squares), error, 0.05 * error, "its standard deviation [rad/s]");
+    moray_instruments_free(w);
+    w = around(&controller, &(moray_sensors){0}, &(moray_actuators){0});
+    const moray_swim_controller without = moray_instruments_controller(w);
+    look(&without, 0);
+    CHECK(isnan(moray_instruments_reading(w)->rate), "no rate without a gyro");
+    moray_instruments_free(w);
+}
+
 static void test_actuators(void)
 {
     listener l = {.value = 0};
@@ -151,6 +182,7 @@ int main(void)
 {
     test_late();
     test_noise();
+    test_gyro();
     test_actuators();
     test_refusals();
     return tap_done();

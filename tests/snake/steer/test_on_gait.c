@@ -73,19 +73,26 @@ static void test_current(void)
     gait.amplitude *= 1e-3; // hardly swims
     const double period = 2 * M_PI / gait.omega, speed = 0.1;
     const int periods = 40;
-    const moray_swim_on_gait how = {.steps = 16, .current_turning = 2 * M_PI / (periods * period)};
+    const moray_swim_on_gait how = {.steps = 16};
+    const double turning = 2 * M_PI / (periods * period);
     const moray_gait_change change = {0, gait};
     moray_swimmer *swimmer;
-    double x[24], V[2], body[MORAY_BODY_STATES] = {0};
+    double x[24], freely[24], V[2], body[MORAY_BODY_STATES] = {0};
     CHECK_OK(moray_swimmer_new(&swimmer, &robot, MORAY_FIRST_PRINCIPLES), "swimmer");
     moray_swimmer_set_current(swimmer, speed, 0);
     body[MORAY_STATE_V_1] = speed; // with the water
     moray_swimmer_on_gait(swimmer, &gait, 0, body, x);
-    const moray_swim_plan plan = {.t1 = periods * period / 2, .schedule = &change, .n_changes = 1};
+    moray_swimmer_on_gait(swimmer, &gait, 0, body, freely);
+    const moray_swim_plan plan = {
+        .t1 = periods * period / 2, .schedule = &change, .n_changes = 1, .current_turning = turning};
     CHECK_OK(moray_swim_run_on_gait(swimmer, &plan, &how, x, NULL), "half a turn");
     const moray_pose half = moray_swimmer_pose(swimmer, x);
-    const double radius = speed / how.current_turning;
+    const double radius = speed / turning;
+    const moray_sim_settings settings = moray_sim_settings_default();
     CHECK_NEAR(half.p_y, 2 * radius, 0.1 * radius, "where half a circle of the water's ends [m]");
+    CHECK_OK(moray_swim_run(swimmer, &settings, &plan, freely, NULL), "the same with the joints' own dynamics");
+    CHECK_NEAR(moray_swimmer_pose(swimmer, freely).p_x, half.p_x, 1e-4, "comes there too [m]");
+    CHECK_NEAR(moray_swimmer_pose(swimmer, freely).p_y, half.p_y, 1e-4, "and there [m]");
     moray_swimmer_current(swimmer, V);
     CHECK(V[0] == speed && V[1] == 0, "the swimmer's current is as before");
     moray_swimmer_free(swimmer);
