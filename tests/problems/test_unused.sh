@@ -72,7 +72,7 @@ printf '[problem]\nradius_m = 4\n' >file.ini
 idle sea_trials radius_m --config file.ini
 # A run's own file, in which every key stands, is taken again.
 program=$programs/sea_trials
-run --seeds 1 --jobs 1 --set training=1 --set starts=1 --set evaluations=1 --set duration_s=10 --set replan_periods=9 --out done --quiet
+run --seeds 1 --jobs 1 --set training=1 --set starts=1 --set evaluations=1 --set duration_s=10 --set replan_periods=3 --out done --quiet
 run --config done/run.ini --seeds 1 --set planner_current=some
 check "run.ini is taken: $(cat err)" eval 'grep -q planner_current err'
 
