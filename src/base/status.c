@@ -29,7 +29,7 @@ static void flatten(char *text)
 {
     const char delete = 0x7f;
     for (; *text; text++)
-        if ((*text >= '\t' && *text <= '\r') || *text == ' ')
+        if (*text >= '\t' && *text <= '\r')
             *text = ' ';
         else if ((*text > 0 && *text < ' ') || *text == delete)
             *text = '?';

@@ -19,11 +19,15 @@ typedef struct moray_log {
     const double *heading, *p_x, *p_y; // read then, the heading without undulation; NAN: nothing was
 } moray_log;
 
-// What is believed at the end of the log, from its last `window` seconds: least squares of the readings by their
-// errors, and of current and factors from the spec's belief by their doubts; a doubt of 0 leaves them as they are. The
-// state at the start of the window is free. error[4], or NULL: standard deviations of V_x, V_y [m/s] and of the
-// factors, by what the readings say of them alone (INFINITY: nothing). Error: MORAY_INPUT where there are fewer than
-// two readings in the window; MORAY_NOT_SOLVED; those of moray_average_plant, moray_solve and moray_fit_new.
+// What is believed at the end of the log, from its last `window` [s]: the state x at the start of the window, the
+// current V and the factors f of the spec's belief that minimise
+//     sum_k |(reading_k - x(t_k)) / error|^2 + |(V - V_belief) / current_doubt|^2
+//         + |(ln f - ln f_belief) / factor_doubt|^2
+// along the averaged plant, the errors those of heading and position in the spec; where a doubt is 0 the belief stays.
+// *found: V and f; error[4], unless NULL: standard deviations of V_x, V_y [m/s] and of the factors of amplitude and
+// turning, by what the readings say of them alone (INFINITY: nothing). Borrows spec, log and settings. Error:
+// MORAY_INPUT where there are fewer than two readings in the window; MORAY_NOT_SOLVED; those of moray_average_plant,
+// moray_solve and moray_fit_new.
 MORAY_API moray_status moray_moving_horizon(const moray_navigator_spec *spec, const moray_log *log, double window,
                                             const moray_settings *settings, moray_belief *found, double error[4]);
 
