@@ -37,8 +37,13 @@ typedef struct moray_supply {
     double rate;     // what every joint of the first-principles model can turn at [rad/s]; 0 or infinite: no limit
 } moray_supply;
 
-// Error: MORAY_INPUT naming the field that is not usable, its value and what is allowed; one not fitted is good.
+// Error of both: MORAY_INPUT naming the field that is not usable, its value and what is allowed; a motor that is not
+// fitted is good unless it has lines.
 MORAY_API moray_status moray_motor_check(const moray_motor *motor);
+MORAY_API moray_status moray_supply_check(const moray_supply *supply);
+
+// What the motor gives where the joint takes u, its friction besides; u where none is fitted [N m].
+MORAY_API double moray_motor_torque(const moray_motor *motor, double u, double v);
 
 // Power at the terminals [W].
 MORAY_API double moray_motor_power(const moray_motor *motor, double u, double v);

@@ -37,6 +37,7 @@ MORAY_API void moray_orbit_free(moray_orbit *orbit);
 typedef struct moray_orbit_result {
     moray_gait gait;     // with the offset found
     moray_steady steady; // as moray_swim_steady gives it, but start_heading is that of the orbit at t = 0, periods is 0
+    double peak_load;    // of the motors, of what their supply allows, sampled as peaks of steady are; 0: no lines
     int iterations;      // of Newton's method
     double residual;     // largest defect that is left, in units of the state
 } moray_orbit_result;
@@ -59,6 +60,7 @@ typedef struct moray_orbit_gradient {
     double course_speed[5]; // of moray_course_speed
     double power[5];
     double peak_effort[5]; // of the largest sample
+    double peak_load[5];   // likewise; 0 without lines
     double steering[5];    // of the offset found, or else of the turn a period
 } moray_orbit_gradient;
 MORAY_API moray_status moray_orbit_gradients(moray_orbit *orbit, moray_orbit_gradient *gradient);

@@ -14,7 +14,8 @@ MORAY_BEGIN
 // ---- Control-oriented model as maps with analytic derivatives (for the transcription) ------------------------------
 //
 // in  = [state x, controls u, parameters s, time t]
-// out = [f: state derivative | c: path outputs | g: joint power sum u_i v_phi,i in W]
+// out = [f: state derivative | c: path outputs | g: power sum u_i v_phi,i of the joints in W; with motors of the
+//        first-principles model that at their terminals]
 // path outputs c, each block only when asked for: joint forces u_i of (22) in N (N-1), then link angles theta_i of (12)
 // (N).
 
@@ -45,7 +46,8 @@ typedef struct moray_plant_size {
 } moray_plant_size;
 MORAY_API moray_plant_size moray_plant_sizes(const moray_plant_spec *spec);
 
-// Error: MORAY_INPUT (robot), MORAY_MEMORY. The map owns all it needs; release with moray_map_release.
+// Error: MORAY_INPUT (robot; path_supply, path_rates where they cannot be had), MORAY_MEMORY. The map owns all it
+// needs; release with moray_map_release.
 MORAY_API moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec);
 
 // The first-principles model in the same form, for all but MORAY_JOINTS_CLOSED_LOOP, with alpha in place of a:

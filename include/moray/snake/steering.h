@@ -2,7 +2,8 @@
 //
 // Steering problems: a robot swims on a gait (25) and steers by the joint offset phi_0(t), a piecewise polynomial of
 // limited range, rate and acceleration. One phase; states and control are those of MORAY_JOINTS_STEERED, parameters
-// the gait's. A task adds what is to be followed or reached.
+// the gait's. A task adds what is to be followed or reached. On the first-principles model the robot's motors limit
+// torques at every time, by their lines, and rates, those of a whole stroke: alpha omega + |phi_0'|.
 #ifndef MORAY_SNAKE_STEERING_H
 #define MORAY_SNAKE_STEERING_H
 
@@ -21,7 +22,7 @@ typedef struct moray_steering_limits {
     moray_bounds theta_max;                          // [rad] amplitude of (24), through (33) or (27)
     moray_bounds omega, delta;                       // [rad/s], [rad]
     double offset, offset_rate, offset_acceleration; // |phi_0| [m or rad], |phi_0'|, |phi_0''|
-    double power;                                    // mean joint power [W]
+    double power;                                    // mean of the joints, or at the terminals of their motors [W]
 } moray_steering_limits;
 
 // The limits of the offset that mean the same to the other model, with the gait of `from`.
@@ -39,7 +40,7 @@ typedef struct moray_steering_task {
     const moray_bounds *u, *c, *e; // [nu], [nc], [ne]
     const char *const *u_names, *const *c_names, *const *e_names;
     const double *weight; // [nq], of the integrals in the objective
-    double weight_power;  // of the joint work [1/J]
+    double weight_power;  // of the work of joints or motors [1/J]
     double weight_time;   // of tf - t0 [1/s]
 } moray_steering_task;
 

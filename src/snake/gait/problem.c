@@ -75,11 +75,10 @@ static int supply_lines(const moray_gait_problem *problem)
     return problem->spec.model == MORAY_FIRST_PRINCIPLES ? problem->spec.robot.motor.lines : 0;
 }
 
-// The joints' own limit, or that of their motors.
-static double most_rate(const moray_gait_problem *problem)
+double moray_gait_most_rate(const moray_gait_problem_spec *spec)
 {
-    const double limit = problem->spec.limits.joint_rate, rate = problem->spec.robot.supply.rate;
-    return problem->spec.model == MORAY_FIRST_PRINCIPLES && rate > 0 ? fmin(limit, rate) : limit;
+    const double limit = spec->limits.joint_rate, rate = spec->robot.supply.rate;
+    return spec->model == MORAY_FIRST_PRINCIPLES && rate > 0 ? fmin(limit, rate) : limit;
 }
 
 static moray_status make_plant(moray_gait_problem *problem)
@@ -93,7 +92,7 @@ static moray_status make_plant(moray_gait_problem *problem)
                                     .path_angles = by_link_angles(problem) ||
                                                    (spec->model == MORAY_CONTROL_ORIENTED &&
                                                     (spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0)),
-                                    .path_rates = on_series(problem) && limited(most_rate(problem)),
+                                    .path_rates = on_series(problem) && limited(moray_gait_most_rate(&problem->spec)),
                                     .harmonics = spec->harmonics};
     problem->size = moray_plant_sizes(&plant);
     return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&problem->plant, &plant)
@@ -116,7 +115,7 @@ static void make_endpoint(moray_gait_problem *problem)
                                                .course = {cos(spec->course), sin(spec->course)},
                                                .goal = spec->goal,
                                                .power = limited(spec->limits.power),
-                                               .rate = !series && limited(most_rate(problem)),
+                                               .rate = !series && limited(moray_gait_most_rate(&problem->spec)),
                                                .speed = least_speed(spec) > 0,
                                                .constant = spec->robot.supply.constant};
 }
@@ -136,7 +135,7 @@ static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
         const double most = i < efforts  ? limits->joint_effort
                             : i < supply ? problem->spec.robot.motor.torque[(i - efforts) / joints]
                             : i < angles ? limits->theta_max.upper
-                                         : most_rate(problem);
+                                         : moray_gait_most_rate(&problem->spec);
         c[i] = moray_between(-most, most);
     }
 }
@@ -157,7 +156,7 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
     if (endpoint->power)
         *e++ = moray_at_most(limits->power);
     for (int k = 0; k < (endpoint->head && endpoint->tail ? 2 : 1) && endpoint->rate; k++)
-        *e++ = moray_at_most(most_rate(problem));
+        *e++ = moray_at_most(moray_gait_most_rate(&problem->spec));
     if (endpoint->speed)
         *e++ = moray_at_least(least_speed(&problem->spec));
 }

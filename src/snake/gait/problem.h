@@ -17,6 +17,10 @@ struct moray_gait_problem {
     moray_ocp *ocp;
 };
 
+// The largest rate amplitude that a joint may have: the joints' own limit, or that of their motors; MORAY_INFINITY or
+// more: any.
+double moray_gait_most_rate(const moray_gait_problem_spec *spec);
+
 // What a phase of a solution is for the problem, at its parameters s; power_price is left at 0.
 moray_gait_prediction moray_gait_problem_read(const moray_gait_problem *problem, const moray_solution *solution,
                                               int phase, const double *s);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "snake/gait/problem.h"
+
 enum { VARIABLES = 3 }; // theta_max, omega, delta
 
 struct moray_gait_search {
@@ -17,6 +19,11 @@ struct moray_gait_search {
 static bool limited(double value)
 {
     return value < MORAY_INFINITY;
+}
+
+static bool has_lines(const moray_gait_problem_spec *spec)
+{
+    return spec->model == MORAY_FIRST_PRINCIPLES && spec->robot.motor.lines > 0;
 }
 
 static bool flows(const moray_gait_problem_spec *spec)
@@ -37,8 +44,6 @@ static moray_status check(const moray_gait_problem_spec *spec)
     if (spec->limits.taper.lower != 0 || spec->limits.taper.upper != 0)
         return moray_error(MORAY_INPUT, "taper = %g:%g: a search knows gaits without one", spec->limits.taper.lower,
                            spec->limits.taper.upper);
-    if (spec->model == MORAY_FIRST_PRINCIPLES && spec->robot.motor.lines > 0)
-        return moray_error(MORAY_INPUT, "motor_torque_N_m: a search knows no limits of what motors give");
     if (!flows(spec) && (offset.lower > 0 || offset.upper < 0))
         return moray_error(MORAY_INPUT, "phi0 = %g:%g: in still water the heading returns at 0 only", offset.lower,
                            offset.upper);
@@ -49,8 +54,8 @@ static moray_status check(const moray_gait_problem_spec *spec)
 static int count_limits(const moray_gait_problem_spec *spec)
 {
     const moray_gait_limits *limits = &spec->limits;
-    return limited(limits->power) + limited(limits->joint_rate) + limited(limits->joint_effort) +
-           (limits->course_speed > 0) + (flows(spec) ? 2 : 0);
+    return limited(limits->power) + limited(moray_gait_most_rate(spec)) + limited(limits->joint_effort) +
+           has_lines(spec) + (limits->course_speed > 0) + (flows(spec) ? 2 : 0);
 }
 
 moray_status moray_gait_search_new(moray_gait_search **result, const moray_gait_problem_spec *spec, const char *scheme,
@@ -139,14 +144,17 @@ static void write_limits(const moray_gait_search *search, const double *x, const
                          const moray_orbit_gradient *by, double *c, double *jacobian)
 {
     const moray_gait_limits *limits = &search->spec.limits;
-    const double amplitude = at->gait.amplitude, omega = at->gait.omega, rate[4] = {omega, amplitude, 0, 0};
+    const double amplitude = at->gait.amplitude, omega = at->gait.omega, rate[4] = {omega, amplitude, 0, 0},
+                 most_rate = moray_gait_most_rate(&search->spec);
     struct limits_writer to = {search, x, c, jacobian};
     if (limited(limits->power))
         write_limit(&to, at->steady.power, by->power, limits->power, limits->power);
-    if (limited(limits->joint_rate))
-        write_limit(&to, amplitude * omega, rate, limits->joint_rate, limits->joint_rate);
+    if (limited(most_rate))
+        write_limit(&to, amplitude * omega, rate, most_rate, most_rate);
     if (limited(limits->joint_effort))
         write_limit(&to, at->steady.peak_effort, by->peak_effort, limits->joint_effort, limits->joint_effort);
+    if (has_lines(&search->spec))
+        write_limit(&to, at->peak_load, by->peak_load, 1, 1);
     if (limits->course_speed > 0)
         write_limit(&to, moray_course_speed(&at->steady, search->spec.course), by->course_speed, limits->course_speed,
                     -limits->course_speed);
@@ -157,7 +165,7 @@ static void write_limits(const moray_gait_search *search, const double *x, const
     }
 }
 
-// Minus the speed along the course, or joint work per distance along it.
+// Minus the speed along the course, or work per distance along it.
 static double write_goal(const moray_gait_search *search, const double *x, const moray_orbit_result *at,
                          const moray_orbit_gradient *by, double *gradient)
 {

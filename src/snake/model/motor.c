@@ -24,12 +24,47 @@ moray_status moray_motor_check(const moray_motor *motor)
               {"copper", motor->copper, 0, INFINITY, false},
               {"smooth_rate", motor->smooth_rate, 0, INFINITY, true},
               {"smooth_power", motor->smooth_power, 0, INFINITY, true}};
+    if (motor->lines < 0 || motor->lines > MORAY_MOTOR_LINES)
+        return moray_error(MORAY_INPUT, "motor: %d lines of torque over speed: must be 0 to %d", motor->lines,
+                           MORAY_MOTOR_LINES);
+    if (!motor->fitted && motor->lines > 0)
+        return moray_error(MORAY_INPUT, "motor: %d lines of torque over speed, but none is fitted", motor->lines);
+    for (int k = 0; k < motor->lines; k++)
+        if (!(motor->torque[k] > 0 && motor->slope[k] >= 0) || !isfinite(motor->torque[k]) ||
+            !isfinite(motor->slope[k]))
+            return moray_error(
+                MORAY_INPUT,
+                "motor: line %d: torque = %g N m, slope = %g N m s/rad: must be finite, the torque above "
+                "0, the slope at least 0",
+                k + 1, motor->torque[k], motor->slope[k]);
     for (unsigned k = 0; k < sizeof of / sizeof *of && motor->fitted; k++)
         if (!isfinite(of[k].value) || of[k].value < of[k].least || of[k].value > of[k].most ||
             (of[k].open && of[k].value == of[k].least))
             return moray_error(MORAY_INPUT, "motor: %s = %g: must be %s %g and at most %g", of[k].name, of[k].value,
                                of[k].open ? "above" : "at least", of[k].least, of[k].most);
     return moray_ok();
+}
+
+moray_status moray_supply_check(const moray_supply *supply)
+{
+    const struct {
+        const char *name, *unit;
+        double value;
+        bool any; // infinite is allowed
+    } of[] = {{"constant power", "W", supply->constant, false},
+              {"battery", "Wh", supply->battery, false},
+              {"joint rate", "rad/s", supply->rate, true}};
+    for (unsigned k = 0; k < sizeof of / sizeof *of; k++)
+        if (!(of[k].value >= 0) || (isinf(of[k].value) && !of[k].any))
+            return moray_error(MORAY_INPUT, "supply: %s = %g %s: must be %sat least 0", of[k].name, of[k].value,
+                               of[k].unit, of[k].any ? "" : "finite and ");
+    return moray_ok();
+}
+
+double moray_motor_torque(const moray_motor *motor, double u, double v)
+{
+    double slope;
+    return motor->fitted ? u + friction_d(motor, v, &slope) : u;
 }
 
 double moray_motor_power(const moray_motor *motor, double u, double v)

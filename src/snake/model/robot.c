@@ -117,5 +117,6 @@ moray_status moray_robot_check(const moray_robot *robot)
     }
     MORAY_TRY(moray_links_check(robot));
     MORAY_TRY(moray_motor_check(&robot->motor));
+    MORAY_TRY(moray_supply_check(&robot->supply));
     return check_hydrodynamics(&robot->hydro);
 }

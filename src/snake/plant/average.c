@@ -13,6 +13,7 @@
 #include <tgmath.h>
 
 #include "snake/model/control_body.h"
+#include "snake/plant/series.h"
 #include "snake/plant/average.h"
 
 enum { states = MORAY_STEERING_STATES, STEERING = states, AMPLITUDE, OMEGA, DELTA, TIME, inputs };
@@ -140,7 +141,7 @@ void moray_average_rates(void *context, const double complex *in, double complex
 moray_status moray_average_new(moray_average **result, const moray_plant_spec *spec)
 {
     *result = NULL;
-    MORAY_TRY(moray_robot_check(&spec->robot));
+    MORAY_TRY(moray_plant_check(spec, false));
     if (spec->joints != MORAY_JOINTS_STEERED || spec->path_forces || spec->path_angles)
         return moray_error(MORAY_INPUT, "the averaged plant is steered and has no path outputs");
     moray_average *self = calloc(1, sizeof *self);

@@ -275,7 +275,7 @@ moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec)
 {
     fp_plant *plant = NULL;
     *map = (moray_map){0};
-    MORAY_TRY(moray_robot_check(&spec->robot));
+    MORAY_TRY(moray_plant_check(spec, true));
     if (spec->water)
         return moray_water_plant(map, spec, true, moray_fp_plant);
     if (spec->joints == MORAY_JOINTS_SERIES)

@@ -24,6 +24,17 @@ moray_plant_size moray_plant_sizes(const moray_plant_spec *spec)
     return size;
 }
 
+moray_status moray_plant_check(const moray_plant_spec *spec, bool first_principles)
+{
+    MORAY_TRY(moray_robot_check(&spec->robot));
+    if (spec->path_supply && !first_principles)
+        return moray_error(MORAY_INPUT, "path_supply: the control-oriented model's joints are not rotary: they have no "
+                                        "torques and speeds that motors would give");
+    if (spec->path_rates && spec->joints != MORAY_JOINTS_SERIES)
+        return moray_error(MORAY_INPUT, "path_rates: only with the joints on a series");
+    return moray_ok();
+}
+
 static void place_outputs(plant *self, const moray_plant_spec *spec)
 {
     const moray_plant_size size = moray_plant_sizes(spec);
@@ -195,7 +206,7 @@ static void release(moray_map *map)
 moray_status moray_control_plant(moray_map *map, const moray_plant_spec *spec)
 {
     *map = (moray_map){0};
-    MORAY_TRY(moray_robot_check(&spec->robot));
+    MORAY_TRY(moray_plant_check(spec, false));
     if (spec->water)
         return moray_water_plant(map, spec, false, moray_control_plant);
     if (spec->joints == MORAY_JOINTS_SERIES)

@@ -4,6 +4,9 @@
 
 #include "moray/snake/plant.h"
 
+// What every plant of a model is checked for. Error: MORAY_INPUT.
+moray_status moray_plant_check(const moray_plant_spec *spec, bool first_principles);
+
 typedef moray_status plant_maker(moray_map *map, const moray_plant_spec *spec);
 
 // A plant of a checked robot with its joints on a series, out of the same model's plant with free joints, which `make`

@@ -14,7 +14,7 @@ moray_status moray_steering_new(moray_steering **problem, const moray_steering_s
 void moray_steering_free(moray_steering *problem);
 const moray_ocp *moray_steering_ocp(const moray_steering *problem);
 
-// Joint work over the phase [J]; the task's integrals are the first of moray_solution_integrals.
+// Work of joints or motors over the phase [J]; the task's integrals are the first of moray_solution_integrals.
 double moray_steering_work(const moray_steering *problem, const moray_solution *solution);
 
 // The parameters of a gait, for a guess; its offset is none of them.

@@ -2,6 +2,7 @@
 #include "moray/snake/steering.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tgmath.h>
@@ -10,13 +11,15 @@
 #include "snake/swim/limits.h"
 #include "snake/steer/problems.h"
 
-enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2 };
+enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2, rates = 2 };
+enum { NAME_SIZE = 24 };
 
 struct moray_steering {
     moray_steering_spec spec;
     moray_map plant;
     moray_bounds *block;
-    const char **names; // of controls and events
+    const char **names;            // of controls, events and path outputs
+    char (*path_names)[NAME_SIZE]; // that the motors' point into
     moray_ocp *ocp;
 };
 
@@ -43,6 +46,47 @@ moray_steering_limits moray_steering_limits_map(const moray_robot *robot, const 
         if (*offsets[k] < MORAY_INFINITY)
             *offsets[k] *= scale;
     return mapped;
+}
+
+// ---- Motors --------------------------------------------------------------------------------------------------------
+
+static const moray_motor *motor_of(const moray_steering_spec *spec)
+{
+    return spec->model == MORAY_FIRST_PRINCIPLES ? &spec->robot.motor : NULL;
+}
+
+// Path outputs of what their supply allows.
+static int supply_rows(const moray_steering_spec *spec)
+{
+    const moray_motor *motor = motor_of(spec);
+    return motor ? motor->lines * (spec->robot.links - 1) : 0;
+}
+
+// What the joints can turn at, where that is limited: path outputs are then alpha omega +- phi_0', the largest rates of
+// a stroke either way.
+static int rate_rows(const moray_steering_spec *spec)
+{
+    const double rate = spec->robot.supply.rate;
+    return motor_of(spec) && rate > 0 && rate < MORAY_INFINITY ? rates : 0;
+}
+
+static void fastest(const double complex *in, int first_parameter, double complex *out)
+{
+    const double complex stroke =
+        in[first_parameter + MORAY_STEERING_AMPLITUDE] * in[first_parameter + MORAY_STEERING_OMEGA];
+    out[0] = stroke + in[MORAY_STATE_V_PHI_0];
+    out[1] = stroke - in[MORAY_STATE_V_PHI_0];
+}
+
+// Of moray_steering_spec: its rates, then the task's functions.
+static void added_outputs(void *self, const double complex *in, double complex *out)
+{
+    const moray_steering_spec *spec = self;
+    const moray_steering_task *task = &spec->task;
+    if (rate_rows(spec))
+        fastest(in, states + 1 + task->nu, out);
+    if (task->extra)
+        task->extra(task->self, in, out + rate_rows(spec));
 }
 
 // ---- Checks --------------------------------------------------------------------------------------------------------
@@ -130,8 +174,8 @@ static void fill_points(const moray_steering_spec *spec, int n_in, double *point
         }
 }
 
-// The task's functions on the inputs of the phase.
-static moray_status make_added(const moray_steering_spec *spec, int n_in, moray_map *added)
+// The rates of the joints and the task's functions on the inputs of the phase.
+static moray_status make_added(moray_steering_spec *spec, int n_in, moray_map *added)
 {
     const moray_steering_task *task = &spec->task;
     double *points = calloc((size_t)(look_points * n_in), sizeof *points);
@@ -141,7 +185,7 @@ static moray_status make_added(const moray_steering_spec *spec, int n_in, moray_
     fill_points(spec, n_in, points);
     const struct numeric_probe probe = {.points = points, .n = look_points};
     const moray_status status =
-        moray_complex_map_new(added, n_in, task->nc + task->nq, task->extra, task->self, NULL, &probe);
+        moray_complex_map_new(added, n_in, rate_rows(spec) + task->nc + task->nq, added_outputs, spec, NULL, &probe);
     free(points);
     return status;
 }
@@ -149,18 +193,19 @@ static moray_status make_added(const moray_steering_spec *spec, int n_in, moray_
 // The task's functions joined to the plant's.
 static moray_status make_plant(moray_steering *problem)
 {
-    const moray_steering_spec *spec = &problem->spec;
+    moray_steering_spec *spec = &problem->spec;
     const moray_steering_task *task = &spec->task;
     const moray_plant_spec plant_spec = {.robot = spec->robot,
                                          .joints = MORAY_JOINTS_STEERED,
                                          .current = {spec->current[0], spec->current[1]},
-                                         .water = spec->water};
+                                         .water = spec->water,
+                                         .path_supply = supply_rows(spec) > 0};
     int place[states + 1 + parameters + 1];
     moray_map plant, added;
     MORAY_TRY(spec->averaged                          ? moray_average_plant(&plant, &plant_spec)
               : spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&plant, &plant_spec)
                                                       : moray_fp_plant(&plant, &plant_spec));
-    if (task->nc + task->nq == 0) {
+    if (rate_rows(spec) + task->nc + task->nq == 0) {
         problem->plant = plant;
         return moray_ok();
     }
@@ -171,7 +216,7 @@ static moray_status make_plant(moray_steering *problem)
     }
     for (int k = 0; k < states + 1 + parameters + 1; k++)
         place[k] = k <= states ? k : k + task->nu;
-    return moray_map_join(&problem->plant, &plant, place, &added, states);
+    return moray_map_join(&problem->plant, &plant, place, &added, states + supply_rows(spec));
 }
 
 static moray_bounds narrower(moray_bounds one, moray_bounds other)
@@ -193,13 +238,15 @@ static moray_status make_ocp(moray_steering *problem)
     const moray_steering_spec *spec = &problem->spec;
     const moray_steering_limits *limits = &spec->limits;
     const moray_steering_task *task = &spec->task;
-    const int nu = 1 + task->nu, ne = own_events + task->ne;
-    problem->block = calloc((size_t)(3 * states + nu + ne), sizeof *problem->block);
-    problem->names = calloc((size_t)(nu + ne), sizeof *problem->names);
-    if (!problem->block || !problem->names)
+    const int nu = 1 + task->nu, ne = own_events + task->ne, supply = supply_rows(spec),
+              motors = supply + rate_rows(spec), nc = motors + task->nc;
+    problem->block = calloc((size_t)(3 * states + nu + ne + nc), sizeof *problem->block);
+    problem->names = calloc((size_t)(nu + ne + nc), sizeof *problem->names);
+    problem->path_names = calloc((size_t)supply + 1, sizeof *problem->path_names);
+    if (!problem->block || !problem->names || !problem->path_names)
         return moray_error(MORAY_MEMORY, "no memory for the steering problem");
-    moray_bounds *x = problem->block, *x0 = x + states, *xf = x0 + states, *u = xf + states, *e = u + nu;
-    const char **u_names = problem->names, **e_names = u_names + nu;
+    moray_bounds *x = problem->block, *x0 = x + states, *xf = x0 + states, *u = xf + states, *e = u + nu, *c = e + ne;
+    const char **u_names = problem->names, **e_names = u_names + nu, **c_names = e_names + ne;
     for (int r = 0; r < states; r++)
         x[r] = r == MORAY_STATE_PHI_0     ? within(limits->offset)
                : r == MORAY_STATE_V_PHI_0 ? within(limits->offset_rate)
@@ -215,6 +262,15 @@ static moray_status make_ocp(moray_steering *problem)
         u[1 + k] = task->u[k], u_names[1 + k] = task->u_names[k];
     for (int k = 0; k < task->ne; k++)
         e[own_events + k] = task->e[k], e_names[own_events + k] = task->e_names[k];
+    for (int k = 0; k < supply; k++) {
+        snprintf(problem->path_names[k], NAME_SIZE, "supply %d", k + 1);
+        c[k] = within(spec->robot.motor.torque[k / (spec->robot.links - 1)]);
+        c_names[k] = problem->path_names[k];
+    }
+    for (int k = supply; k < motors; k++)
+        c[k] = moray_at_most(spec->robot.supply.rate), c_names[k] = k > supply ? "joint rate down" : "joint rate up";
+    for (int k = 0; k < task->nc; k++)
+        c[motors + k] = task->c[k], c_names[motors + k] = task->c_names[k];
     const bool control = spec->model == MORAY_CONTROL_ORIENTED;
     const double largest = control ? 2 * spec->robot.l * sin(limits->theta_max.upper) // of a, by (33)
                                    : 2 * limits->theta_max.upper;                     // of alpha, by (27)
@@ -222,7 +278,7 @@ static moray_status make_ocp(moray_steering *problem)
     const moray_phase_spec phase = {.name = task->name,
                                     .nx = states,
                                     .nu = nu,
-                                    .nc = task->nc,
+                                    .nc = nc,
                                     .nq = task->nq + 1,
                                     .map = &problem->plant,
                                     .t0 = spec->t0,
@@ -231,10 +287,10 @@ static moray_status make_ocp(moray_steering *problem)
                                     .x0 = {x0, states},
                                     .xf = {xf, states},
                                     .u = {u, nu},
-                                    .c = {task->c, task->nc},
+                                    .c = {c, nc},
                                     .x_names = x_names[spec->model],
                                     .u_names = u_names,
-                                    .c_names = task->c_names};
+                                    .c_names = c_names};
     return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = task->name,
                                                           .phases = 1,
                                                           .phase = &phase,
@@ -274,6 +330,7 @@ void moray_steering_free(moray_steering *problem)
     moray_map_release(&problem->plant);
     free(problem->block);
     free(problem->names);
+    free(problem->path_names);
     free(problem);
 }
 

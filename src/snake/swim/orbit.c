@@ -44,7 +44,9 @@ moray_status moray_orbit_plant(const moray_orbit *orbit, bool efforts, moray_map
     const moray_plant_spec of = {.robot = spec->robot,
                                  .joints = MORAY_JOINTS_ON_GAIT,
                                  .current = {spec->current[0], spec->current[1]},
-                                 .path_forces = efforts};
+                                 .path_forces = efforts,
+                                 .path_supply =
+                                     efforts && spec->model == MORAY_FIRST_PRINCIPLES && spec->robot.motor.lines > 0};
     return spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(plant, &of) : moray_fp_plant(plant, &of);
 }
 
@@ -171,7 +173,9 @@ moray_status moray_orbit_find(moray_orbit *orbit, const moray_gait *gait, moray_
 moray_status moray_orbit_solve(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result)
 {
     MORAY_TRY(moray_orbit_find(orbit, gait, result));
-    return moray_orbit_measure(orbit, &result->steady);
+    const moray_status status = moray_orbit_measure(orbit, &result->steady);
+    result->peak_load = orbit->load.size;
+    return status;
 }
 
 double moray_orbit_turn(const moray_orbit *orbit)

@@ -12,24 +12,24 @@ enum { ORBIT_OMEGA = 1, ORBIT_OFFSET = 3, ORBIT_PERIOD = ORBIT_GAIT };
 enum { ORBIT_INPUTS = ORBIT_STATES + ORBIT_GAIT + 1 };     // of the plant
 enum { ORBIT_ENDS = 2 * ORBIT_STATES + ORBIT_PARAMETERS }; // inputs of the closing conditions, without w
 
-// Where the largest joint effort was sampled.
+// Where the largest joint effort was sampled, or the largest share of a line of what the motors give.
 typedef struct orbit_peak {
-    double time, effort; // |u|
-    int joint;
-    bool negative; // u < 0
+    double time, size;
+    int joint, line;
+    bool negative; // the effort is, or the share
 } orbit_peak;
 
 struct moray_orbit {
     moray_orbit_spec spec; // without the scheme's name
     moray_map plant;       // with the power of the joints
-    moray_map efforts;     // the same with the efforts of the joints, once they are asked for
+    moray_map efforts;     // the same with efforts and motors of the joints, once they are asked for
     moray_map closing;
     moray_periodic_orbit *engine;
     moray_swimmer *swimmer;   // shows the orbit as simulations do
     double *x, *dx, *u, *phi; // the swimmer's state and rates, efforts; phi, v_phi, ubar of the gait
     moray_gait gait;
     bool found;
-    orbit_peak peak;
+    orbit_peak peak, load; // of efforts, of motors
 };
 
 // Makes orbit->plant or, with efforts, orbit->efforts. Error: that of moray_fp_plant.
@@ -51,8 +51,8 @@ moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample 
 // moray_orbit_solve with nothing but means in result->steady. Peaks and the mean heading are moray_orbit_measure's.
 moray_status moray_orbit_find(moray_orbit *orbit, const moray_gait *gait, moray_orbit_result *result);
 
-// Adds the mean heading, and peaks over samples of every degree; sets orbit->peak. Error: MORAY_NUMERIC, after which
-// there is no orbit.
+// Adds the mean heading, and peaks over samples of every degree; sets orbit->peak and orbit->load. Error:
+// MORAY_NUMERIC, after which there is no orbit.
 moray_status moray_orbit_measure(moray_orbit *orbit, moray_steady *steady);
 
 // Rescales gait->omega, as moray_orbit_match_power does, until the mean power (else the speed) is `target`; nothing but

@@ -52,9 +52,9 @@ static moray_status steering_gradient(moray_orbit *orbit, double gradient[5])
     return moray_ok();
 }
 
-// Derivatives of a joint's effort by the plant's inputs at the time of the peak. The orbit's own plant has no efforts,
-// each of which would cost as much as a rate of the state at every node.
-static moray_status effort_slope(moray_orbit *orbit, const orbit_peak *peak, double slope[ORBIT_INPUTS])
+// Derivatives of a path output by the plant's inputs at the time of a peak. The orbit's own plant has none, each of
+// which would cost as much as a rate of the state at every node.
+static moray_status output_slope(moray_orbit *orbit, const orbit_peak *peak, int output, double slope[ORBIT_INPUTS])
 {
     const moray_map *plant = &orbit->efforts;
     const moray_pattern *pattern = &plant->jac;
@@ -70,21 +70,32 @@ static moray_status effort_slope(moray_orbit *orbit, const orbit_peak *peak, dou
     plant->jacobian(plant->self, in, values);
     memset(slope, 0, ORBIT_INPUTS * sizeof *slope);
     for (int e = 0; e < pattern->nnz; e++)
-        if (pattern->row[e] == ORBIT_STATES + peak->joint)
+        if (pattern->row[e] == ORBIT_STATES + output)
             slope[pattern->col[e]] = values[e];
     free(values);
     return moray_ok();
 }
 
 // At the phase of the largest sample; how that phase shifts with the gait has no say where it is a maximum.
-static moray_status peak_effort_gradient(moray_orbit *orbit, double gradient[5])
+static moray_status peak_gradient(moray_orbit *orbit, const orbit_peak *peak, int output, double unit,
+                                  double gradient[5])
 {
-    const orbit_peak *peak = &orbit->peak;
     double by[ORBIT_PARAMETERS], slope[ORBIT_INPUTS];
-    MORAY_TRY(effort_slope(orbit, peak, slope));
+    MORAY_TRY(output_slope(orbit, peak, output, slope));
     MORAY_TRY(moray_periodic_orbit_point_gradient(orbit->engine, slope, peak->time, by));
-    by_gait(orbit, by, peak->negative ? -1 : 1, gradient);
+    by_gait(orbit, by, (peak->negative ? -1 : 1) / unit, gradient);
     return moray_ok();
+}
+
+static moray_status peak_load_gradient(moray_orbit *orbit, double gradient[5])
+{
+    const orbit_peak *load = &orbit->load;
+    const int joints = orbit->spec.robot.links - 1;
+    memset(gradient, 0, 5 * sizeof *gradient);
+    if (load->size == 0)
+        return moray_ok();
+    return peak_gradient(orbit, load, joints * (1 + load->line) + load->joint,
+                         orbit->spec.robot.motor.torque[load->line], gradient);
 }
 
 moray_status moray_orbit_gradients(moray_orbit *orbit, moray_orbit_gradient *gradient)
@@ -92,6 +103,7 @@ moray_status moray_orbit_gradients(moray_orbit *orbit, moray_orbit_gradient *gra
     MORAY_TRY(moray_orbit_check_found(orbit));
     MORAY_TRY(course_speed_gradient(orbit, gradient->course_speed));
     MORAY_TRY(power_gradient(orbit, gradient->power));
-    MORAY_TRY(peak_effort_gradient(orbit, gradient->peak_effort));
+    MORAY_TRY(peak_gradient(orbit, &orbit->peak, orbit->peak.joint, 1, gradient->peak_effort));
+    MORAY_TRY(peak_load_gradient(orbit, gradient->peak_load));
     return steering_gradient(orbit, gradient->steering);
 }

@@ -45,30 +45,46 @@ moray_status moray_orbit_sample(moray_orbit *orbit, double t, moray_swim_sample 
                                   .u = orbit->u,
                                   .pose = moray_swimmer_pose(orbit->swimmer, orbit->x),
                                   .energy = moray_periodic_orbit_integral(orbit->engine, power, t)};
+    moray_swimmer_current(orbit->swimmer, sample->current);
     return moray_ok();
 }
 
 static void keep_peak(orbit_peak *peak, const moray_swim_sample *sample, int joints)
 {
     for (int i = 0; i < joints; i++)
-        if (fabs(sample->u[i]) > peak->effort)
+        if (fabs(sample->u[i]) > peak->size)
             *peak =
-                (orbit_peak){.time = sample->t, .effort = fabs(sample->u[i]), .joint = i, .negative = sample->u[i] < 0};
+                (orbit_peak){.time = sample->t, .size = fabs(sample->u[i]), .joint = i, .negative = sample->u[i] < 0};
+}
+
+static void keep_load(orbit_peak *load, const moray_motor *motor, const moray_swim_sample *sample, const double *v,
+                      int joints)
+{
+    for (int i = 0; i < joints; i++)
+        for (int k = 0; k < motor->lines; k++) {
+            const double share =
+                (moray_motor_torque(motor, sample->u[i], v[i]) + motor->slope[k] * v[i]) / motor->torque[k];
+            if (fabs(share) > load->size)
+                *load = (orbit_peak){sample->t, fabs(share), i, k, share < 0};
+        }
 }
 
 // Both ends are one sample.
 static moray_status measure_samples(moray_orbit *orbit, moray_steady *steady)
 {
     const double T = period_of(orbit);
+    const int joints = orbit->spec.robot.links - 1;
     moray_swim_sample sample;
-    orbit->peak = (orbit_peak){0};
+    orbit->peak = orbit->load = (orbit_peak){0};
     for (int k = 0; k <= FINEST; k++) {
         MORAY_TRY(moray_orbit_sample(orbit, T * k / FINEST, &sample));
-        keep_peak(&orbit->peak, &sample, orbit->spec.robot.links - 1);
+        keep_peak(&orbit->peak, &sample, joints);
+        if (orbit->spec.model == MORAY_FIRST_PRINCIPLES)
+            keep_load(&orbit->load, &orbit->spec.robot.motor, &sample, orbit->phi + joints, joints);
         steady->peak_link_angle = fmax(steady->peak_link_angle, sample.pose.link_angle);
         steady->heading += (k == 0 || k == FINEST ? 0.5 : 1) * sample.pose.heading / FINEST;
     }
-    steady->peak_effort = orbit->peak.effort;
+    steady->peak_effort = orbit->peak.size;
     return moray_ok();
 }
 

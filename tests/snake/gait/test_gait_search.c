@@ -149,6 +149,30 @@ static void test_effort(void)
     CHECK_NEAR(e.orbit.steady.speed, e.prediction.speed, 2e-5, "speed as by collocation");
 }
 
+// What the motors of the first-principles model give, and how fast they turn, limits a search as it does collocation.
+static void test_motors(void)
+{
+    const double speed[] = {0, 2}, torque[] = {0.5, 0};
+    moray_gait_problem_spec spec = spec_of(MORAY_FIRST_PRINCIPLES);
+    spec.robot.motor = (moray_motor){
+        .fitted = true, .forward = 0.8, .backward = 0.2, .friction = 0.01, .smooth_rate = 0.1, .smooth_power = 0.02};
+    CHECK_OK(moray_motor_set_table(&spec.robot.motor, speed, torque, 2), "line");
+    spec.limits.power = MORAY_INFINITY;
+    spec.limits.delta = moray_between(25 * DEG, 90 * DEG);
+    ends e = search_from(&spec, gait_of(&spec, 15, 70, 50), "a motor's line", 60);
+    CHECK_NEAR(e.orbit.peak_load, 1, 1e-8, "all that the motors give");
+    CHECK_NEAR(e.orbit.steady.speed, e.prediction.speed, 1e-4, "speed as by collocation");
+    spec.robot.supply.rate = 0.7 * e.gait.amplitude * e.gait.omega;
+    e = search_from(&spec, gait_of(&spec, 15, 50, 50), "a motor's speed", 60);
+    CHECK_NEAR(e.gait.amplitude * e.gait.omega, spec.robot.supply.rate, 1e-8, "as fast as the motors turn");
+    CHECK_NEAR(e.orbit.steady.speed, e.prediction.speed, 1e-4, "speed as by collocation");
+    spec.model = MORAY_CONTROL_ORIENTED; // whose joints have no motors
+    spec.limits.offset = moray_between(-0.02, 0.02);
+    spec.limits.power = paper_power[0];
+    e = search_from(&spec, gait_of(&spec, 20, 120, 40), "no motors", 12);
+    check_agreement(&spec, &e);
+}
+
 // A global method meets the best of the optima that local searches find.
 static void test_global(void)
 {
@@ -197,6 +221,7 @@ int main(void)
     test_limits(MORAY_CONTROL_ORIENTED);
     test_limits(MORAY_FIRST_PRINCIPLES);
     test_effort();
+    test_motors();
     test_global();
     test_refusals();
     return tap_done();

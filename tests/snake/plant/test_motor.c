@@ -69,6 +69,64 @@ static void test_table(void)
           status.text);
 }
 
+static void refused(const moray_robot *robot, const char *says)
+{
+    const moray_status status = moray_robot_check(robot);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, says), "%s", status.text);
+}
+
+// What tables and options would not make.
+static void test_checks(random_seed *seed)
+{
+    moray_robot good = moray_robot_paper(), robot;
+    good.motor = random_motor(seed);
+    good.supply = (moray_supply){.constant = 1, .battery = 10, .rate = INFINITY};
+    CHECK_OK(moray_robot_check(&good), "motors and a battery");
+    robot = good, robot.motor.lines = MORAY_MOTOR_LINES + 1;
+    refused(&robot, "lines of torque over speed: must be 0 to 8");
+    robot = good, robot.motor.lines = -1;
+    refused(&robot, "-1 lines");
+    robot = good, robot.motor.torque[1] = 0;
+    refused(&robot, "line 2: torque = 0 N m");
+    robot = good, robot.motor.torque[0] = NAN;
+    refused(&robot, "line 1: torque = nan N m");
+    robot = good, robot.motor.slope[1] = -0.1;
+    refused(&robot, "slope = -0.1 N m s/rad");
+    robot = good, robot.motor.slope[0] = INFINITY;
+    refused(&robot, "slope = inf N m s/rad");
+    robot = good, robot.motor.fitted = false;
+    refused(&robot, "2 lines of torque over speed, but none is fitted");
+    robot.motor = (moray_motor){0};
+    CHECK_OK(moray_robot_check(&robot), "no motors");
+    robot = good, robot.supply.constant = -1;
+    refused(&robot, "supply: constant power = -1 W: must be finite and at least 0");
+    robot = good, robot.supply.constant = INFINITY;
+    refused(&robot, "supply: constant power = inf W");
+    robot = good, robot.supply.battery = -2;
+    refused(&robot, "supply: battery = -2 Wh");
+    robot = good, robot.supply.battery = NAN;
+    refused(&robot, "supply: battery = nan Wh");
+    robot = good, robot.supply.rate = -1;
+    refused(&robot, "supply: joint rate = -1 rad/s: must be at least 0");
+}
+
+// The control-oriented model has no rotary joints; rates of joints are path outputs of a series alone.
+static void test_places(random_seed *seed)
+{
+    moray_plant_spec spec = {.robot = random_robot(seed, 4), .path_supply = true};
+    moray_map map;
+    spec.robot.motor = random_motor(seed);
+    moray_status status = moray_control_plant(&map, &spec);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "path_supply"), "%s", status.text);
+    spec.joints = MORAY_JOINTS_STEERED;
+    status = moray_average_plant(&map, &spec);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "path_supply"), "%s", status.text);
+    spec.path_supply = false;
+    spec.path_rates = true;
+    status = moray_fp_plant(&map, &spec);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "path_rates"), "%s", status.text);
+}
+
 // Values, Jacobian and Hessian at a point, in one.
 static double *all_of(const moray_map *map, const double *in, const double *weight)
 {
@@ -131,6 +189,8 @@ int main(void)
     random_seed seed = 23;
     test_power(&seed);
     test_table();
+    test_checks(&seed);
+    test_places(&seed);
     for (int N = 2; N <= 7; N++) {
         test_plant(&seed, N, MORAY_JOINTS_ON_GAIT);
         test_plant(&seed, N, MORAY_JOINTS_STEERED);

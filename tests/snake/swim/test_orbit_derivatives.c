@@ -21,12 +21,15 @@ typedef struct sample {
     double current[2], course;
     bool steered;
     double taper;
+    bool motors;
 } sample;
 
 static const sample samples[] = {
-    {10, 20, 120, 40, 0, {0, 0}, 0, true, 0},        {10, 25, 150, 52, 0, {0.05, -0.08}, 0.4, true, -0.5},
-    {10, 20, 120, 45, 0.2, {0, 0}, 0, false, 0},                                                   // turns
-    {3, 25, 150, 70, 0, {0.006, 0.004}, 0, true, 0}, {3, 20, 200, 80, 0.1, {0, 0}, 1, false, 0.2}, // turns
+    {10, 20, 120, 40, 0, {0, 0}, 0, true, 0, false},
+    {10, 25, 150, 52, 0, {0.05, -0.08}, 0.4, true, -0.5, true},
+    {10, 20, 120, 45, 0.2, {0, 0}, 0, false, 0, false}, // turns
+    {3, 25, 150, 70, 0, {0.006, 0.004}, 0, true, 0, false},
+    {3, 20, 200, 80, 0.1, {0, 0}, 1, false, 0.2, false}, // turns
 };
 enum { SAMPLES = sizeof samples / sizeof *samples };
 
@@ -43,6 +46,12 @@ static rig rig_of(const sample *s, moray_model model)
 {
     rig r = {.robot = moray_robot_paper(), .model = model};
     r.robot.links = s->links;
+    if (s->motors) {
+        const double speed[] = {0, 1, 2}, torque[] = {0.6, 0.5, 0};
+        r.robot.motor =
+            (moray_motor){.fitted = true, .forward = 0.8, .friction = 0.02, .smooth_rate = 0.3, .smooth_power = 0.05};
+        CHECK_OK(moray_motor_set_table(&r.robot.motor, speed, torque, 3), "motors");
+    }
     moray_orbit_spec spec = moray_orbit_spec_default(&r.robot, model);
     memcpy(spec.current, s->current, sizeof spec.current);
     spec.course = s->course;
@@ -209,8 +218,8 @@ static void test_floquet(const sample *s, moray_model model)
 // A head current keeps the first-principles robot on its heading, a following one turns it away.
 static void test_stability(void)
 {
-    const sample head = {10, 20, 120, 40, 0, {-0.1, 0}, 0, true, 0},
-                 following = {10, 20, 120, 40, 0, {0.1, 0}, 0, true, 0};
+    const sample head = {10, 20, 120, 40, 0, {-0.1, 0}, 0, true, 0, false},
+                 following = {10, 20, 120, 40, 0, {0.1, 0}, 0, true, 0, false};
     moray_floquet floquet;
     rig r = rig_of(&head, MORAY_FIRST_PRINCIPLES);
     CHECK_OK(moray_orbit_floquet(r.orbit, &floquet), "multipliers");
@@ -224,14 +233,15 @@ static void test_stability(void)
 
 // ---- Gradients -----------------------------------------------------------------------------------------------------
 
-enum { QUANTITIES = 4 };
-static const char *const quantity[QUANTITIES] = {"course speed", "power", "peak effort", "steering"};
+enum { QUANTITIES = 5 };
+static const char *const quantity[QUANTITIES] = {"course speed", "power", "peak effort", "steering", "peak load"};
 
 static void read_quantities(const sample *s, const moray_orbit_result *found, double *q)
 {
     q[0] = moray_course_speed(&found->steady, s->course);
     q[1] = found->steady.power;
     q[2] = found->steady.peak_effort;
+    q[4] = found->peak_load;
     q[3] = s->steered ? found->gait.offset : found->steady.heading_drift * 2 * M_PI / found->gait.omega;
 }
 
@@ -260,7 +270,9 @@ static void test_gradients(const sample *s, moray_model model)
     moray_orbit_gradient gradient;
     CHECK_OK(moray_orbit_gradients(r.orbit, &gradient), "gradients");
     const double *const given[QUANTITIES] = {gradient.course_speed, gradient.power, gradient.peak_effort,
-                                             gradient.steering};
+                                             gradient.steering, gradient.peak_load};
+    const bool loaded = s->motors && model == MORAY_FIRST_PRINCIPLES;
+    CHECK((r.found.peak_load > 0) == loaded, "motors: the largest share of what they give is %g", r.found.peak_load);
     for (int p = 0; p < 5; p++) {
         double slope[QUANTITIES];
         if (p == 3 && s->steered) {
