@@ -127,8 +127,10 @@ int main(int argc, char **argv)
     moray_ticker_end(&run.ticker);
     if (!moray_failed(status))
         status = identify_report(&run);
-    const bool certified = !moray_failed(status) && identify_certified(&run);
+    const moray_status certified = moray_failed(status) || identify_certified(&run)
+                                       ? moray_ok()
+                                       : moray_error(MORAY_NOT_SOLVED, "residuals fail: %.250s", run.fit.verdict);
     identify_release(&run);
     exit_code = moray_app_end(&program, &run, status);
-    return exit_code == MORAY_EXIT_SOLVED && !certified ? MORAY_EXIT_CERTIFICATE : exit_code;
+    return exit_code == MORAY_EXIT_SOLVED ? moray_app_certified(&program, certified) : exit_code;
 }

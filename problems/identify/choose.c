@@ -116,8 +116,6 @@ moray_status identify_choose(identify *run)
 {
     const bool control = run->snake.model == MORAY_CONTROL_ORIENTED;
     const char *usual = control ? "c_t,c_n,rot_damping,rot_gain,current" : "c_t,c_n,mu_n,current";
-    if (run->snake.robot.link) // whose lists the file of the robot found could not follow
-        return moray_error(MORAY_INPUT, "[links]: the robot to identify must have equal links");
     MORAY_TRY(add_names(run, run->estimate[0] ? run->estimate : usual));
     for (int k = 0; k < run->n; k++)
         default_bounds(run, run->unknown[k], &run->lower[k], &run->upper[k]);

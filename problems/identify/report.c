@@ -145,8 +145,12 @@ static void tell_outliers(const identify *run, struct shown *s)
 static void describe(const identify *run, struct shown *s)
 {
     char open[900];
-    moray_text_add(s->text, TEXT, "%d links, %s model; %d measurements of %d logs.", run->snake.robot.links,
-                   moray_model_name(run->snake.model), run->fit.n, run->n_logs);
+    char links[MORAY_LINKS_TEXT];
+    moray_text_add(s->text, TEXT, "%s, %s model; %d measurements of %d logs.",
+                   moray_snake_links_text(&run->snake.robot, links), moray_model_name(run->snake.model), run->fit.n,
+                   run->n_logs);
+    if (run->snake.robot.link)
+        moray_text_add(s->text, TEXT, "\nCoefficients are means of the links, which keep their ratios to them.");
     tell_logs(run, s);
     tell_starts(run, s);
     moray_information_open(&run->info, run->unknown, open, sizeof open);

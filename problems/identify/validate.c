@@ -60,9 +60,11 @@ static void speeds(const moray_identify_fit *fit, double until, held_out *found)
         to[kind] = k;
     }
     found->measured = found->predicted = NAN;
-    if (from[0] < 0 || from[1] < 0 || to[0] - from[0] < 4)
+    if (from[0] < 0 || from[1] < 0)
         return;
-    const int some = (to[0] - from[0]) / 5;
+    const int some = (int)fmin(to[0] - from[0], to[1] - from[1]) / 5;
+    if (some < 1)
+        return;
     for (int axis = 0; axis < 2; axis++)
         for (int k = 0; k < some; k++)
             for (int end = 0; end < 2; end++) {

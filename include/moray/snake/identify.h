@@ -22,7 +22,8 @@ typedef struct moray_swim_log {
     int *line;                                 // [n] in the file
     double *t, *phi, *p_x, *p_y, *heading, *u; // [n], phi and u [n][joints]; heading without jumps of 2 pi
     bool reference;                            // phi is what was commanded
-    char notes[600];                           // what is odd but no error, a line each
+    bool at_motors;  // u is what the motors give, their own friction included, as logs of currents have it
+    char notes[600]; // what is odd but no error, a line each
 } moray_swim_log;
 
 // How a file names and measures things.
@@ -31,7 +32,7 @@ typedef struct moray_swim_log_format {
     const char *columns;    // "t=Time,phi=servo#": columns of other names, # for the number of a joint; NULL: none
     const char *units;      // "phi=deg,p_x=mm": in place of those in brackets behind a name; NULL: none
     bool reference;         // joints from phi_ref_#, not from phi_#
-    double torque_constant; // of motors whose u is in A [N m/A]; NAN: none
+    double torque_constant; // of motors whose u is in A, at the joint [N m/A]; NAN: none
 } moray_swim_log_format;
 
 // Reads comma-separated values: t, phi_# (or phi_ref_#), and any of p_x with p_y, heading, u_#; s, rad, m, N m unless a
@@ -155,8 +156,6 @@ MORAY_API moray_unknowns moray_identify_world(const moray_identify *identify, co
 
 // ---- What the data say ---------------------------------------------------------------------------------------------
 
-enum { MORAY_DIRECTIONS = MORAY_MOST_UNKNOWNS };
-
 typedef struct moray_information {
     int n;
     double scale[MORAY_MOST_UNKNOWNS];                            // of the unknowns
@@ -204,6 +203,7 @@ typedef struct moray_identify_fit {
     char verdict[300];
 } moray_identify_fit;
 
+// Error: MORAY_INPUT where there are no more measurements than unknowns; MORAY_NUMERIC, MORAY_MEMORY.
 MORAY_API moray_status moray_identify_residuals(const moray_identify *identify, const moray_estimate *estimate,
                                                 moray_identify_fit *fit);
 MORAY_API void moray_identify_fit_free(moray_identify_fit *fit);
@@ -221,7 +221,8 @@ typedef struct moray_design_spec {
 } moray_design_spec;
 
 // The gait whose log, read at the rate and by the instruments of the first log, adds most to what is known, and what is
-// known with it. Error: MORAY_NOT_SOLVED where no gait within the limits can be swum; MORAY_MEMORY, MORAY_NUMERIC.
+// known with it. Error: MORAY_NOT_SOLVED where no gait within the limits can be swum, or every unknown is at a bound;
+// MORAY_MEMORY, MORAY_NUMERIC.
 MORAY_API moray_status moray_identify_design(const moray_identify *identify, const moray_estimate *estimate,
                                              const moray_information *known, const moray_design_spec *spec,
                                              moray_gait *gait, moray_information *after);

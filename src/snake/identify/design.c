@@ -46,6 +46,7 @@ static moray_identify_spec spec_of(const struct search *s, const moray_gait *gai
     spec.joints = MORAY_LOGGED_GAIT;
     spec.step = 2 * M_PI / gait->omega / COARSE;
     spec.rest = false;
+    spec.huber = 0; // what would be read is not known: no residual of it is an outlier
     return spec;
 }
 
@@ -151,6 +152,12 @@ moray_status moray_identify_design(const moray_identify *v, const moray_estimate
 {
     struct search s = {.of = v, .at = at, .known = known, .spec = spec};
     double x[MORAY_DESIGNED];
+    int used = 0;
+    for (int k = 0; k < known->n; k++)
+        used += !known->held[k];
+    if (used == 0)
+        return moray_error(MORAY_NOT_SOLVED,
+                           "every unknown is at one of its bounds: no experiment tells more; widen the bounds");
     moray_status status = make_log(v, spec, &s.log);
     if (!moray_failed(status))
         status = search(&s, x);

@@ -17,12 +17,6 @@ moray_unknowns moray_identify_world_of(const moray_identify *v, const double *va
     return world;
 }
 
-double moray_identify_first_scale(int state)
-{
-    (void)state;
-    return 0.1; // rad, m, rad/s and m/s alike
-}
-
 bool moray_identify_first_varies(const moray_identify *v, int state)
 {
     return !v->spec.rest || state == MORAY_STATE_THETA || state == MORAY_STATE_P_X || state == MORAY_STATE_P_Y;
@@ -36,19 +30,30 @@ static void divide(const struct run *run, const double *up, const double *down, 
         column[k * stride] = (up[k] - down[k]) / (2 * difference * run->item[k].sigma);
 }
 
+// The predictions with unknown k moved.
+static bool move(const moray_identify *v, const struct run *run, const moray_unknowns *world, const double *first,
+                 int k, double by, double *predicted)
+{
+    moray_unknowns moved = *world;
+    *moray_unknown_at(v->unknown[k], &moved) += by;
+    return (moray_unknown_table[v->unknown[k]].instrument || moray_identify_swim(v, run, &moved, first)) &&
+           moray_identify_read(v, run, &moved, predicted);
+}
+
+// A coefficient at 0 has no robot on its other side: (4 (f(h) - f) - (f(2h) - f)) / 2h, f the predictions here.
 static bool by_unknown(const moray_identify *v, const struct run *run, const moray_unknowns *world, const double *first,
                        int k, double *column, int stride)
 {
-    const struct unknown *u = &moray_unknown_table[v->unknown[k]];
-    moray_unknowns moved = *world;
-    double *at = moray_unknown_at(v->unknown[k], &moved);
-    const double middle = *at, step = difference * v->scale[k];
-    *at = middle + step;
-    if (!(u->instrument || moray_identify_swim(v, run, &moved, first)) || !moray_identify_read(v, run, &moved, v->up))
+    moray_unknowns here = *world;
+    const double step = difference * v->scale[k];
+    const bool one_sided = !moray_unknown_table[v->unknown[k]].offset && *moray_unknown_at(v->unknown[k], &here) < step;
+    if (!move(v, run, world, first, k, step, v->up) ||
+        !move(v, run, world, first, k, one_sided ? 2 * step : -step, v->down))
         return false;
-    *at = middle - step;
-    if (!(u->instrument || moray_identify_swim(v, run, &moved, first)) || !moray_identify_read(v, run, &moved, v->down))
-        return false;
+    for (int i = 0; i < run->items && one_sided; i++) {
+        v->up[i] = 4 * (v->up[i] - v->here[i]);
+        v->down[i] -= v->here[i];
+    }
     divide(run, v->up, v->down, column, stride);
     return true;
 }
@@ -59,7 +64,7 @@ static bool by_position(const moray_identify *v, const struct run *run, const mo
 {
     moray_unknowns moved = *world;
     const int axis = state - MORAY_STATE_P_X;
-    const double step = difference * moray_identify_first_scale(state);
+    const double step = difference * first_scale;
     moved.camera[axis] = world->camera[axis] - step;
     if (!moray_identify_read(v, run, &moved, v->up))
         return false;
@@ -74,7 +79,7 @@ static bool by_first(const moray_identify *v, const struct run *run, const moray
                      int state, double *column, int stride)
 {
     double moved[FIRST];
-    const double step = difference * moray_identify_first_scale(state);
+    const double step = difference * first_scale;
     memcpy(moved, first, sizeof moved);
     moved[state] = first[state] + step;
     if (!moray_identify_swim(v, run, world, moved) || !moray_identify_read(v, run, world, v->up))

@@ -8,6 +8,7 @@
 #include <string.h>
 
 static const double per_period = 120, usual_step = 0.02;
+enum { MOST_STEPS = 1000000 };
 static const double least_noise = 1e-4; // of a channel's range: no instrument is better
 
 static const char *const channel_names[MORAY_CHANNELS] = {"p_x", "p_y", "heading", "torque"};
@@ -170,8 +171,11 @@ static moray_status make_grid(const moray_identify *v, struct run *run)
     double h = v->spec.step;
     if (!(h > 0))
         h = run->motion.on_gait ? 2 * M_PI / run->motion.gait.omega / per_period : usual_step;
-    run->steps = (int)ceil(length / h);
-    run->steps = run->steps < 1 ? 1 : run->steps;
+    const double steps = fmax(ceil(length / h), 1);
+    if (!(steps <= MOST_STEPS))
+        return moray_error(MORAY_INPUT, "log %s: %.6g s in steps of %.3g s are %.3g steps: must be at most %d",
+                           run->log->name, length, h, steps, MOST_STEPS);
+    run->steps = (int)steps;
     run->h = length / run->steps;
     run->grid = calloc(((size_t)run->steps + 1) * 2 * FIRST, sizeof *run->grid);
     return run->grid ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d steps", run->steps);
@@ -187,7 +191,6 @@ static moray_status make_run(moray_identify *v, struct run *run, const moray_swi
     MORAY_TRY(moray_motion_new(&run->motion, log, control ? MORAY_LOGGED_GAIT : v->spec.joints));
     MORAY_TRY(make_guess(v, run));
     MORAY_TRY(list_items(v, run));
-    run->offset = v->items;
     v->items += run->items;
     return make_grid(v, run);
 }

@@ -7,6 +7,7 @@
 #include "snake/identify/unknowns.h"
 
 enum { FIRST = MORAY_BODY_STATES };
+static const double first_scale = 0.1; // of the first states: rad, m, rad/s and m/s alike
 
 // A measurement that counts.
 struct item {
@@ -21,8 +22,7 @@ struct run {
     double sigma[MORAY_CHANNELS];
     int freedom[MORAY_CHANNELS]; // of an estimated sigma; 0: known
     struct item *item;           // [items], row by row
-    int items, offset;           // offset of the first among all
-    int steps;
+    int items, steps;
     double h;
     double *grid; // [steps + 1][2 FIRST]: body states and their rates, as swum last
     double guess[FIRST];
@@ -61,8 +61,7 @@ bool moray_identify_residual(const moray_identify *identify, int r, const moray_
 bool moray_identify_equations(const moray_identify *identify, const moray_estimate *at, double *cost);
 bool moray_identify_cost(const moray_identify *identify, const moray_estimate *at, double *cost);
 
-// Scale of a component of the first state, and whether it varies.
-double moray_identify_first_scale(int state);
+// Whether a component of the first state varies.
 bool moray_identify_first_varies(const moray_identify *identify, int state);
 
 #endif

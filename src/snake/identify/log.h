@@ -17,6 +17,7 @@ struct log_reader {
     moray_csv csv;
     int column[LOG_QUANTITIES]; // the first of a numbered one
     bool said[LOG_QUANTITIES];  // the user said the unit
+    bool currents;              // u is in A
 };
 
 // Room for n rows: line, t, phi are set, the others NULL with their room behind phi. Error: MORAY_MEMORY.

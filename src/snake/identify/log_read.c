@@ -132,6 +132,7 @@ static moray_status find_unit(struct log_reader *r, int which, int column, doubl
         return moray_ok();
     for (; units->name; units++)
         if (strcmp(units->name, unit) == 0) {
+            r->currents = r->currents || isnan(units->factor);
             *factor = isnan(units->factor) ? r->format->torque_constant : units->factor;
             if (isnan(*factor))
                 return moray_csv_error(&r->csv, -1,
@@ -246,6 +247,7 @@ moray_status moray_swim_log_read(moray_swim_log *log, const char *path, const mo
     if (!moray_failed(status)) {
         memcpy(log->line, r.csv.line, (size_t)log->n * sizeof *log->line);
         status = read_channels(&r, log);
+        log->at_motors = r.currents;
     }
     if (!moray_failed(status))
         status = moray_swim_log_check(&r, log);

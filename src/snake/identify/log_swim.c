@@ -137,9 +137,10 @@ moray_status moray_swim_log_swim(moray_swim_log *log, moray_swimmer *swimmer, co
 {
     const moray_robot *robot = moray_swimmer_robot(swimmer);
     const moray_model model = moray_swimmer_model(swimmer);
-    const int joints = robot->links - 1, n = (int)floor((to - from) / step * (1 + 1e-12)) + 1;
+    const int joints = robot->links - 1;
     *log = (moray_swim_log){.name = "synthetic"};
     MORAY_TRY(check(from, to, step, noise));
+    const int n = (int)floor((to - from) / step * (1 + 1e-12)) + 1;
     MORAY_TRY(moray_swim_log_new(log, n, joints));
     double *room = log->phi + (size_t)n * (size_t)joints;
     log->u = model == MORAY_FIRST_PRINCIPLES ? room : NULL;

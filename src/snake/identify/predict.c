@@ -112,11 +112,10 @@ static void body_at(const struct run *run, double t, double y[FIRST])
                run->h * (slope_left * left[FIRST + i] + slope_right * right[FIRST + i]);
 }
 
-static bool read_torques(const moray_identify *v, const struct swum *s, int row)
+static bool read_torques(const struct swum *s, int row)
 {
     double y[FIRST], dy[FIRST];
     body_at(s->run, s->run->log->t[row], y);
-    (void)v;
     return rates(s, s->run->log->t[row], y, dy, s->u);
 }
 
@@ -139,9 +138,11 @@ bool moray_identify_read(const moray_identify *v, const struct run *run, const m
         double y[FIRST];
         switch (item->kind) {
         case MORAY_CHANNEL_TORQUE:
-            if (item->row != row && !read_torques(v, &s, row = item->row))
+            if (item->row != row && !read_torques(&s, row = item->row))
                 return false;
             predicted[k] = s.u[item->joint];
+            if (run->log->at_motors)
+                predicted[k] = moray_motor_torque(&world->robot.motor, predicted[k], s.v_phi[item->joint]);
             break;
         case MORAY_CHANNEL_HEADING:
             body_at(run, t - world->heading_delay, y);

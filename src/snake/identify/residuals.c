@@ -26,8 +26,8 @@ static double limit_of(const moray_identify *v, int freedom)
     for (int r = 0; r < v->runs; r++)
         for (int kind = 0; kind < MORAY_CHANNELS; kind++)
             known += v->run[r].freedom[kind];
-    if (known == 0 || freedom < 1)
-        return chi_square_limit(freedom > 0 ? freedom : 1);
+    if (known == 0)
+        return chi_square_limit(freedom);
     return freedom * (1 + one_in_1000 * sqrt(2.0 / freedom + 2 / known));
 }
 
@@ -153,9 +153,14 @@ moray_status moray_identify_residuals(const moray_identify *v, const moray_estim
     for (int i = 0; i < FIRST; i++)
         varied += moray_identify_first_varies(v, i);
     fit->freedom = fit->n - v->spec.n - varied * v->runs;
+    if (!good)
+        return status;
+    if (fit->freedom < 1)
+        return moray_error(MORAY_INPUT,
+                           "%d measurements are no more than the %d unknowns and the %d first states of the logs",
+                           fit->n, v->spec.n, varied * v->runs);
     fit->limit = limit_of(v, fit->freedom);
-    if (good)
-        judge(v, fit);
+    judge(v, fit);
     return status;
 }
 

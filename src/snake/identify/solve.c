@@ -17,7 +17,7 @@ static const double least_damping = 1e-13, most_damping = 1e9, step_tolerance = 
 
 static double scale_of(const moray_identify *v, int column)
 {
-    return column < v->spec.n ? v->scale[column] : moray_identify_first_scale((column - v->spec.n) % FIRST);
+    return column < v->spec.n ? v->scale[column] : first_scale;
 }
 
 static double *entry(const moray_identify *v, moray_estimate *at, int column)

@@ -20,6 +20,8 @@ typedef struct story {
     double current[2], sigma[MORAY_CHANNELS];
     double offset; // of the second gait [rad or m]
     double duration, step;
+    bool no_lambda_3, unequal;
+    moray_motor motor;
 } story;
 
 static moray_robot robot_of(const story *s)
@@ -27,6 +29,17 @@ static moray_robot robot_of(const story *s)
     moray_robot robot = moray_robot_paper();
     robot.links = LINKS;
     robot.hydro = s->hydro;
+    robot.motor = s->motor;
+    robot.lambda_3 *= !s->no_lambda_3;
+    if (!s->unequal)
+        return robot;
+    static moray_link link[LINKS];
+    for (int i = 0; i < LINKS; i++) {
+        link[i] = moray_robot_link(&robot, i);
+        link[i].l *= 1 + 0.1 * i, link[i].m *= 1.4 - 0.2 * i, link[i].c_n *= 1 + 0.3 * (i % 2);
+        link[i].cm = 0.01 * i, link[i].fin_at = -0.1, link[i].fin_c_n = i ? 0 : 6;
+    }
+    moray_robot_from_links(&robot, link);
     return robot;
 }
 
@@ -126,10 +139,124 @@ static void test_recovery(void)
                     "first-principles");
     s.hydro = moray_hydrodynamics_consistent();
     check_recovered(&s, "c_t,c_n,mu_n,m,current_x,current_y,heading_bias,position_delay,heading_delay", "consistent");
+    s.unequal = true;
+    check_recovered(&s, "c_t,c_n,mu_n,m,current_x,current_y,heading_bias,position_delay,heading_delay",
+                    "unequal links");
+    s.unequal = false;
     s.model = MORAY_CONTROL_ORIENTED;
     s.offset = 0.005;
     s.noise = (moray_swim_log_noise){.heading_bias = 0.05};
     check_recovered(&s, "c_t,c_n,rot_damping,rot_gain,current_x,current_y,heading_bias", "control-oriented");
+}
+
+// A coefficient that is nothing: there is no robot on its other side for a difference.
+static void test_zero(void)
+{
+    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 8, .step = 0.1, .no_lambda_3 = true};
+    moray_swim_log log[MOST_LOGS];
+    wanted w;
+    moray_identify *identify;
+    moray_estimate at;
+    moray_information info[2];
+    memcpy(s.sigma, known, sizeof known);
+    swim_logs(&s, log);
+    moray_identify_spec spec = spec_of(&s, "c_t,c_n,lambda_3", &w);
+    w.lower[2] = -1e-4, w.upper[2] = 1e-4; // below 0, so that it is not held there
+    CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "zero");
+    moray_identify_start(identify, 0, &at);
+    for (int k = 0; k < 2; k++) {
+        at.value[2] = k * 1e-8;
+        CHECK_OK(moray_identify_information(identify, &at, &info[k]), "information at a coefficient of 0");
+    }
+    for (int k = 0; k < w.n; k++)
+        CHECK_NEAR(info[0].error[k] / info[1].error[k], 1, 1e-4, moray_unknown_name(w.unknown[k]));
+    moray_identify_free(identify);
+    w.lower[2] = 0;
+    CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "zero");
+    for (int k = 0; k < 2; k++) {
+        moray_identify_start(identify, 0, &at);
+        at.value[2] = k * 2e-5;
+        CHECK_OK(moray_identify_solve(identify, &at), "from 0, and from above");
+        CHECK(at.value[2] >= 0 && at.value[2] < 1e-9 && fabs(at.value[1] / w.truth[1] - 1) < 1e-5,
+              "lambda_3 = %.2g, c_n off by %.1e", at.value[2], at.value[1] / w.truth[1] - 1);
+    }
+    moray_identify_free(identify);
+    free_logs(log);
+}
+
+// Logs of currents have the motors' friction in them, those of torques at the joints have not.
+static void test_motors(void)
+{
+    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 8, .step = 0.1};
+    moray_swim_log log[MOST_LOGS];
+    wanted w;
+    moray_identify *identify;
+    moray_estimate at;
+    memcpy(s.sigma, known, sizeof known);
+    s.motor = (moray_motor){.fitted = true, .forward = 0.8, .smooth_rate = 0.1, .smooth_power = 1e-3};
+    s.motor.friction = 0.05, s.motor.viscous = 0.02;
+    swim_logs(&s, log);
+    for (int r = 0; r < MOST_LOGS; r++) {
+        moray_gait gait = {.omega = (r ? 150 : 110) * DEG, .delta = (r ? 60 : 40) * DEG};
+        double phi[3 * (LINKS - 1)];
+        const moray_robot robot = robot_of(&s);
+        gait.amplitude = moray_amplitude_from_theta_max(&robot, s.model, (r ? 18 : 25) * DEG, gait.delta);
+        log[r].at_motors = true;
+        for (int k = 0; k < log[r].n; k++) {
+            moray_gait_reference(&gait, LINKS - 1, log[r].t[k], phi, phi + LINKS - 1, phi + 2 * (LINKS - 1));
+            for (int i = 0; i < LINKS - 1; i++)
+                log[r].u[k * (LINKS - 1) + i] +=
+                    0.05 * phi[LINKS - 1 + i] / hypot(phi[LINKS - 1 + i], 0.1) + 0.02 * phi[LINKS - 1 + i];
+        }
+    }
+    for (int told = 1; told >= 0; told--) {
+        moray_identify_fit fit;
+        moray_identify_spec spec = spec_of(&s, "c_t,c_n,mu_n", &w);
+        spec.step = 0.01;
+        log[0].at_motors = log[1].at_motors = told;
+        CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "motors");
+        moray_identify_start(identify, 0, &at);
+        CHECK_OK(moray_identify_solve(identify, &at), "motors");
+        CHECK_OK(moray_identify_residuals(identify, &at, &fit), "motors");
+        const double off = fabs(at.value[1] / w.truth[1] - 1);
+        CHECK(told ? off < 1e-5 && !fit.simple : off > 1e-3 && fit.simple, "%s: c_n off by %.1e; %s",
+              told ? "currents" : "currents taken for torques", off, fit.verdict);
+        moray_identify_fit_free(&fit);
+        moray_identify_free(identify);
+    }
+    free_logs(log);
+}
+
+// What cannot be computed is told: too few measurements, too many steps.
+static void test_refusals(void)
+{
+    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 8, .step = 0.1};
+    moray_swim_log log[MOST_LOGS];
+    wanted w;
+    moray_identify *identify;
+    moray_estimate at;
+    moray_identify_fit fit;
+    memcpy(s.sigma, known, sizeof known);
+    swim_logs(&s, log);
+    moray_identify_spec spec = spec_of(&s, "c_t,c_n", &w);
+    spec.step = 1e-9;
+    moray_status status = moray_identify_new(&identify, &spec, log, 1);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "steps: must be at most"), "%s", status.text);
+    spec.step = 0;
+    log[0].u = log[0].p_x = log[0].p_y = NULL;
+    for (int k = 20; k < log[0].n; k++) // as many as a spline wants, but the log has no more
+        log[0].heading[k] = NAN;
+    spec = spec_of(&s,
+                   "c_t,c_n,mu_n,lambda_1,lambda_2,lambda_3,m,J,current_x,current_y,heading_bias,camera_rotation,"
+                   "position_delay,heading_delay",
+                   &w);
+    CHECK_OK(moray_identify_new(&identify, &spec, log, 1), "few measurements");
+    moray_identify_start(identify, 0, &at);
+    status = moray_identify_residuals(identify, &at, &fit);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "measurements are no more than"), "%s", status.text);
+    moray_identify_fit_free(&fit);
+    moray_identify_free(identify);
+    free_logs(log);
 }
 
 // ---- Noise ---------------------------------------------------------------------------------------------------------
@@ -361,6 +488,21 @@ static void test_design(void)
               moray_unknown_name(f.w.unknown[k]), f.info.error[k], after.error[k]);
     CHECK(gait.amplitude >= design.lower[0] && gait.amplitude <= design.upper[0] && gait.omega <= design.upper[1],
           "within limits: alpha %.3g deg, omega %.4g deg/s", gait.amplitude / DEG, gait.omega / DEG);
+    moray_identify_spec robust = spec; // an experiment has no outliers: how the logs are weighed is no matter
+    moray_identify *other;
+    moray_gait same;
+    moray_information with;
+    robust.huber = 1.5;
+    CHECK_OK(moray_identify_new(&other, &robust, f.log, 1), "Huber's loss");
+    CHECK_OK(moray_identify_design(other, &f.at, &f.info, &design, &same, &with), "design");
+    CHECK(same.amplitude == gait.amplitude && with.error[0] == after.error[0],
+          "the same with Huber's loss: c_t +- %.3g, %.3g", with.error[0], after.error[0]);
+    moray_identify_free(other);
+    moray_information held = f.info;
+    for (int k = 0; k < held.n; k++)
+        held.held[k] = true;
+    const moray_status status = moray_identify_design(f.identify, &f.at, &held, &design, &same, &with);
+    CHECK(status.code == MORAY_NOT_SOLVED && strstr(status.text, "bounds"), "%s", status.text);
     moray_unknowns world[5];
     CHECK(moray_identify_worlds(f.identify, &f.at, &f.info, 1, 5, world) == 5, "five worlds of two axes");
     CHECK(world[0].robot.c_n == f.at.value[1] && world[1].robot.c_n != world[2].robot.c_n,
@@ -375,6 +517,9 @@ int main(int argc, char **argv)
         return tap_done();
     }
     test_recovery();
+    test_zero();
+    test_motors();
+    test_refusals();
     test_open();
     test_simple();
     test_design();
