@@ -21,7 +21,7 @@ static const moray_option options[] = {
             "that a change of omega jumps in phase"),
     MORAY_ROW(TEXT, simulate, water_file, "problem", "water", .flag = "water", .argument = "FILE",
               .help = "CSV file of a current over place and time in place of the uniform one: a grid of x_m, y_m, "
-                      "v_x_m_s, v_y_m_s and, where it changes, t_s; speed_m_s is then over ground"),
+                      "v_x_m_s, v_y_m_s and, where it changes, t_s"),
     MORAY_ROW(REAL, simulate, duration, "simulation", "duration_s", .flag = "duration", .max = 1e6, .open = true,
               .unit = "s", .help = "length of the simulation; 60 after the last change of gait unless given"),
     MORAY_ROW(REAL, simulate, output_step, "simulation", "output_step_s", .flag = "output-step", .max = 1e6,

@@ -18,19 +18,22 @@ static void describe(const simulate *run, const simulate_results *results, char 
     const bool control = is_control(run);
     const double theta_max =
         moray_theta_max_from_amplitude(robot, run->snake.model, gait->amplitude, gait->delta) / DEG;
-    char changes[60] = "", taper[40] = "", links[MORAY_LINKS_TEXT];
+    char changes[60] = "", taper[40] = "", links[MORAY_LINKS_TEXT], water[MORAY_PATH_SIZE + 12] = "";
     if (results->n_changes > 1)
         snprintf(changes, sizeof changes, "%d gaits, the last one from t = %g s: ", results->n_changes,
                  results->schedule[results->n_changes - 1].t);
     if (gait->taper != 0)
         snprintf(taper, sizeof taper, ", taper %g", gait->taper);
+    if (results->water)
+        snprintf(water, sizeof water, "water of %s, ", run->water_file);
     snprintf(text, size,
-             "%s, %s model, current (%g, %g) m/s. %stheta_max %.4g deg (%s = %.4g %s), omega %.4g deg/s, delta "
+             "%s, %s model, %scurrent (%.6g, %.6g) m/s%s. %stheta_max %.4g deg (%s = %.4g %s), omega %.4g deg/s, delta "
              "%.4g deg, phi_0 %.4g %s%s.",
-             moray_snake_links_text(robot, links), moray_model_name(run->snake.model), run->snake.current[0],
-             run->snake.current[1], changes, theta_max, control ? "a" : "alpha",
-             gait->amplitude * (control ? 100 : 1 / DEG), control ? "cm" : "deg", gait->omega / DEG, gait->delta / DEG,
-             gait->offset * (control ? 100 : 1 / DEG), control ? "cm" : "deg", taper);
+             moray_snake_links_text(robot, links), moray_model_name(run->snake.model), water, results->current[0],
+             results->current[1], results->water ? " in the mean of the table below" : "", changes, theta_max,
+             control ? "a" : "alpha", gait->amplitude * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
+             gait->omega / DEG, gait->delta / DEG, gait->offset * (control ? 100 : 1 / DEG), control ? "cm" : "deg",
+             taper);
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
@@ -108,7 +111,9 @@ static void fill_run(const simulate *run, const simulate_results *r, struct tabl
         {.label = "position p_x", .value = {r->end.p_x}, .unit = "m"},
         {.label = "position p_y", .value = {r->end.p_y}, .unit = "m"},
         {.label = "heading", .value = {r->end.heading / DEG}, .unit = "deg"},
-        {.label = "joint work", .value = {r->energy}, .unit = "J"},
+        {.label = run->snake.robot.motor.fitted && !is_control(run) ? "work at the motors" : "joint work",
+         .value = {r->energy},
+         .unit = "J"},
         {.label = "integrator", .text = t->integrator},
         {.label = "steps", .value = {(double)r->statistics.steps}},
         {.label = "evaluations of the right-hand side", .value = {(double)r->statistics.rhs_evaluations}},
@@ -148,6 +153,10 @@ static void json_head(moray_json *json, const simulate *run, const simulate_resu
 {
     moray_snake_to_json(json, &run->snake);
     moray_json_number(json, "course_deg", run->snake.course / DEG);
+    if (results->water) {
+        moray_json_text(json, "water", run->water_file);
+        moray_json_numbers(json, "mean_current_m_s", results->current, 2);
+    }
     moray_json_open_list(json, "gaits");
     for (int i = 0; i < results->n_changes; i++)
         json_gait(json, run, &results->schedule[i]);
@@ -204,7 +213,7 @@ moray_status simulate_report(const simulate_results *results)
 {
     const simulate *run = results->run;
     struct tables t;
-    char text[500];
+    char text[500 + MORAY_PATH_SIZE];
     moray_swim_scene scene = {0};
     fill_means(run, results, &t);
     fill_run(run, results, &t);

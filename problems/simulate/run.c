@@ -74,6 +74,7 @@ typedef struct {
     const bool *kept; // of each sample: goes into the track
     int next, n_joints;
     double last_t, last_heading, heading_sum, start_energy; // of the window
+    double first_current[2], last_off[2], off_sum[2];       // integrals of what the current is off the first
     moray_pose start;
     double peak_effort, peak_link_angle, peak_effort_of_run, peak_load;
     double *phi; // room for joints and their rates
@@ -97,8 +98,14 @@ static void look_in_window(lookout *at, const moray_swim_sample *sample, double 
     if (sample->t == at->plan->window.from) {
         at->start = *pose;
         at->start_energy = sample->energy;
+        memcpy(at->first_current, sample->current, sizeof at->first_current);
     } else {
         at->heading_sum += (sample->t - at->last_t) * (pose->heading + at->last_heading) / 2;
+    }
+    for (int c = 0; c < 2; c++) {
+        const double off = sample->current[c] - at->first_current[c];
+        at->off_sum[c] += (sample->t - at->last_t) * (off + at->last_off[c]) / 2; // the first is not off
+        at->last_off[c] = off;
     }
     at->last_t = sample->t;
     at->last_heading = pose->heading;
@@ -147,7 +154,10 @@ static int choose_times(const simulate *run, const simulate_results *results, in
 
 static void conclude(const simulate *run, const lookout *seen, simulate_results *results)
 {
-    const double *V = run->snake.current, span = results->window.to - results->window.from;
+    const double span = results->window.to - results->window.from;
+    double *V = results->current;
+    for (int c = 0; c < 2; c++)
+        V[c] = seen->first_current[c] + seen->off_sum[c] / span;
     results->v_x = (results->end.p_x - seen->start.p_x) / span;
     results->v_y = (results->end.p_y - seen->start.p_y) / span;
     results->speed = hypot(results->v_x - V[0], results->v_y - V[1]);

@@ -41,6 +41,7 @@ typedef struct simulate_results {
     moray_sim_statistics statistics;
     simulate_window window;
     double v_x, v_y, speed, course_speed, power, cost_of_transport, heading; // means over the window
+    double current[2];                                                       // likewise [m/s]
     double peak_effort, peak_link_angle;                                     // in the window
     double peak_load; // of the motors, of what their supply allows, in the window; 0 without
     moray_budget budget;

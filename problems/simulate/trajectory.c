@@ -28,7 +28,7 @@ static void add_states(columns *c, const moray_swim_track *track, int first, int
         add_column(c, name, n > 1 ? i + 1 : 0, unit, track->x + first + i, track->n_states);
 }
 
-// Time, pose, joint work; the states that are not in the pose already; joint efforts.
+// Time, pose, work of joints or motors; the states that are not in the pose already; joint efforts.
 static void choose_columns(const simulate *run, const simulate_results *results, columns *c)
 {
     const moray_swim_track *track = &results->track;
@@ -52,6 +52,8 @@ static void choose_columns(const simulate *run, const simulate_results *results,
         add_states(c, track, 0, N, "theta", "rad");
         add_states(c, track, N + 2, N, "dtheta", "rad/s");
     }
+    for (int i = 0; i < 2 && results->water; i++)
+        add_column(c, i ? "V_y" : "V_x", 0, "m/s", track->current + i, 2);
     for (int i = 0; i < N - 1; i++)
         add_column(c, "u", i + 1, control ? "N" : "N m", track->u + i, track->n_joints);
 }
@@ -60,7 +62,7 @@ moray_status simulate_trajectory(const void *found, moray_output *output)
 {
     const simulate_results *results = found;
     const simulate *run = results->run;
-    const size_t most = 3 * (size_t)run->snake.robot.links + 12;
+    const size_t most = 3 * (size_t)run->snake.robot.links + 14;
     FILE *file;
     MORAY_TRY(moray_output_file(output, "trajectory.csv", &file));
     columns c = {.column = calloc(most, sizeof *c.column), .name = calloc(most, sizeof *c.name)};

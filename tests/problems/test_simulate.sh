@@ -1,17 +1,11 @@
 # SPDX-License-Identifier: MIT
 # The program simulate: numbers of the paper's gait, schedules, files, bad input. Arguments: the program, the source
 # directory.
-case $1 in
-/*) simulate=$1 ;;
-*) simulate=$PWD/$1 ;;
-esac
-root=$(CDPATH='' cd -- "$2" && pwd)
-. "$root/tests/tap.sh"
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
+. "$2/tests/program.sh"
+simulate=$program
+root=$source
 
-# run ARGUMENTS: leaves $code, out and err.
+# run ARGUMENTS: with JSON; leaves $code, out and err.
 run() {
     "$simulate" "$@" --json >out 2>err </dev/null
     code=$?
@@ -27,15 +21,15 @@ second() {
     awk -v key="\"$1\":" '$1 == key { gsub(/[],]/, "", $3); print $3 }' out
 }
 
-# near WHAT IS WANT TOLERANCE
-near() {
+# agree WHAT IS WANT TOLERANCE
+agree() {
     check "$1 = $2, expected $3 within $4" awk -v is="$2" -v want="$3" -v by="$4" \
         'BEGIN { exit !(is != "" && want != "" && is - want <= by && want - is <= by) }'
 }
 
 # found KEY WANT TOLERANCE
 found() {
-    near "$1" "$(value "$1")" "$2" "$3"
+    agree "$1" "$(value "$1")" "$2" "$3"
 }
 
 # The paper's gait in still water: an independent implementation.
@@ -45,15 +39,15 @@ found speed_m_s 0.2293 0.0001
 found power_W 0.2646 0.0001
 found alpha_deg 13.681 0.001
 found periods 5 0
-near "peak torque in the last periods" "$(awk '/peak_torque/ { print $2 + 0; exit }' out)" 0.403 0.0005
+agree "peak torque in the last periods" "$(awk '/peak_torque/ { print $2 + 0; exit }' out)" 0.403 0.0005
 steps=$(value steps)
 
 # Motors, a battery, unequal links.
 run --model fp --set duration_s=20 --set hotel_W=1 --set motor_idle_W=0.1 --set battery_Wh=20
 joints=$(value joints_or_motors_W)
 check "without motors the power is that of the joints: $(cat err)" [ "$(awk '/"power_W"/ { print $2; exit }' out)" = "$joints," ]
-near "whole power" "$(value power_W)" "$(awk "BEGIN { print $joints + 1.9 }")" 1e-5
-near "endurance" "$(value endurance_h)" "$(awk "BEGIN { print 20 / ($joints + 1.9) }")" 1e-4
+agree "whole power" "$(value power_W)" "$(awk "BEGIN { print $joints + 1.9 }")" 1e-5
+agree "endurance" "$(value endurance_h)" "$(awk "BEGIN { print 20 / ($joints + 1.9) }")" 1e-4
 run --model fp --set duration_s=20 --set motor_efficiency=0.5 --set motor_speed_deg_s=0,60 --set motor_torque_N_m=0.7,0
 check "power is at the motors: $(cat err)" grep -q '"power_is":.*"mean power at the motors"' out
 check "half the efficiency and nothing back takes more than twice, $(value joints_or_motors_W) W, of $joints W" \
@@ -87,17 +81,34 @@ run --robot swim.ini
 found power_W "$power" 1e-9
 run --output-step 10
 found power_W "$power" 1e-6
-near "peak force, sampled between the output steps" "$(awk '/peak_force/ { print $2 + 0; exit }' out)" 1.614 0.005
+agree "peak force, sampled between the output steps" "$(awk '/peak_force/ { print $2 + 0; exit }' out)" 1.614 0.005
 
 # Currents, headings, positions: the control-oriented model knows the current through the relative velocity alone.
 # A table of a uniform current swims as that current does; where it ends, the run does.
 awk 'BEGIN { print "x_m,y_m,v_x_m_s,v_y_m_s"; for (x = -9; x <= 12; x += 7) for (y = -9; y <= 12; y += 7) print x "," y ",0.1,0.05" }' >uniform.csv
-run --model fp --current 0.1,0.05 --duration 8
-power=$(value power_W) along=$(value course_speed_m_s)
-run --model fp --water uniform.csv --duration 8
+run --model fp --current 0.1,0.05 --duration 8 --out by_current
+power=$(value power_W) along=$(value course_speed_m_s) speed=$(value speed_m_s)
+run --model fp --water uniform.csv --duration 8 --out by_table
 check "swims in a table: $(cat err)" [ $code -eq 0 ]
 found power_W "$power" 1e-9
 found course_speed_m_s "$along" 1e-9
+found speed_m_s "$speed" 1e-9
+found mean_current_m_s 0.1 1e-9
+check "and says in what" eval '"$simulate" --water uniform.csv --set rot_gain=40 --set rot_damping=1.15 --duration 1 |
+    grep -qF "water of uniform.csv, current (0.1, 0.05) m/s in the mean of the table below"'
+for kind in current table; do # what the water does to each link, as the animation shows it
+    grep -o '"force":[^]]*' by_$kind/report.html >force_$kind
+done
+check "the drag of the animation is that of the current: $(wc -c <force_table) bytes" eval '[ -s force_table ] && cmp -s force_current force_table'
+check "trajectory.csv has the current" eval 'head -1 by_table/trajectory.csv | grep -qF "V_x [m/s],V_y [m/s]" && ! grep -q "V_x" by_current/trajectory.csv'
+# A shear: the speed through the water is that over ground less the mean of the currents that were met.
+awk 'BEGIN { print "x_m,y_m,v_x_m_s,v_y_m_s"; for (x = -9; x <= 12; x += 7) for (y = -9; y <= 12; y += 7) print x "," y "," 0.05 * y ",0" }' >shear.csv
+run --model fp --water shear.csv --duration 12 --set start_heading_deg=90 --set output_step_s=0.02 --out sheared
+check "in a shear: $(cat err)" [ $code -eq 0 ]
+set -- "$(awk '/"from_s"/ { print $2 + 0; exit }' out)" "$(awk '/"v_x_m_s"/ { print $2 + 0; exit }' out)" "$(awk '/"v_y_m_s"/ { print $2 + 0; exit }' out)"
+found speed_m_s "$(awk -F, -v from="$1" -v vx="$2" -v vy="$3" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ /^V_x/) c = i; next }
+    $1 >= from { if (n++) sum += ($1 - t) * ($c + last) / 2; t = $1; last = $c; begin = n == 1 ? $1 : begin }
+    END { w = vx - sum / (t - begin); print sqrt(w * w + vy * vy) }' sheared/trajectory.csv)" 1e-4
 run --model fp --water uniform.csv --duration 60
 check "leaves the table: $(cat err)" eval '[ $code -eq 2 ] && grep -q "outside of the table: x -9 to 12, y -9 to 12 m" err'
 run --water uniform.csv --current 0.1,0
@@ -112,7 +123,7 @@ distance=$(second end_position_m)
 found end_position_m 1 1e-9
 found heading_deg 90 1e-6
 run --duration 30
-near "distance swum at another heading" "$distance" "$(awk -v d="$(value end_position_m)" 'BEGIN { print d + 2 }')" 1e-5
+agree "distance swum at another heading" "$distance" "$(awk -v d="$(value end_position_m)" 'BEGIN { print d + 2 }')" 1e-5
 
 # The manoeuvre of Sec. V-C: mean heading before t = 130 s, position at 190 s.
 turn() {
@@ -121,7 +132,7 @@ turn() {
     found heading_deg "$5" 0.3
     run --current 0.1,0.1 --set theta_max_deg=10 --schedule turn.csv --model "$4" --duration 190
     found end_position_m "$6" 0.1
-    near "p_y at 190 s" "$(second end_position_m)" "$7" 0.1
+    agree "p_y at 190 s" "$(second end_position_m)" "$7" 0.1
 }
 run --current 0.1,0.1 --schedule "$root/problems/schedules/turning.csv" --duration 190 --model fp
 found end_position_m 38.27 0.1
@@ -152,15 +163,6 @@ check "trajectory.csv ends at the end" eval 'tail -1 files/trajectory.csv | grep
 check "summary.json is what --json prints" cmp files/summary.json out
 "$simulate" --duration 1 >out 2>err
 check "the table names unit and integrator" eval 'grep -q "peak joint force .* N$" out && grep -q "explicit, rtol 1e-10" out'
-
-# refuse TEXT ARGUMENTS: exit 2, nothing on standard output, one line on standard error with TEXT in it.
-refuse() {
-    text=$1
-    shift
-    run --duration 1 "$@"
-    check "refused, '$text': $(cat err)" \
-        eval '[ $code -eq 2 ] && [ ! -s out ] && [ "$(wc -l <err)" -eq 1 ] && grep -qF -e "$text" err'
-}
 
 # schedule LINES: writes s.csv.
 schedule() {

@@ -23,7 +23,8 @@ typedef struct moray_swim_scene {
 } moray_swim_scene;
 
 // Adds the robot of a track, moved aside by so much [m]; the first one sets the times. With linear drag and equal links
-// the first-principles model shows it on the links: (2) without the added mass. `width` of a link [m]. What has no room
+// the first-principles model shows it on the links: (2) without the added mass, in the current of the track, whose mean
+// is the scene's. `width` of a link [m]. What has no room
 // is left out. Error: MORAY_MEMORY.
 MORAY_API moray_status moray_swim_scene_add(moray_swim_scene *scene, const char *name, const moray_swim_track *track,
                                             moray_swimmer *swimmer, double width, const double aside[2]);

@@ -27,7 +27,8 @@ typedef struct moray_swim_sample {
     const double *x; // state, 2N+4
     const double *u; // joint efforts, N-1; at a change of gait those of the new one
     moray_pose pose;
-    double energy; // joint work sum of u_i v_phi,i since the start [J]
+    double energy;     // work of the joints, or at the terminals of their motors, since the start [J]
+    double current[2]; // of the water at the centre of mass [m/s]
 } moray_swim_sample;
 
 // Returns false to stop the simulation. What the sample points at lives until the return.
@@ -60,11 +61,11 @@ typedef struct moray_swim_plan {
     moray_sim_statistics *statistics; // receives those of the run; may be NULL
 } moray_swim_plan;
 
-// Simulates from t0 to t1 in the swimmer's current; x[2N+4] is start and end state, *energy the joint work [J] (may be
-// NULL). Changes of gait, measurements of the controller and samples are exact stops; the integrator starts anew at
-// every change and measurement. When the observer stops the run, the status is ok and x the state last observed; after
-// an error x is the state last reached. Error: those of moray_closed_loop_run; MORAY_INPUT where the swimmer leaves the
-// table of the water.
+// Simulates from t0 to t1 in the swimmer's current, which it leaves as it was; x[2N+4] is start and end state, *energy
+// the work of a sample [J] (may be NULL). Changes of gait, measurements of the controller and samples are exact stops;
+// the integrator starts anew at every change and measurement. When the observer stops the run, the status is ok and x
+// the state last observed; after an error x is the state last reached. Error: those of moray_closed_loop_run;
+// MORAY_INPUT where the swimmer leaves the table of the water.
 MORAY_API moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings,
                                       const moray_swim_plan *plan, double *x, double *energy);
 
@@ -83,7 +84,7 @@ MORAY_API moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const mora
 // A recorded motion of n samples; row k of x and u belongs to t[k].
 typedef struct moray_swim_track {
     int capacity, n, n_states, n_joints;
-    double *t, *x, *u, *energy; // capacity times 1, n_states, n_joints, 1
+    double *t, *x, *u, *energy, *current; // capacity times 1, n_states, n_joints, 1, 2
     moray_pose *pose;
 } moray_swim_track;
 
@@ -120,7 +121,7 @@ typedef struct moray_swim_setup {
 typedef struct moray_steady {
     double v_x, v_y;          // mean ground velocity [m/s]
     double speed;             // through the water, |mean ground velocity - current| [m/s]
-    double power;             // mean joint power [W]
+    double power;             // mean of the joints, or at the terminals of their motors [W]
     double cost_of_transport; // power/speed [J/m]; infinite at no speed
     double peak_effort;       // largest |u_i|, sampled at every degree of phase or finer [N or N m]
     double peak_link_angle;   // largest |link angle - heading|, likewise [rad]

@@ -24,7 +24,7 @@ typedef struct water_plant {
     int n_in, n_out;
     int place[PLACES];  // of p_x, p_y, t among the inputs
     int wet_from;       // outputs that feel the current: the last three of the body, and from here to
-    int wet_to;         // the power's, those of the joints
+    int wet_to;         // the power's, those of the joints and their motors
     double *at;         // n_in: shifted inputs
     double *out[WAYS];  // n_out each
     double *jac[WAYS];  // n_out x n_in each
@@ -304,7 +304,8 @@ static moray_status set_up(water_plant *self, const moray_plant_spec *spec, mora
     self->place[1] = P_Y;
     self->place[2] = self->n_in - 1;
     self->wet_from = size.nx;
-    self->wet_to = size.nx + (spec->path_forces ? spec->robot.links - 1 : 0);
+    self->wet_to = size.nx + ((spec->path_forces ? 1 : 0) + (spec->path_supply ? spec->robot.motor.lines : 0)) *
+                                 (spec->robot.links - 1);
     MORAY_TRY(take_room(self));
     return find_patterns(self);
 }
@@ -318,8 +319,7 @@ moray_status moray_water_plant(moray_map *map, const moray_plant_spec *spec, boo
     if (spec->joints == MORAY_JOINTS_CLOSED_LOOP || spec->joints == MORAY_JOINTS_FREE)
         return moray_error(MORAY_INPUT, "water that is not uniform: only with the joints on a gait");
     if (!linear && hydro->added_mass != MORAY_ADDED_MASS_INVARIANT)
-        return moray_error(
-            MORAY_INPUT, "water that is not uniform: %s needs added_mass = invariant",
+        return moray_error(MORAY_INPUT, "water that is not uniform: %s needs added_mass = invariant",
                            motor ? "the power of motors" : "quadratic drag");
     water_plant *self = calloc(1, sizeof *self);
     if (!self)

@@ -3,6 +3,12 @@
 
 #include <math.h>
 
+// A speed that is not known makes no cost.
+static double per_metre(double power, double speed)
+{
+    return speed > 0 ? power / speed : isnan(speed) ? NAN : INFINITY;
+}
+
 static bool at_motors(const moray_robot *robot, moray_model model)
 {
     return robot->motor.fitted && model == MORAY_FIRST_PRINCIPLES;
@@ -20,8 +26,8 @@ moray_budget moray_budget_of(const moray_robot *robot, double power, double spee
     return (moray_budget){.joints = power,
                           .constant = robot->supply.constant,
                           .whole = whole,
-                          .through_water = speed > 0 ? whole / speed : INFINITY,
-                          .over_ground = course_speed > 0 ? whole / course_speed : INFINITY,
+                          .through_water = per_metre(whole, speed),
+                          .over_ground = per_metre(whole, course_speed),
                           .endurance = endurance,
                           .range = endurance * hour * course_speed};
 }

@@ -99,6 +99,8 @@ moray_ode moray_swim_plant_ode(swim_plant *plant)
 moray_swim_sample moray_swim_plant_sample(swim_plant *plant, double t, const double *x)
 {
     rates(plant, t, x, plant->dx); // of an accepted state, where the simulator has asked before
-    return (moray_swim_sample){
+    moray_swim_sample sample = {
         .t = t, .x = x, .u = plant->u, .pose = moray_swimmer_pose(plant->swimmer, x), .energy = x[plant->n_states]};
+    moray_swimmer_current(plant->swimmer, sample.current);
+    return sample;
 }

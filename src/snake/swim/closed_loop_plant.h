@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A swimmer in closed loop as an equation to simulate: its state, then the joint work as one more.
+// A swimmer in closed loop as an equation to simulate: its state, then the work of its joints, or at the terminals of
+// their motors, as one more.
 #ifndef SRC_SNAKE_SWIM_CLOSED_LOOP_PLANT_H
 #define SRC_SNAKE_SWIM_CLOSED_LOOP_PLANT_H
 

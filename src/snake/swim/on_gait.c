@@ -126,8 +126,10 @@ static moray_swim_sample sample(on_gait *r)
     moray_gait gait = r->gait;
     set_offset(r, r->t, &gait);
     rates(r, &gait, r->t, r->y, dy);
-    return (moray_swim_sample){
+    moray_swim_sample shown = {
         .t = r->t, .x = r->x, .u = r->u, .pose = moray_swimmer_pose(r->swimmer, r->x), .energy = r->y[ENERGY]};
+    moray_swimmer_current(r->swimmer, shown.current);
+    return shown;
 }
 
 // What is commanded may jump here; the joints do not.

@@ -61,14 +61,14 @@ static void mix(const double *table, int columns, int k, double part, double *to
 }
 
 // Linear drag of (2) on the links in a state of the first-principles model: the centres move as the state's velocities
-// tell, by differences of the links' places. scratch[2 (2N+4) + 6N].
-static void drag(const moray_swimmer *swimmer, const double *x, const double *places, double *scratch, double *force)
+// tell, by differences of the links' places, in the current V. scratch[2 (2N+4) + 6N].
+static void drag(const moray_swimmer *swimmer, const double *x, const double V[2], const double *places,
+                 double *scratch, double *force)
 {
     const moray_robot *robot = moray_swimmer_robot(swimmer);
     const int N = robot->links, half = N + 2;
     const double h = 1e-6;
-    double *moved = scratch, *links = scratch + 2 * half, V[2];
-    moray_swimmer_current(swimmer, V);
+    double *moved = scratch, *links = scratch + 2 * half;
     memcpy(moved, x, (size_t)(2 * half) * sizeof *x);
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < half; i++)
@@ -101,11 +101,12 @@ static void fill(const moray_scene *scene, const moray_swim_track *track, const 
                  const double aside[2], const struct frames *to)
 {
     const int N = moray_swimmer_robot(swimmer)->links;
-    double *x = to->scratch, *links = x + track->n_states, *rest = links + 3 * N, part;
+    double *x = to->scratch, *links = x + track->n_states, *rest = links + 3 * N, V[2], part;
     int sample = 0;
     for (int k = 0; k < scene->frames; k++) {
         sample = before(track, scene->t[k], sample, &part);
         mix(track->x, track->n_states, sample, part, x);
+        mix(track->current, 2, sample, part, V);
         mix(track->u, track->n_joints, sample, part, to->effort + (size_t)k * (size_t)track->n_joints);
         moray_swimmer_links(swimmer, x, links, links + N, links + 2 * N);
         double *at = to->at + (size_t)(3 * N) * (size_t)k;
@@ -115,7 +116,18 @@ static void fill(const moray_scene *scene, const moray_swim_track *track, const 
             at[3 * i + 2] = links[2 * N + i];
         }
         if (to->force)
-            drag(swimmer, x, at, rest, to->force + (size_t)(2 * N) * (size_t)k);
+            drag(swimmer, x, V, at, rest, to->force + (size_t)(2 * N) * (size_t)k);
+    }
+}
+
+// The mean over the samples; of what is uniform to the last digit.
+static void mean_current(const moray_swim_track *track, double V[2])
+{
+    for (int c = 0; c < 2; c++) {
+        double off = 0;
+        for (int k = 0; k < track->n; k++)
+            off += track->current[2 * k + c] - track->current[c];
+        V[c] = track->current[c] + off / track->n;
     }
 }
 
@@ -162,7 +174,7 @@ moray_status moray_swim_scene_add(moray_swim_scene *made, const char *name, cons
                                           .effort = to.effort,
                                           .force = to.force};
     made->scene.n_bodies++;
-    moray_swimmer_current(swimmer, made->scene.current);
+    mean_current(track, made->scene.current);
     return moray_ok();
 }
 

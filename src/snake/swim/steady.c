@@ -131,7 +131,7 @@ static moray_status measure(closed_loop *v, moray_swim_sample *now, moray_steady
     return moray_ok();
 }
 
-// Time, position (both models: states N and N+1) and joint work count from the first sample.
+// Time, position (both models: states N and N+1) and work count from the first sample.
 static void shift_to_origin(moray_swim_track *orbit, int links)
 {
     const double t = orbit->t[0], energy = orbit->energy[0], p_x = orbit->pose[0].p_x, p_y = orbit->pose[0].p_y;

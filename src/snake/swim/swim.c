@@ -120,8 +120,10 @@ static moray_status prepare(swim_run *r, moray_swimmer *swimmer, const double *x
 moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *settings, const moray_swim_plan *plan,
                             double *x, double *energy)
 {
+    double V[2];
     MORAY_TRY(check_plan(plan));
     swim_run r = {.plan = plan, .left = moray_ok()};
+    moray_swimmer_current(swimmer, V);
     moray_status status = prepare(&r, swimmer, x);
     if (!moray_failed(status)) {
         status = run(&r, settings);
@@ -132,6 +134,7 @@ moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *se
         if (energy)
             *energy = r.plant.x[r.plant.n_states];
     }
+    moray_swimmer_set_current(swimmer, V[0], V[1]);
     free(r.change);
     moray_swim_plant_free(&r.plant);
     return status;

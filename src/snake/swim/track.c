@@ -15,8 +15,9 @@ moray_status moray_swim_track_new(moray_swim_track *track, const moray_swimmer *
                                 .x = malloc(n * (size_t)n_states * sizeof *track->x),
                                 .u = malloc(n * (size_t)n_joints * sizeof *track->u),
                                 .energy = malloc(n * sizeof *track->energy),
+                                .current = malloc(2 * n * sizeof *track->current),
                                 .pose = malloc(n * sizeof *track->pose)};
-    if (track->t && track->x && track->u && track->energy && track->pose)
+    if (track->t && track->x && track->u && track->energy && track->current && track->pose)
         return moray_ok();
     moray_swim_track_free(track);
     return moray_error(MORAY_MEMORY, "no memory for a track of %d samples", capacity);
@@ -28,6 +29,7 @@ void moray_swim_track_free(moray_swim_track *track)
     free(track->x);
     free(track->u);
     free(track->energy);
+    free(track->current);
     free(track->pose);
     *track = (moray_swim_track){0};
 }
@@ -41,6 +43,7 @@ bool moray_swim_track_add(const moray_swim_sample *sample, void *self)
     track->t[k] = sample->t;
     track->energy[k] = sample->energy;
     track->pose[k] = sample->pose;
+    memcpy(track->current + 2 * (size_t)k, sample->current, sizeof sample->current);
     memcpy(track->x + (size_t)k * track->n_states, sample->x, (size_t)track->n_states * sizeof *track->x);
     memcpy(track->u + (size_t)k * track->n_joints, sample->u, (size_t)track->n_joints * sizeof *track->u);
     return true;

@@ -128,17 +128,18 @@ typedef struct kind {
     const char *name;
     maker *make;
     moray_joints joints;
-    bool forces, consistent;
+    bool forces, consistent, motors;
 } kind;
 static const kind kinds[] = {
-    {"control, steered", moray_control_plant, MORAY_JOINTS_STEERED, true, false},
-    {"control, on the gait", moray_control_plant, MORAY_JOINTS_ON_GAIT, false, false},
-    {"control, invariant frame", moray_control_plant, MORAY_JOINTS_STEERED, true, true},
-    {"first-principles, steered", moray_fp_plant, MORAY_JOINTS_STEERED, true, false},
-    {"first-principles, consistent", moray_fp_plant, MORAY_JOINTS_STEERED, true, true},
-    {"first-principles, on a series", moray_fp_plant, MORAY_JOINTS_SERIES, false, false},
-    {"averaged", moray_average_plant, MORAY_JOINTS_STEERED, false, false},
-    {"averaged, invariant frame", moray_average_plant, MORAY_JOINTS_STEERED, false, true},
+    {"control, steered", moray_control_plant, MORAY_JOINTS_STEERED, true, false, false},
+    {"control, on the gait", moray_control_plant, MORAY_JOINTS_ON_GAIT, false, false, false},
+    {"control, invariant frame", moray_control_plant, MORAY_JOINTS_STEERED, true, true, false},
+    {"first-principles, steered", moray_fp_plant, MORAY_JOINTS_STEERED, true, false, false},
+    {"first-principles, consistent", moray_fp_plant, MORAY_JOINTS_STEERED, true, true, false},
+    {"first-principles, with motors", moray_fp_plant, MORAY_JOINTS_STEERED, true, true, true},
+    {"first-principles, on a series", moray_fp_plant, MORAY_JOINTS_SERIES, false, false, false},
+    {"averaged", moray_average_plant, MORAY_JOINTS_STEERED, false, false, false},
+    {"averaged, invariant frame", moray_average_plant, MORAY_JOINTS_STEERED, false, true, false},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds, MOST = 64 };
 
@@ -151,6 +152,12 @@ static moray_map make(const kind *k, int links, const moray_water *water, const 
     spec.path_angles = k->forces;
     if (k->consistent)
         spec.robot.hydro = moray_hydrodynamics_consistent();
+    if (k->motors) {
+        const double speed[] = {0, 2, 4}, torque[] = {2, 1.5, 0};
+        spec.robot.motor = (moray_motor){.fitted = true, .forward = 0.8, .smooth_rate = 0.5, .smooth_power = 0.5};
+        CHECK_OK(moray_motor_set_table(&spec.robot.motor, speed, torque, 3), "a motor's table");
+        spec.path_supply = true;
+    }
     spec.water = water;
     memcpy(spec.current, V, sizeof spec.current);
     CHECK_OK(k->make(&map, &spec), k->name);
