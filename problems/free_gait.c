@@ -9,7 +9,8 @@
 
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
-               "mean joint power; by default what the paper's gait uses in the same model and current"),
+               "mean power of the joints, or at the terminals of their motors; by default what the paper's gait uses "
+               "in the same model and current"),
     MORAY_ROW(INT, free_gait, harmonics, "problem", "harmonics", .min = 1, .max = FREE_GAIT_HARMONICS,
               .help = "of the Fourier series in every joint; those of fewer are found on the way"),
     MORAY_ROW(

@@ -13,8 +13,9 @@ static const moray_option options[] = {
               .help = "how long the reference is followed; by default 100, fig8 190"),
     STEER_GAIT_OPTIONS(heading_job),
     STEER_LIMIT(heading_job, max_error, "max_error_deg", "deg", "largest heading error allowed of the plan"),
-    STEER_WEIGHT(heading_job, weight_power, "weight_power", 0,
-                 "of the mean joint power in W, against 1 for the mean squared heading error in units of 10 deg"),
+    STEER_WEIGHT(
+        heading_job, weight_power, "weight_power", 0,
+        "of the mean power of joints or motors in W, against 1 for the mean squared heading error in units of 10 deg"),
     STEER_WEIGHT(heading_job, steer.weight_steering, "weight_steering", 1e-9,
                  "of the mean square of phi_0'' in units of its limit per s^2, likewise"),
     STEER_MESH_OPTIONS(heading_job),

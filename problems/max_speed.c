@@ -10,7 +10,8 @@ static const char *const over_goals[] = {[MORAY_OVER_WORST] = "worst", [MORAY_OV
 
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
-               "mean joint power; by default what the paper's gait uses in the same model and current"),
+               "mean power of the joints, or at the terminals of their motors; by default what the paper's gait uses "
+               "in the same model and current"),
     MORAY_ROW(TEXT, gait_job, over, "problem", "over", .flag = "over", .argument = "MODELS",
               .help =
                   "rungs of the ladder for which one more gait is optimised, the recommended one, at the power of "

@@ -8,7 +8,7 @@
 static const moray_option options[] = {
     GAIT_LIMIT("speed_m_s", speed, "m/s",
                "least speed along the course; by default what the paper's gait makes in the same model and current"),
-    GAIT_LIMIT("power_W", power, "W", "mean joint power"),
+    GAIT_LIMIT("power_W", power, "W", "mean power of the joints, or at the terminals of their motors"),
 };
 
 static const gait_program program = {

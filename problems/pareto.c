@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Fronts of speed against power, by continuation: the fastest gaits within ever less mean joint power, of lateral
+// Fronts of speed against power, by continuation: the fastest gaits within ever less mean power, of lateral
 // undulation and of eel-like motion, on both models; every gait swum on the first-principles model.
 #include "gait/pareto/pareto.h"
 

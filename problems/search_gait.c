@@ -14,11 +14,13 @@ static const char *const goals[] = {"speed", "economy", NULL};
 
 static const moray_option own[] = {
     GAIT_LIMIT("power_W", power, "W",
-               "mean joint power; by default what the paper's gait uses in the same model and current, or with the "
+               "mean power of the joints, or at the terminals of their motors; by default what the paper's gait uses "
+               "in the same model and current, or with the "
                "goal economy none"),
     GAIT_LIMIT("speed_m_s", speed, "m/s",
                "least speed along the course; by default none, or with the goal economy what the paper's gait makes"),
-    CHOICE("goal", "problem", goal, goals, "largest speed along the course, or least joint work per distance along it"),
+    CHOICE("goal", "problem", goal, goals,
+           "largest speed along the course, or least work of joints or motors per distance along it"),
     CHOICE("local", "solver", local_method, search_gait_locals, "method of the searches from each start"),
     CHOICE("global", "solver", global_method, search_gait_globals, "method of the global search"),
     MORAY_ROW(INT, search_gait, global_orbits, "solver", "global_orbits", .min = 1, .max = 1000000,

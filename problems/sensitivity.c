@@ -6,7 +6,8 @@
 
 static const moray_option options[] = {
     GAIT_LIMIT("power_W", power, "W",
-               "mean joint power; by default what the paper's gait uses in the same model and current"),
+               "mean power of the joints, or at the terminals of their motors; by default what the paper's gait uses "
+               "in the same model and current"),
     MORAY_ROW(PAIR, sensitivity, predicted, "problem", "predict_current", .unit = "m/s",
               .help = "current for which the gait is predicted; by default 0.1 m/s more on both axes"),
 };

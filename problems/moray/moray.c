@@ -19,7 +19,7 @@ typedef struct listed {
 
 static const listed programs[] = {
     {"max_speed", "fastest gait along a course in a current", NULL},
-    {"min_energy", "gait of least joint work per distance", NULL},
+    {"min_energy", "gait of least work per distance", NULL},
     {"search_gait", "all optima within the limits, by many starts", NULL},
     {"pareto", "fronts of speed against power on both models", NULL},
     {"free_gait", "what the sinusoidal gait leaves on the table", NULL},

@@ -29,7 +29,8 @@
                      "phase shift between joints"),                                                                    \
         STEER_OFFSET_OPTIONS(settings, steer.input.offset, steer.input.offset_rate),                                   \
         STEER_LIMIT(settings, steer.input.power, "power_W", "W",                                                       \
-                    "mean joint power; by default what the paper's gait uses straight ahead in the same model, none "  \
+                    "mean power of the joints, or at the terminals of their motors; by default what the paper's gait " \
+                    "uses straight ahead in the same model, none "                                                     \
                     "where the gait is given")
 
 #define STEER_WATER_OPTION(settings)                                                                                   \

@@ -87,9 +87,16 @@ END
 fi
 
 run --robot "$source/problems/robots/head_and_fin.ini" --out unequal
-check "links of their own, head and tail: $(cat err)" eval \
-    '[ "$(grep -o "mass value=\"[0-9.]*" unequal/snake.urdf | cut -c13-16 | tr "\n" " ")" != "" ] &&
-     [ "$(grep -o "mass value=\"[^\"]*" unequal/snake.urdf | sort -u | wc -l)" -ge 3 ]'
+# masses FILE WORD: of all links in the order of the file, which begins at the tail.
+masses() {
+    grep -o "$2=\"[^\"]*" "$1" | awk -F'"' '{ printf "%s%.6g", NR > 1 ? " " : "", $2 }'
+}
+for file in 'snake.urdf mass value' 'snake.xml mass'; do
+    masses "unequal/${file%% *}" "${file#* }" >listed
+    check "links of their own from the tail to the head, $file: $(cat listed)" \
+        [ "$(cat listed)" = "0.45 0.63 0.63 0.63 0.63 0.63 0.63 0.63 1.2" ]
+done
+check "which could be told: $(cat err)" [ $code -eq 0 ]
 
 # ---- A free motion -------------------------------------------------------------------------------------------------
 mkdir series

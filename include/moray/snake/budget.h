@@ -20,7 +20,8 @@ typedef struct moray_budget {
     double endurance, range;           // of the battery [h], [m] over ground; NaN without
 } moray_budget;
 
-// Of a mean power [W], speed through the water and along the course [m/s].
+// Of a mean power [W], speed through the water and along the course [m/s]; where one of them is NAN, as of a course
+// that is not held, what depends on it is.
 MORAY_API moray_budget moray_budget_of(const moray_robot *robot, double power, double speed, double course_speed);
 
 // Whether the robot has motors, a constant load or a battery, so that there is more to tell than its joint power.

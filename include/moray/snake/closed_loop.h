@@ -43,7 +43,7 @@ MORAY_API moray_status moray_swim_closed_loop_run(moray_swim_closed_loop *closed
 MORAY_API void moray_swim_closed_loop_free(moray_swim_closed_loop *closed_loop);
 
 // Of the heading without its undulation, from the reference, which may jump at samples: root of the mean square, the
-// last, the largest [rad]; and the mean joint power [W].
+// last, the largest [rad]; and the mean power of joints or motors [W].
 typedef struct moray_heading_score {
     double rms, final, largest, power;
 } moray_heading_score;
@@ -53,7 +53,7 @@ MORAY_API moray_heading_score moray_swim_closed_loop_heading_score(const moray_s
 
 // Of the distance to the path [m]: root of the mean square; the same, and the largest, from where the robot has come
 // further along the path than `reach` from its start; when it passed the end of the path (NaN: it did not) [s]; the
-// mean joint power until then [W].
+// mean power of joints or motors until then [W].
 typedef struct moray_path_score {
     double rms, settled_rms, settled_largest, time, power;
 } moray_path_score;

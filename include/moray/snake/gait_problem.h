@@ -24,7 +24,7 @@ typedef struct moray_gait_limits {
     moray_bounds delta;     // [rad]
     moray_bounds offset;    // phi_0 of the model [m or rad]
     moray_bounds taper;     // of the amplitude along the body, within -1:1; 0 for all links alike
-    double power;           // mean joint power [W]
+    double power;           // mean of the joints, or at the terminals of their motors [W]
     double joint_rate;      // amplitude of every phi_i' [m/s or rad/s]
     double joint_effort;    // |u_i| [N or N m], at the nodes of the mesh
     double course_speed;    // least speed along the course [m/s]; 0: none
@@ -33,7 +33,7 @@ typedef struct moray_gait_limits {
 
 typedef enum {
     MORAY_GAIT_FASTEST,   // largest speed along the course
-    MORAY_GAIT_THRIFTIEST // least joint work per distance along the course
+    MORAY_GAIT_THRIFTIEST // least work of joints or motors and of the constant power, per distance along the course
 } moray_gait_goal;
 
 typedef struct moray_gait_problem_spec {

@@ -37,7 +37,7 @@ MORAY_API int moray_reference_intervals(const moray_reference *reference, double
 
 typedef struct moray_heading_weights {
     double heading;  // of the squared error [1/rad^2]
-    double power;    // of the joint power [1/W]
+    double power;    // of the power of joints or motors [1/W]
     double steering; // of (phi_0'' / limit of phi_0)^2 [s^4]
 } moray_heading_weights;
 

@@ -173,7 +173,8 @@ static void find_words(const free_gait *run, char *text)
         "best gait (25) by theta_max reaches %.4g deg",
         run->limit / DEG, moray_model_name(best->model), reach);
     if (isfinite(best->power))
-        moray_text_add(text, TEXT, "; mean joint power at most %.4g W there", best->power);
+        moray_text_add(text, TEXT, "; %s at most %.4g W there", moray_power_label(&run->job.snake.robot, best->model),
+                       best->power);
     moray_text_add(text, TEXT, ".\nThe free motion, %s, on the first-principles model: ", m->name);
     say_gain(run, &m->at.gain, "the paper's gait", text);
     moray_text_add(text, TEXT, "; ");

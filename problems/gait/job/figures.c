@@ -92,22 +92,23 @@ static moray_status draw_effort(const orbit_view *v)
                 curves, isfinite(limit) ? SHOWN + 2 : SHOWN);
 }
 
-// Of the joints together: sum of u_i phi_i'.
+// Of the joints together, or at the terminals of their motors.
 static moray_status draw_power(const orbit_view *v)
 {
     double *power = v->values, *mean = v->values + POINTS;
+    const bool motors = v->job->snake.robot.motor.fitted && !v->control;
     const double T = v->track->t[POINTS - 1];
     for (int k = 0; k < POINTS; k++) {
-        power[k] = 0;
-        for (int i = 0; i < v->joints; i++)
-            power[k] += v->track->u[k * v->joints + i] * v->rate[k * v->joints + i];
+        power[k] = moray_swimmer_power(v->swimmer, v->track->u + k * v->joints, v->rate + k * v->joints);
         mean[k] = v->track->energy[POINTS - 1] / T;
     }
-    const moray_curve curves[] = {{.label = "joint power", .x = v->track->t, .y = power, .n = POINTS},
-                                  {.label = "its mean", .x = v->track->t, .y = mean, .n = POINTS}};
+    const moray_curve curves[] = {
+        {.label = motors ? "power at the motors" : "joint power", .x = v->track->t, .y = power, .n = POINTS},
+        {.label = "its mean", .x = v->track->t, .y = mean, .n = POINTS}};
     return draw(v,
                 (moray_figure){.name = "power",
-                               .title = "The recommended gait: joint power over a period",
+                               .title = motors ? "The recommended gait: power at the motors over a period"
+                                               : "The recommended gait: joint power over a period",
                                .x_label = "time [s]",
                                .y_label = "power [W]"},
                 curves, 2);

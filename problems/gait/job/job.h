@@ -15,7 +15,7 @@ typedef struct gait_job gait_job;
 // One optimisation: the problem on one model, its best solution, and what the gait is worth when it is swum.
 typedef struct stage {
     moray_model model;
-    double power; // limit of the mean joint power [W], or infinite
+    double power; // limit of the mean, of joints or motors [W], or infinite
     double speed; // least speed along the course [m/s], or 0
     double taper[2];
     double link_angle;               // bound of |link angle - heading| in place of that of theta_max [rad]; 0: none
@@ -118,9 +118,6 @@ gait_job gait_job_defaults(const gait_program *program);
 int gait_job_main(const gait_program *program, gait_job *job, int argc, char **argv);
 
 // ---- Pieces --------------------------------------------------------------------------------------------------------
-
-// What a program without its own does: both stages, or one, optimised and proved. Error: those of the below.
-moray_status gait_job_work(gait_job *job);
 
 // Whether a stage, named `what` (NULL: gait_job_kind), passed its certificate. Error: MORAY_NOT_SOLVED, saying why not.
 moray_status gait_job_certified(const gait_job *job, const char *what, const stage *at);

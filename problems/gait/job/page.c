@@ -14,8 +14,8 @@ static void ask(const gait_job *job, gait_job_page *page)
     snprintf(page->asked, sizeof page->asked, "A robot of %s in a current of (%g, %g) m/s, course %g deg",
              moray_snake_links_text(&snake->robot, links), snake->current[0], snake->current[1], snake->course / DEG);
     if (isfinite(at->power))
-        moray_text_add(page->asked, sizeof page->asked, "; mean joint power at most %.4g W on the %s model", at->power,
-                       moray_model_name(at->model));
+        moray_text_add(page->asked, sizeof page->asked, "; %s at most %.4g W on the %s model",
+                       moray_power_label(&snake->robot, at->model), at->power, moray_model_name(at->model));
     if (at->speed > 0)
         moray_text_add(page->asked, sizeof page->asked, "; at least %.4g m/s along the course on the %s model",
                        at->speed, moray_model_name(at->model));

@@ -203,7 +203,8 @@ static void print_demands(const gait_job *job)
     const stage *asked = last_stage(job), *control = &job->stage[MORAY_CONTROL_ORIENTED];
     gait_job_print_head(job);
     if (isfinite(asked->power))
-        print_demand(job, "mean joint power at most ", (double[]){control->power, asked->power}, "W");
+        print_demand(job, job->snake.robot.motor.fitted ? "mean power at most " : "mean joint power at most ",
+                     (double[]){control->power, asked->power}, "W");
     if (asked->speed > 0)
         print_demand(job, "speed along the course at least ", (double[]){control->speed, asked->speed}, "m/s");
     printf("\n\n");

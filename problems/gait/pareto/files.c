@@ -110,7 +110,7 @@ static moray_status draw(const pareto *run, const picture *what, double *const v
     }
     return moray_output_figure(output, &(moray_figure){.name = what->name,
                                                        .title = what->title,
-                                                       .x_label = "mean joint power [W]",
+                                                       .x_label = "mean power [W]",
                                                        .y_label = what->y_label,
                                                        .log_x = true,
                                                        .log_y = what->value == PARETO_SPEED,

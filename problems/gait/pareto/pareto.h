@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Fronts of speed against power: the fastest gaits within ever less mean joint power.
+// Fronts of speed against power: the fastest gaits within ever less mean power, of the joints or at the terminals of
+// their motors.
 #ifndef PROBLEMS_GAIT_PARETO_PARETO_H
 #define PROBLEMS_GAIT_PARETO_PARETO_H
 

@@ -173,8 +173,8 @@ static void fill_sheet(const pareto *run, const pareto_front *front, struct shee
     enum { n_columns = sizeof columns / sizeof *columns };
     static const int shown[n_columns] = {PARETO_SPEED, PARETO_THETA_MAX, PARETO_OMEGA,      PARETO_DELTA,
                                          PARETO_TAPER, PARETO_PRICE,     PARETO_TRUE_POWER, PARETO_TRUE_SPEED};
-    snprintf(sheet->title, sizeof sheet->title, "%s optima, %s: by mean joint power in that model",
-             moray_model_name(front->model), pareto_kinds[front->kind]);
+    snprintf(sheet->title, sizeof sheet->title, "%s optima, %s: by %s in that model", moray_model_name(front->model),
+             pareto_kinds[front->kind], moray_power_label(&run->job.snake.robot, front->model));
     sheet->table = (moray_table){.title = sheet->title, .n_columns = n_columns, .rows = sheet->row, .n_rows = front->n};
     for (int i = 0; i < n_columns; i++)
         sheet->table.columns[i] = columns[i];
@@ -192,7 +192,8 @@ static void print(const void *found, const moray_report *report)
 {
     const pareto *run = found;
     gait_job_print_head(&run->job);
-    printf(": fastest gaits within ever less mean joint power; columns f.-p.: swum on the first-principles model\n\n");
+    printf(": fastest gaits within ever less %s; columns f.-p.: swum on the first-principles model\n\n",
+           moray_power_label(&run->job.snake.robot, run->job.snake.model));
     for (int f = 0; f < run->fronts; f++)
         if (!repeats(&run->front[f]))
             moray_tables_print(&report->sections->tables[2 * f], 2, stdout);

@@ -34,10 +34,10 @@ struct tables {
 static int search_rows(const search_gait *run, moray_table_row *rows)
 {
     const bool fastest = search_gait_fastest(run), control = run->spec.model == MORAY_CONTROL_ORIENTED;
-    const char *const labels[][2] = {{fastest ? "speed along the course" : "joint work per distance", unit_of(run)},
+    const char *const labels[][2] = {{fastest ? "speed along the course" : "work per distance", unit_of(run)},
                                      {"the same, polished by collocation", unit_of(run)},
                                      {"difference", unit_of(run)},
-                                     {"mean joint power", "W"},
+                                     {moray_power_label(&run->spec.robot, run->spec.model), "W"},
                                      {control ? "peak joint force" : "peak joint torque", control ? "N" : "N m"},
                                      {"largest Floquet multiplier", NULL},
                                      {"starts that end here", NULL},
@@ -96,7 +96,8 @@ static void print_demand(const search_gait *run)
     gait_job_print_head(&run->job);
     printf("; %s model", moray_model_name(run->job.snake.model));
     if (isfinite(run->demand.power))
-        printf(", mean joint power at most %.4g W", run->demand.power);
+        printf(", %s at most %.4g W", moray_power_label(&run->job.snake.robot, run->job.snake.model),
+               run->demand.power);
     if (run->demand.speed > 0)
         printf(", speed along the course at least %.4g m/s", run->demand.speed);
     printf("\n\n");
@@ -238,7 +239,7 @@ static moray_status draw_ridge(const void *found, moray_output *output)
                                  .title = "The ridge: best gait within the limits for each phase shift",
                                  .x_label = "phase shift delta [deg]",
                                  .y_label = search_gait_fastest(run) ? "speed along the course [m/s]"
-                                                                     : "joint work per distance [J/m]",
+                                                                     : "work per distance [J/m]",
                                  .curves = curves,
                                  .n_curves = 2};
     return moray_output_figure(output, &figure);

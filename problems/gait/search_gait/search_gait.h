@@ -46,7 +46,7 @@ static inline bool search_gait_fastest(const search_gait *run)
     return run->goal == MORAY_GAIT_FASTEST;
 }
 
-// What is sought, to be shown: speed along the course [m/s], or joint work per distance along it [J/m].
+// What is sought, to be shown: speed along the course [m/s], or work per distance along it [J/m].
 static inline double search_gait_value(const search_gait *run, double course_speed, double power)
 {
     return search_gait_fastest(run) ? course_speed : power / course_speed;

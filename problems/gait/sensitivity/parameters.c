@@ -88,11 +88,16 @@ static bool is_fixed(const sensitivity_parameter *parameter, variant *of)
     return range[0] == range[1];
 }
 
+bool sensitivity_parameter_of_each(const sensitivity_parameter *parameter, const gait_job *job)
+{
+    return parameter->kind == GEOMETRY && job->snake.robot.link;
+}
+
 bool sensitivity_parameter_applies(const sensitivity_parameter *parameter, const gait_job *job)
 {
     variant now = as_it_is(job);
     const double value = *place_in(parameter, &now);
-    if (!parameter->model[job->snake.model] || !isfinite(value))
+    if (!parameter->model[job->snake.model] || !isfinite(value) || sensitivity_parameter_of_each(parameter, job))
         return false;
     return parameter->kind == CURRENT || (value != 0 && !(parameter->kind == LOWER && is_fixed(parameter, &now)));
 }

@@ -221,7 +221,8 @@ static void print(const void *found, const moray_report *report)
     char text[GAIT_TEXT] = "";
     gait_job_print_head(&run->job);
     if (isfinite(last_stage(&run->job)->power))
-        printf("; mean joint power at most %.4g W whatever changes", last_stage(&run->job)->power);
+        printf("; %s at most %.4g W whatever changes", moray_power_label(&run->job.snake.robot, run->job.snake.model),
+               last_stage(&run->job)->power);
     printf("\n\n");
     moray_tables_print(section->tables, section->n_tables, stdout);
     gait_job_headline(&run->job, text);

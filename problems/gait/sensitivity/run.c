@@ -262,6 +262,8 @@ static moray_status take_all(sensitivity *run, moray_sensitivity *slopes)
     for (int k = 0; (parameter = sensitivity_parameter_at(k)); k++)
         if (sensitivity_parameter_applies(parameter, &run->job))
             MORAY_TRY(by_parameter(run, slopes, parameter));
+        else if (sensitivity_parameter_of_each(parameter, &run->job))
+            note(run->left_out, "length_m (the links have lengths of their own)");
     return sensitivity_predict(run, slopes);
 }
 

@@ -73,7 +73,10 @@ typedef struct sensitivity_parameter sensitivity_parameter;
 // The k-th of all parameters; NULL after the last.
 const sensitivity_parameter *sensitivity_parameter_at(int k);
 
-// Whether the job has it: not that of the other model, a limit that is not set, or one that is 0.
+// Whether it is one of all links alike, where the job's have lengths of their own.
+bool sensitivity_parameter_of_each(const sensitivity_parameter *parameter, const gait_job *job);
+
+// Whether the job has it: not such a one, not that of the other model, a limit that is not set, or one that is 0.
 bool sensitivity_parameter_applies(const sensitivity_parameter *parameter, const gait_job *job);
 
 // Name, unit, value and scale of a row; speed [m/s] is what a current is measured by.

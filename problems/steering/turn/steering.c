@@ -10,7 +10,7 @@ enum { HOLD, BRAKING, GAIN, NUMBERS };
 
 // Of the heading without its undulation: from when on it stays within the band around where it is to be (NaN: it does
 // not) [s]; the integral of how far it is outside, or 1 where that is more, over the band [s]; how far off it is over
-// the last period [rad]; how near the robot came to the end position [m]; mean joint power [W].
+// the last period [rad]; how near the robot came to the end position [m]; mean power [W].
 enum { SETTLED, WEIGHTED, FINAL, MISS, POWER, SCORES };
 
 static const steer_number numbers[NUMBERS] = {

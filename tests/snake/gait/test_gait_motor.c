@@ -160,6 +160,10 @@ static void test_budget(void)
     CHECK_NEAR(budget.over_ground, 10, 1e-14, "and over ground");
     CHECK_NEAR(budget.endurance, 10, 1e-14, "10 Wh");
     CHECK_NEAR(budget.range, 3600, 1e-11, "at 0.1 m/s");
+    const moray_budget adrift = moray_budget_of(&robot, 0.7, 0.2, NAN), still = moray_budget_of(&robot, 0.7, 0, 0);
+    CHECK(isnan(adrift.over_ground) && isnan(adrift.range) && adrift.through_water == budget.through_water,
+          "a course that is not held costs nothing that is known: %g J/m", adrift.over_ground);
+    CHECK(isinf(still.over_ground) && still.range == 0, "no way: %g J/m", still.over_ground);
     CHECK(moray_budget_tells(&robot) && !moray_budget_tells(&bare), "where there is more to tell");
 }
 
