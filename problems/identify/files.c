@@ -77,12 +77,14 @@ static void write_kept(const identify *run, const char *section, FILE *file)
     }
 }
 
+// Over as many lines as INI files want.
 static void write_list(const char *key, const double *value, int n, FILE *file)
 {
+    const int in_a_line = 6;
     char number[32];
     fprintf(file, "%s =", key);
     for (int i = 0; i < n; i++)
-        fprintf(file, "%s %s", i ? "," : "", moray_number_text(value[i], number));
+        fprintf(file, "%s %s", i == 0 ? "" : i % in_a_line ? "," : ",\n   ", moray_number_text(value[i], number));
     fprintf(file, "\n");
 }
 

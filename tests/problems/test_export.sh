@@ -89,7 +89,7 @@ fi
 run --robot "$source/problems/robots/head_and_fin.ini" --out unequal
 # masses FILE WORD: of all links in the order of the file, which begins at the tail.
 masses() {
-    grep -o "$2=\"[^\"]*" "$1" | awk -F'"' '{ printf "%s%.6g", NR > 1 ? " " : "", $2 }'
+    grep -o "$2=\"[^\"]*" "$1" | awk -F'"' '{ printf "%s%.6g", (NR > 1 ? " " : ""), $2 }'
 }
 for file in 'snake.urdf mass value' 'snake.xml mass'; do
     masses "unequal/${file%% *}" "${file#* }" >listed

@@ -90,7 +90,7 @@ mean() { # KEY: of the nearest equal robot of swum
     awk -v key="\"$1\":" '/nearest_equal_link/ { on = 1 } on && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' swum
 }
 c_t=$(mean c_t) c_n=$(mean c_n)
-run --robot "$fin" --logs unequal.csv --estimate c_t,c_n --starts 1 --json --out unequal
+run --robot "$fin" --logs unequal.csv --estimate c_t,c_n,current --starts 1 --json --out unequal
 check "unequal links: exit $code, $(cat err)" [ $code -eq 0 ]
 check "c_t = $c_t" within c_t "$c_t"
 check "c_n = $c_n" within c_n "$c_n"

@@ -41,7 +41,32 @@ run --model control --current=-2,0 --set speed_m_s=0.05
 check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it" err'
 fi
 
+# ---- A way through water that is not uniform: against the current where it is strong the gait is faster, and one gait
+# swum through the table itself takes the time and the work that were added up place by place
+awk 'BEGIN { print "x_m,y_m,v_x_m_s,v_y_m_s"; for (x = -6; x <= 12; x += 1.5) for (y = -2; y <= 2; y += 1) printf "%g,%g,%.12g,0\n", x, y, -0.08 * sin(x / 2) }' >along.csv
+run --json --water along.csv --way '0,0 8,0' --set hotel_W=0.3 --set places=5 --set theta_max_deg=20 --set delta_deg=45
+check "along a way: exit $code, $(cat err)" [ $code -eq 0 ]
+check "the faster, the more there is against it" eval 'awk "/\"along_m\"/ { n++ } /\"current_m_s\"/ { sub(/.*\[[ \t]*/, \"\"); v[n] = \$0 + 0 } /\"omega_deg_s\"/ { sub(/.*:[ \t]*/, \"\"); if (n && !w[n]) w[n] = \$0 + 0 }
+    END { for (i = 1; i <= 5; i++) for (j = 1; j <= 5; j++) if (v[i] < v[j] - 0.01 && !(w[i] > w[j])) exit 1; exit n != 5 }" out'
+own=$(number adapted work_J) one=$(number one_gait work_J)
+check "a gait for each place takes less: $own J beside $one J, the paper's $(number paper work_J) J" \
+    awk -v a="$own" -v b="$one" -v c="$(number paper work_J)" 'BEGIN { exit !(a > 0 && a < b && b < c) }'
+seconds=$(number one_gait time_s)
+"$(dirname "$program")/simulate" --model fp --water along.csv --set start_position_m=-5,0 --duration 62 --quiet --out through \
+    --set theta_max_deg=20 --set delta_deg=45 --set "omega_deg_s=$(number one_gait omega_deg_s)" --set output_step_s=0.1 >told 2>&1
+set -- $(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) { if ($i ~ /^p_x/) x = i; if ($i ~ /^energy/) e = i } next }
+    NR > 2 && was < 0 && $x >= 0 { s = -was / ($x - was); t0 = t + s * ($1 - t); e0 = work + s * ($e - work) }
+    NR > 2 && was < 8 && $x >= 8 { s = (8 - was) / ($x - was); print t + s * ($1 - t) - t0, work + s * ($e - work) - e0 + 0.3 * (t + s * ($1 - t) - t0) }
+    { was = $x; t = $1; work = $e }' through/trajectory.csv)
+check "one gait through the table: ${1-} s, $seconds s by places" awk -v a="${1-}" -v b="$seconds" 'BEGIN { d = a / b - 1; exit !(d * d < 0.01 ^ 2) }'
+check "its work: ${2-} J, $one J by places" awk -v a="${2-}" -v b="$one" 'BEGIN { d = a / b - 1; exit !(d * d < 0.01 ^ 2) }'
+
 # ---- Bad input
+refuse '--water FILE and --way' --water along.csv
+refuse '--water FILE and --way' --way '0,0 8,0'
+refuse 'give one of them' --water along.csv --way '0,0 8,0' --current 0.1,0
+refuse 'outside of the table' --water along.csv --way '0,0 20,0'
+refuse '--continue and --solution' --water along.csv --way '0,0 8,0' --solution here
 refuse 'speed_m_s = 0' --set speed_m_s=0
 refuse 'speed_m_s = fast' --set speed_m_s=fast
 refuse 'omega_deg_s = 90:60' --set omega_deg_s=90:60

@@ -287,7 +287,7 @@ int gait_job_main(const gait_program *program, gait_job *job, int argc, char **a
 {
     const moray_option_table common = {.rows = shared, .n = sizeof shared / sizeof *shared},
                              own = {.rows = program->options, .n = program->n_options},
-                             going_on = {.rows = continuation, .n = program->work ? 0 : 2};
+                             going_on = {.rows = continuation, .n = program->work && !program->continues ? 0 : 2};
     const moray_option_group groups[] = {
         {&common, 0}, {&own, 0}, {&going_on, 0}, {&moray_snake_option_table, offsetof(gait_job, snake)}};
     const moray_program app = {.name = program->name,

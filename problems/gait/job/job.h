@@ -105,6 +105,7 @@ typedef struct gait_program {
     const moray_option *options;
     int n_options;
     double power, speed; // defaults
+    bool continues;      // has --continue and --solution though it has work of its own
     moray_status (*work)(gait_job *job);
     moray_status (*report)(gait_job *job);
     moray_status (*certified)(const gait_job *job);

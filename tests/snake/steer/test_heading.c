@@ -292,6 +292,60 @@ static void test_tube(const moray_reference *reference)
     moray_steering_plan_free(&plan);
 }
 
+// Three links that turn to a heading they are off: the largest rate of a joint over a stroke, alpha omega + |phi_0'|, and
+// the largest share of what the motors give.
+static void steer_with(const moray_motor *motor, double rate, double *fastest, double *load)
+{
+    const moray_reference ahead = read_ok("steps:0=15");
+    moray_heading_spec spec = spec_of(MORAY_FIRST_PRINCIPLES, &ahead);
+    const moray_settings settings = settings_of(10);
+    moray_steering_plan plan;
+    moray_swimmer *swimmer;
+    double t0, t1, x[MORAY_STEERING_STATES], u[1], full[10], dx[10], phi[6], torque[2];
+    spec.robot.links = 3;
+    spec.t1 = 4;
+    spec.robot.motor = *motor;
+    spec.robot.supply.rate = rate;
+    const moray_gait gait = {.amplitude = 20 * DEG, .omega = 120 * DEG, .delta = 60 * DEG};
+    CHECK_OK(moray_heading_plan_make(&plan, &spec, &settings, &gait, NULL), "plan");
+    CHECK(moray_is_solved(&plan), "solved: %s", moray_solution_failure(plan.solution).text);
+    CHECK_OK(moray_swimmer_new(&swimmer, &spec.robot, spec.model), "swimmer");
+    moray_swimmer_set_current(swimmer, spec.current[0], spec.current[1]);
+    moray_solution_times(plan.solution, 0, &t0, &t1);
+    *fastest = *load = 0;
+    for (int k = 0; k <= 400; k++) {
+        const double t = t0 + (t1 - t0) * k / 400;
+        moray_gait now = gait;
+        moray_solution_at(plan.solution, 0, t, x, u);
+        now.offset = x[MORAY_STATE_PHI_0], now.offset_rate = x[MORAY_STATE_V_PHI_0], now.offset_acceleration = u[0];
+        moray_gait_reference(&now, 2, t, phi, phi + 2, phi + 4);
+        moray_swimmer_on_gait(swimmer, &now, t, x, full);
+        moray_swimmer_rates(swimmer, full, phi + 4, dx, torque);
+        *fastest = fmax(*fastest, gait.amplitude * gait.omega + fabs(x[MORAY_STATE_V_PHI_0]));
+        for (int i = 0; i < 2; i++)
+            *load = fmax(*load, moray_motor_load(motor, torque[i], phi[2 + i]));
+    }
+    moray_swimmer_free(swimmer);
+    moray_steering_plan_free(&plan);
+}
+
+// What motors give and how fast they turn limits the plan where it would be more.
+static void test_motors(void)
+{
+    moray_motor motor = {.fitted = true, .forward = 1, .backward = 1, .smooth_rate = 1, .smooth_power = 1, .lines = 1};
+    double fastest, load, less, least;
+    motor.torque[0] = 10, motor.slope[0] = 0.01;
+    steer_with(&motor, INFINITY, &fastest, &load);
+    const double rate = 20 * DEG * 120 * DEG;
+    CHECK(load < 1 && fastest > rate + 0.5 * DEG, "unlimited: %g deg/s, %g of 10 N m", fastest / DEG, load);
+    const double allowed = (rate + fastest) / 2;
+    steer_with(&motor, allowed, &less, &least);
+    CHECK_NEAR(less / allowed, 1, 1e-3, "as fast as the motors turn");
+    motor.torque[0] *= 0.9 * load;
+    steer_with(&motor, INFINITY, &fastest, &least);
+    CHECK_NEAR(least, 1, 5e-3, "all that the motors give");
+}
+
 int main(void)
 {
     char folder[] = "/tmp/test_heading_XXXXXX";
@@ -309,6 +363,7 @@ int main(void)
     test_plan(MORAY_CONTROL_ORIENTED, &step, &averaged);
     test_plan(MORAY_FIRST_PRINCIPLES, &step, &averaged);
     test_limits(&step);
+    test_motors();
     test_tube(&step);
     moray_steering_plan_free(&averaged);
     moray_reference_free(&step);

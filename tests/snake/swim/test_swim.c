@@ -5,7 +5,9 @@
 #include "degree.h"
 #include "tap.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "moray/snake/swim.h"
 #include "moray/snake/trial.h"
@@ -209,6 +211,54 @@ static void test_plans(void)
     moray_swim_track_free(&track);
     moray_swim_track_free(&track);
     moray_swimmer_free(swimmer);
+}
+
+// In a table the samples know the current where they are, and the swimmer keeps the one that it was given.
+static void test_water(void)
+{
+    char path[] = "/tmp/moray_swim_XXXXXX";
+    const int made = mkstemp(path);
+    FILE *file = made < 0 ? NULL : fdopen(made, "w");
+    moray_water *water = NULL;
+    moray_swim_track track;
+    double V[2], x[STATES], times[] = {0, 1, 2}, worst = 0;
+    if (!CHECK(file, "a file"))
+        return;
+    fputs("x_m,y_m,v_x_m_s,v_y_m_s\n-1,-1,0.1,-0.04\n-1,2,0.1,0.08\n2,-1,0.13,-0.04\n2,2,0.13,0.08\n", file);
+    fclose(file);
+    CHECK_OK(moray_water_read(&water, path), "table");
+    remove(path);
+    moray_swimmer *swimmer = make(MORAY_FIRST_PRINCIPLES);
+    moray_swimmer_set_current(swimmer, 0.3, -0.2);
+    CHECK_OK(moray_swim_track_new(&track, swimmer, 3), "track");
+    const moray_gait_change change = {0, gait_of(MORAY_FIRST_PRINCIPLES, 20, 40)};
+    const moray_sim_settings settings = moray_sim_settings_default();
+    const moray_swim_on_gait how = {.steps = 40};
+    const moray_swim_plan plan = {.t1 = 2,
+                                  .schedule = &change,
+                                  .n_changes = 1,
+                                  .times = times,
+                                  .n_times = 3,
+                                  .water = water,
+                                  .observe = moray_swim_track_add,
+                                  .observer = &track};
+    for (int on_gait = 0; on_gait < 2; on_gait++) {
+        track.n = 0;
+        moray_swimmer_rest(swimmer, 0.4, 0.2, 0.3, x);
+        CHECK_OK(on_gait ? moray_swim_run_on_gait(swimmer, &plan, &how, x, NULL)
+                         : moray_swim_run(swimmer, &settings, &plan, x, NULL),
+                 "run");
+        for (int k = 0; k < track.n; k++) { // V = (0.11 + 0.01 x, 0.04 y)
+            worst = fmax(worst, fabs(track.current[2 * k] - 0.11 - 0.01 * track.pose[k].p_x));
+            worst = fmax(worst, fabs(track.current[2 * k + 1] - 0.04 * track.pose[k].p_y));
+        }
+        moray_swimmer_current(swimmer, V);
+        CHECK(track.n == 3 && worst < 1e-12, "%d samples with their current, off by %.1e", track.n, worst);
+        CHECK(V[0] == 0.3 && V[1] == -0.2, "its own current again: %g, %g", V[0], V[1]);
+    }
+    moray_swim_track_free(&track);
+    moray_swimmer_free(swimmer);
+    moray_water_free(water);
 }
 
 // ---- Numbers of an independent implementation ----------------------------------------------------------------------
@@ -545,6 +595,7 @@ int main(void)
     test_turning_manoeuvre(MORAY_FIRST_PRINCIPLES, 26.2, 38.27, 23.22);
     test_turning_manoeuvre(MORAY_CONTROL_ORIENTED, 25.3, 39.10, 23.27);
     test_plans();
+    test_water();
     test_steady_errors();
     test_slow_turn();
     test_equal_power();
