@@ -220,7 +220,7 @@ moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_pla
     memcpy(x, r.x, (size_t)n * sizeof *x);
     if (energy)
         *energy = r.y[ENERGY];
-    moray_swim_turn(swimmer, &r.current, r.start);
+    moray_swimmer_set_current(swimmer, r.current.V[0], r.current.V[1]);
     free(memory);
     return status;
 }

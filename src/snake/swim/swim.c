@@ -129,7 +129,6 @@ moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_settings *se
         status = run(&r, settings);
         if (!moray_failed(status))
             status = r.left;
-        moray_swim_turn(swimmer, &r.plant.current, plan->t0);
         memcpy(x, r.plant.x, (size_t)r.plant.n_states * sizeof *x);
         if (energy)
             *energy = r.plant.x[r.plant.n_states];
