@@ -40,7 +40,7 @@ MORAY_API void moray_observation_name(const moray_solution *solution, int phase,
 // constraints leave free (Gauss and Newton's; the curvature of the model is left out): variance (A' W A)^-1. Intervals
 // are those of Student's distribution where the variance is estimated, of the normal one where it is known.
 typedef struct moray_fit {
-    int observations, freedom; // used; free directions of the programme, controls and states included
+    int observations, freedom; // in the objective; free directions of the programme, controls and states included
     double sum;                // weighted sum of squares, before any robust loss
     double variance;           // of an observation of weight 1: sum / (observations - freedom), or 1 where known; NAN
                                // where there are no more observations than free directions
@@ -53,7 +53,7 @@ typedef struct moray_fit {
 } moray_fit;
 
 // known: weights are 1 / variance of the observations. Error: MORAY_NOT_SOLVED where the solution is none, MORAY_INPUT
-// where nothing is observed, MORAY_NUMERIC, MORAY_MEMORY. Free with moray_fit_free in any case.
+// where the objective has no observations, MORAY_NUMERIC, MORAY_MEMORY. Free with moray_fit_free in any case.
 MORAY_API moray_status moray_fit_new(moray_fit *fit, const moray_solution *solution, bool known);
 MORAY_API void moray_fit_free(moray_fit *fit);
 

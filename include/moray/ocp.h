@@ -135,11 +135,13 @@ typedef enum moray_loss {
     MORAY_HUBER // squares up to a threshold, straight beyond
 } moray_loss;
 
-// Data of a phase whose times are fixed (by t0 and tf, or one of them and the duration): y_k = h(x, u, s, t_k) at any
-// times within it, in any order, the same more than once too. Meshes have an edge at each time, beside those of `mesh`,
-// where the state is a variable: nothing is interpolated. With z = sqrt(weight) (h - value), the sum of z^2 is added to
-// the objective; with Huber's loss of threshold d, that of 2 d |z| - d^2 where |z| > d. Costates jump at the times. See
-// fit.h for what the data say of the parameters.
+// Data of a phase: y_k = h(x, u, s, t_k) at any times, in any order, the same more than once too. With
+// z = sqrt(weight) (h - value), the sum of z^2 is added to the objective; with Huber's loss of threshold d, that of
+// 2 d |z| - d^2 where |z| > d. Costates jump at the times. See fit.h for what the data say of the parameters.
+// The phase holds all its data: t0 is at most the first time, tf at least the last. Where both are fixed (by t0 and tf,
+// or one of them and the duration), meshes have an edge at each time, beside those of `mesh`, where the state is a
+// variable. Where one is free, the mesh moves under the data, and x and u of each time are variables of their own,
+// equal to the polynomials of the interval that it falls into; a solve ends when each is where its time is.
 typedef struct moray_observations {
     int n, ny;                 // times; channels
     const double *time;        // [n]
@@ -149,7 +151,10 @@ typedef struct moray_observations {
     const moray_map *map;      // analytic: in = [x, u, s, t], out = [y]; must outlive the problem
     const char *const *names;  // [ny]; NULL: y[0], ...
     moray_loss loss;
-    double threshold; // of Huber's loss, positive
+    double threshold;           // of Huber's loss, positive
+    moray_bounds_list residual; // [ny] of h - value at every time, as events beside those of the problem; none: free
+    moray_bounds sum;           // of the sum that is added to the objective, as an event; left out (0, 0): any
+    bool events_only;           // false; true adds nothing to the objective
 } moray_observations;
 
 // Of continuous, continuous_real and map, exactly one.
@@ -170,6 +175,7 @@ typedef struct moray_phase_spec {
     bool end_controls;        // whether the endpoint reads u0 and uf
     const bool *held;         // [nu] controls that stay constant over each of this phase's own intervals, which it must
                               // then give; meshes may cut these. NULL: none. With schemes radau<s> and gauss<s> only
+    const char *scheme;       // of this phase, which no ringing changes; NULL: that of the settings
 } moray_phase_spec;
 
 // Of endpoint, endpoint_real and endpoint_map, exactly one.
@@ -268,7 +274,7 @@ MORAY_API moray_status moray_guess_simulate(moray_guess *guess, const moray_ocp 
 // ---- Solving -------------------------------------------------------------------------------------------------------
 
 typedef struct moray_settings {
-    const char *scheme;     // "hermite-simpson"
+    const char *scheme;     // "hermite-simpson", of phases that give none; or one for each phase: "radau3,lobatto4"
     int intervals;          // 20, of equal length, in every phase; 0: the meshes and the scheme of guess->from
     double tolerance;       // 1e-8: scaled KKT error, and what the certificate asks of the user's units (x 100)
     double mesh_tolerance;  // 1e-6: largest mesh error that the certificate accepts, and at which refinement ends
@@ -336,7 +342,8 @@ MORAY_API int moray_solution_nodes(const moray_solution *solution, int phase, do
 // else depends on.
 MORAY_API int moray_solution_hamiltonian(const moray_solution *solution, int phase, double *hamiltonian);
 
-// Multipliers [ne] of the events: minus dJ / d(bound) of those at a bound, positive at the upper, else 0.
+// Multipliers [ne] of the events: minus dJ / d(bound) of those at a bound, positive at the upper, else 0. After them,
+// of each phase in turn, those of its observations: residuals time by time, but for missing values, then the sum.
 MORAY_API const double *moray_solution_event_multipliers(const moray_solution *solution);
 
 // Multipliers of path constraints c[count][nc], and of the bounds on states x[count][nx] and controls u[count][nu], at
@@ -366,7 +373,8 @@ typedef struct moray_mesh_record {
     moray_linear_solver linear_solver; // that it was solved with
     int iterations;
     double seconds;
-    double error; // larger of mesh_error and between_nodes / 100, see moray_certificate; NaN where not solved
+    double error; // largest of mesh_error, between_nodes / 100 and, where past its limit, unseen, see
+                  // moray_certificate; NaN where not solved
     double objective;
     int seen;               // 0; 1 + the control, counted through the phases, that goes to and fro within a few nodes
     double swing;           // how far it does from turn to turn, of its range, as a mean over its phase
@@ -394,6 +402,7 @@ MORAY_API moray_status moray_solution_failure(const moray_solution *solution);
 #define MORAY_LIMIT_DERIVATIVES 1e-5
 #define MORAY_LIMIT_DIRECTIONS 1e-4
 #define MORAY_LIMIT_HAMILTONIAN 1e-2
+#define MORAY_LIMIT_UNSEEN 1e-2
 
 // Computed apart from the solver: with derivatives of the user's functions differenced at the solution, and sizes of
 // all that is measured taken from the trajectory, so that neither the derivatives, patterns and scales in use nor the
@@ -429,8 +438,13 @@ typedef struct moray_certificate {
                           // equations make it as large as they like
     double untold;        // share of the derivatives at nodes and at the endpoint that differences say nothing of,
                           // lost in rounding or on a kink, so that those in use are believed: for information
-    double mesh_limit;    // mesh_tolerance of the solve
-    char why[400];        // one sentence on the first number that fails, with its limit and where; empty if none does
+    double unseen;     // what controls that are moved, and states and parameters by a little, do between the nodes and
+                       // at none of them, at their costs by the multipliers, as a part of the objective. And what
+                       // functions jump by as states move on, over a whole phase: derivatives on either side know
+                       // nothing of when that is. Looked for at 512 points of a phase or more. Limit
+                       // MORAY_LIMIT_UNSEEN
+    double mesh_limit; // mesh_tolerance of the solve
+    char why[400];     // one sentence on the first number that fails, with its limit and where; empty if none does
 } moray_certificate;
 
 // Error: MORAY_MEMORY, or what the integrator returned.

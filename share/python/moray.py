@@ -61,7 +61,7 @@ _endpoint = c.CFUNCTYPE(None, c.POINTER(_Ends), c.POINTER(_EndValues), c.c_void_
 class _Observations(c.Structure):
     _fields_ = [("n", c.c_int), ("ny", c.c_int), ("time", _double_p), ("value", _double_p), ("weight", _double_p),
                 ("observe", c.c_void_p), ("map", c.c_void_p), ("names", c.c_void_p), ("loss", c.c_int),
-                ("threshold", c.c_double)]
+                ("threshold", c.c_double), ("residual", _List), ("sum", _Bounds), ("events_only", c.c_bool)]
 
 
 class _PhaseSpec(c.Structure):
@@ -71,7 +71,7 @@ class _PhaseSpec(c.Structure):
                 ("xf", _List), ("u", _List), ("c", _List), ("q", _List), ("x_names", c.POINTER(c.c_char_p)),
                 ("u_names", c.POINTER(c.c_char_p)), ("c_names", c.POINTER(c.c_char_p)),
                 ("continuous_real", _continuous), ("observed", _Observations), ("u0", _List), ("uf", _List),
-                ("end_controls", c.c_bool), ("held", c.POINTER(c.c_bool))]
+                ("end_controls", c.c_bool), ("held", c.POINTER(c.c_bool)), ("scheme", c.c_char_p)]
 
 
 class _OcpSpec(c.Structure):
@@ -116,7 +116,7 @@ class _Integrator(c.Structure):
 
 
 _certificate_numbers = ("kkt", "mesh_error", "between_nodes", "resimulation", "derivatives", "directions",
-                        "hamiltonian", "gap", "curvature", "composed", "untold",
+                        "hamiltonian", "gap", "curvature", "composed", "untold", "unseen",
                         "mesh_limit")
 
 
@@ -215,11 +215,12 @@ class Phase:
     """A phase: nx states, nu controls, nc path constraints, nq integrals, and rates(x, u, s, t). guess: (t, x, u)."""
 
     def __init__(self, nx, nu, rates, *, nc=0, nq=0, name=None, t0=0, tf=None, x=None, x0=None, xf=None, u=None,
-                 c=None, q=None, x_names=None, u_names=None, c_names=None, intervals=0, guess=None):
+                 c=None, q=None, x_names=None, u_names=None, c_names=None, intervals=0, scheme=None,
+                 guess=None):
         self.nx, self.nu, self.nc, self.nq, self.rates, self.name = nx, nu, nc, nq, rates, name
         self.bounds = {"x": (x, nx), "x0": (x0, nx), "xf": (xf, nx), "u": (u, nu), "c": (c, nc), "q": (q, nq)}
         self.names = {"x_names": (x_names, nx), "u_names": (u_names, nu), "c_names": (c_names, nc)}
-        self.t0, self.tf, self.intervals, self.guess = t0, tf, intervals, guess
+        self.t0, self.tf, self.intervals, self.scheme, self.guess = t0, tf, intervals, scheme, guess
 
 
 class Ends:
@@ -327,7 +328,7 @@ class _Problem:
         spec = _PhaseSpec(name=phase.name.encode() if phase.name else None, nx=phase.nx, nu=phase.nu, nc=phase.nc,
                           nq=phase.nq, t0=_bound((None, None) if phase.t0 is None else phase.t0, "t0"),
                           tf=_bound((None, None) if phase.tf is None else phase.tf, "tf"), intervals=phase.intervals,
-                          continuous_real=call)
+                          scheme=phase.scheme.encode() if phase.scheme else None, continuous_real=call)
         for key, (values, n) in phase.bounds.items():
             values = values if values is None else [(None, None) if one is None else one for one in values]
             setattr(spec, key, _list(values, n, key, self.keep))

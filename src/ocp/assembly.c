@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "ocp/hold.h"
+#include "ocp/observe/sight.h"
 
 static double duration(const struct transcription *t, int p)
 {
@@ -78,17 +79,17 @@ void moray_assemble_constraints(const struct transcription *t, double *g)
             if (t->layout.phase[p].u_row[end] >= 0)
                 end_controls(t, p, end, g);
         moray_assemble_holds(t, p, g);
+        moray_assemble_sights(t, p, g);
         if (t->layout.phase[p].length_row >= 0)
             g[t->layout.phase[p].length_row] = duration(t, p);
     }
-    memcpy(g + t->layout.events, t->end_out + 1, (size_t)t->ocp->ne * sizeof *g);
+    memcpy(g + t->layout.events, t->end_out + 1, (size_t)(t->endpoint->n_out - 1) * sizeof *g);
 }
 
 // ---- Jacobian ----
 
-// d(factor out_row)/d(in_col): into the column of x, u or s, or through t = t0 + T tau into the free times.
-static void put_input(const struct transcription *t, int p, const struct node *node, const int *column, int row, int in,
-                      double value, triplets *out)
+void moray_put_input(const struct transcription *t, int p, const struct node *node, const int *column, int row, int in,
+                     double value, triplets *out)
 {
     const struct phase_layout *layout = &t->layout.phase[p];
     if (in < t->phase[p].map->n_in - 1) {
@@ -121,7 +122,7 @@ static void put_dynamics(const struct transcription *t, int p, int n, int first_
     const double hQ = duration(t, p) * wQ;
     for (int k = 0; k < map->jac.nnz; k++)
         if (map->jac.row[k] < nx)
-            put_input(t, p, node, column, first_row + map->jac.row[k], map->jac.col[k], -hQ * jac[k], out);
+            moray_put_input(t, p, node, column, first_row + map->jac.row[k], map->jac.col[k], -hQ * jac[k], out);
     for (int r = 0; r < nx; r++)
         put_duration(t, p, first_row + r, -wQ * value[r], out);
 }
@@ -154,10 +155,10 @@ static void put_path_and_integrals(const struct transcription *t, int p, int n, 
     for (int k = 0; k < map->jac.nnz; k++) {
         const int row = map->jac.row[k];
         if (row >= before_g)
-            put_input(t, p, node, column, layout->integral_row + row - before_g, map->jac.col[k],
-                      -duration(t, p) * node->weight * jac[k], out);
+            moray_put_input(t, p, node, column, layout->integral_row + row - before_g, map->jac.col[k],
+                            -duration(t, p) * node->weight * jac[k], out);
         else if (row >= phase->nx)
-            put_input(t, p, node, column, node->path + row - phase->nx, map->jac.col[k], jac[k], out);
+            moray_put_input(t, p, node, column, node->path + row - phase->nx, map->jac.col[k], jac[k], out);
     }
     for (int m = 0; m < phase->nq; m++)
         put_duration(t, p, layout->integral_row + m, -node->weight * value[before_g + m], out);
@@ -193,6 +194,7 @@ void moray_walk_jacobian(const struct transcription *t, triplets *out)
             if (layout->u_row[end] >= 0)
                 put_end_controls(t, p, end, out);
         moray_walk_holds(t, p, out);
+        moray_walk_sights(t, p, out);
         if (layout->length_row >= 0)
             put_duration(t, p, layout->length_row, 1, out);
     }
@@ -221,6 +223,7 @@ void moray_dynamics_multipliers(const struct transcription *t, int p, const doub
                     lambda_f[(interval->first + j) * nx + r] -= hQ * lambda[interval->defect + i * nx + r];
             }
     }
+    moray_add_sights_to_dynamics(t, p, lambda, lambda_f);
 }
 
 // Second derivatives of weight * out through x, u, s and t.
@@ -248,6 +251,7 @@ static void put_curvature(const struct transcription *t, int p, const struct nod
 }
 
 // The product of T with F = weight * (f, g) adds dF d(tf - t0) + d(tf - t0) dF; `weight` holds T times those of F.
+// Where data move, the times do more to the multipliers of f than T does.
 static void put_duration_products(const struct transcription *t, int p, int n, const int *column, triplets *out)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -259,14 +263,19 @@ static void put_duration_products(const struct transcription *t, int p, int n, c
         if (jac->row[k] >= phase->nx && jac->row[k] < phase->nx + phase->nc)
             continue;
         const double slope = t->weight[jac->row[k]] / T * values[k];
+        double by_t0 = -slope, by_tf = slope;
+        if (t->phase[p].by_time && jac->row[k] < phase->nx) {
+            const double *by_time = t->phase[p].by_time + 2 * n * phase->nx + jac->row[k];
+            by_t0 += by_time[0] * values[k], by_tf += by_time[phase->nx] * values[k];
+        }
         const bool of_time = jac->col[k] == time;
         const int other = of_time ? -1 : column[jac->col[k]];
         if (t0 >= 0)
-            triplets_put_lower(out, t0, of_time ? t0 : other, -slope * (of_time ? 2 * (1 - tau) : 1));
+            triplets_put_lower(out, t0, of_time ? t0 : other, by_t0 * (of_time ? 2 * (1 - tau) : 1));
         if (tf >= 0)
-            triplets_put_lower(out, tf, of_time ? tf : other, slope * (of_time ? 2 * tau : 1));
+            triplets_put_lower(out, tf, of_time ? tf : other, by_tf * (of_time ? 2 * tau : 1));
         if (of_time && t0 >= 0 && tf >= 0)
-            triplets_put_lower(out, tf, t0, slope * (1 - 2 * tau));
+            triplets_put_lower(out, tf, t0, by_t0 * tau + by_tf * (1 - tau));
     }
 }
 
@@ -294,7 +303,7 @@ static void put_endpoint_hessian(const struct transcription *t, double sigma, co
 {
     const moray_map *map = t->endpoint;
     t->weight[0] = sigma;
-    memcpy(t->weight + 1, lambda + t->layout.events, (size_t)t->ocp->ne * sizeof *t->weight);
+    memcpy(t->weight + 1, lambda + t->layout.events, (size_t)(map->n_out - 1) * sizeof *t->weight);
     if (!out->recording)
         map->hessian(map->self, t->end_in, t->weight, t->map_hess);
     for (int k = 0; k < map->hess.nnz; k++) {
@@ -308,9 +317,12 @@ void moray_walk_hessian(const struct transcription *t, double sigma, const doubl
 {
     for (int p = 0; p < t->ocp->phases; p++) {
         moray_dynamics_multipliers(t, p, lambda, t->phase[p].lambda);
+        if (t->phase[p].by_time)
+            moray_sights_by_time(t, p, lambda, t->phase[p].by_time);
         for (int n = 0; n < t->layout.phase[p].nodes; n++)
             if (t->layout.phase[p].node[n].collocated)
                 put_node_hessian(t, p, n, lambda, out);
+        moray_bend_sights(t, p, lambda, out);
     }
     put_endpoint_hessian(t, sigma, lambda, out);
 }

@@ -7,12 +7,12 @@
 #include "ocp/solution.h"
 
 enum { most_escapes = 2 };   // from saddles
+enum { most_moves = 8 };     // of data into other intervals, in all
 enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
 
 // The family that was left.
 struct left_family {
-    moray_family family;
-    int stages;
+    struct method method;
     const char *scheme;
     int nodes; // of its last mesh; 0: none was left, or it is back
 };
@@ -20,14 +20,14 @@ struct left_family {
 struct campaign {
     const moray_ocp *ocp;
     const moray_settings *settings;
-    const moray_guess *guess; // of the user; NULL: from the bounds
-    moray_family family;
+    const moray_guess *guess;   // of the user; NULL: from the bounds
+    struct method method;       // of phases that have none of their own
+    struct method *own;         // [phases], which stay; stages 0: none
     bool left[MORAY_GAUSS + 1]; // families that showed themselves wrong for the problem
     struct left_family before;  // the last of them
-    int stages;                 // of new intervals
     struct mesh *meshes;
     moray_mesh_record *history; // becomes the solution's
-    int tried, widenings, escapes;
+    int tried, widenings, escapes, moves;
     double spent;         // of the processor, in the solver
     moray_solution *best; // of the solved ones that of the least error; often the last
     double best_error;
@@ -47,5 +47,7 @@ void moray_campaign_drop(moray_solution *solution);
 // The first mesh of phase p: what the phase asks for itself, or of equal intervals. Error: MORAY_MEMORY.
 moray_status moray_campaign_first_mesh(const struct campaign *c, int p, int intervals);
 void moray_campaign_free_meshes(struct campaign *c);
+
+struct method moray_campaign_method(const struct campaign *c, int p); // of new meshes of phase p
 
 #endif

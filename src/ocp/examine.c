@@ -44,7 +44,13 @@ int moray_examiner_output(const struct examiner *e, int i)
     return i < phase->nx ? i : i + phase->nc;
 }
 
-void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x)
+int moray_points_between(const struct interval *interval, int at_least)
+{
+    const double share = ceil(points_of_phase * interval->width);
+    return share > at_least ? (int)share : at_least;
+}
+
+void moray_examiner_place(struct examiner *e, const struct interval *interval, double t, const double *x)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
     const struct phase_cache *cache = &e->solution->transcription->phase[e->p];
@@ -54,7 +60,13 @@ void moray_examiner_evaluate(struct examiner *e, const struct interval *interval
         memcpy(e->in, x, (size_t)phase->nx * sizeof *x);
     memcpy(e->in + phase->nx + phase->nu, moray_solution_parameters(e->solution), (size_t)phase->ns * sizeof *e->in);
     e->in[phase->map->n_in - 1] = t;
-    phase->map->value(phase->map->self, e->in, e->out);
+}
+
+void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x)
+{
+    const moray_map *map = e->solution->transcription->ocp->phase[e->p].map;
+    moray_examiner_place(e, interval, t, x);
+    map->value(map->self, e->in, e->out);
 }
 
 // x~' and q~' at tau of the interval: the stage polynomials through f and g at the nodes.
@@ -101,7 +113,7 @@ double moray_examiner_interval(struct examiner *e, const struct interval *interv
 {
     const struct transcription *t = e->solution->transcription;
     const struct phase_cache *cache = &t->phase[e->p];
-    const int count = samples_between * interval->scheme->points;
+    const int count = moray_points_between(interval, samples_between * interval->scheme->points);
     const double T = cache->tf - cache->t0, start = t->layout.phase[e->p].node[interval->first].tau;
     memset(e->error, 0, (size_t)e->n * sizeof *e->error);
     for (int k = 0; k < count; k++) {

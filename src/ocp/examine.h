@@ -9,6 +9,10 @@
 // Violations between nodes may be this many times the mesh tolerance: they are seen at single points, not integrated.
 enum { violation_slack = 100 };
 
+// Points at which a phase is looked at between its nodes, at least, spread over the intervals by their widths.
+enum { points_of_phase = 512 };
+int moray_points_between(const struct interval *interval, int at_least);
+
 // A phase under examination, with room for one evaluation.
 struct examiner {
     const moray_solution *solution;
@@ -29,6 +33,7 @@ int moray_examiner_output(const struct examiner *e, int i);
 
 // Functions of the phase at time t of an interval with its interpolated control; state from the interpolant unless
 // given.
+void moray_examiner_place(struct examiner *e, const struct interval *interval, double t, const double *x); // in e->in
 void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x);
 
 // Integral over an interval of |x~' - f(x~, u~)| / (size + max |x|), or of the same of an integrand and its q, of the

@@ -23,7 +23,7 @@ static int intervals_at_first(const struct campaign *c)
 // and Gauss that does not.
 static bool find_other_family(struct campaign *c, moray_family *other)
 {
-    c->left[c->family] = true;
+    c->left[c->method.family] = true;
     *other = c->left[MORAY_RADAU] ? MORAY_GAUSS : MORAY_RADAU;
     return !c->left[*other];
 }
@@ -36,14 +36,31 @@ static const char *scheme_of(const struct campaign *c)
     return c->settings->intervals > 0 ? c->settings->scheme : c->guess->from->settings.scheme;
 }
 
+// Whether a control, counted from 1 through the phases, is of a phase whose scheme stays.
+static bool has_own_scheme(const struct campaign *c, int control)
+{
+    int p = 0;
+    for (; control > c->ocp->phase[p].nu; p++)
+        control -= c->ocp->phase[p].nu;
+    return c->own && c->own[p].stages > 0;
+}
+
+// Of the phases whose scheme changes.
+static moray_family family_of(const struct campaign *c, const moray_solution *solution)
+{
+    int p = 0;
+    while (p + 1 < c->ocp->phases && c->own && c->own[p].stages > 0)
+        p++;
+    return solution->transcription->layout.phase[p].mesh.method.family;
+}
+
 // The meshes in c become those of the start, with another family.
 static moray_status change_family(struct campaign *c, moray_family family)
 {
     moray_mesh_record *here = &c->history[c->tried - 1];
     here->changed_to = family == MORAY_RADAU ? "radau3" : "gauss3";
-    c->before = (struct left_family){c->family, c->stages, scheme_of(c), here->nodes};
-    c->family = family;
-    c->stages = smooth_stages;
+    c->before = (struct left_family){c->method, scheme_of(c), here->nodes};
+    c->method = (struct method){family, smooth_stages};
     c->vain = 0;
     moray_campaign_free_meshes(c);
     for (int p = 0; p < c->ocp->phases; p++)
@@ -59,7 +76,7 @@ moray_status moray_leave_ringing(struct campaign *c, const moray_solution *solut
     const bool again = c->tried > 1 && !before->changed_to && here->seen > 0 && here->seen == before->seen &&
                        here->swing > fmax(least_swing, falls * before->swing) &&
                        fmin(here->error, before->error) > nearly * c->settings->mesh_tolerance;
-    if (!again || !find_other_family(c, &other))
+    if (!again || has_own_scheme(c, here->seen) || !find_other_family(c, &other))
         return moray_ok();
     here->ringing = here->seen;
     return change_family(c, other);
@@ -68,7 +85,7 @@ moray_status moray_leave_ringing(struct campaign *c, const moray_solution *solut
 bool moray_is_no_better(const struct campaign *c, bool again)
 {
     const moray_mesh_record *here = &c->history[c->tried - 1];
-    return c->before.nodes > 0 && c->best->transcription->layout.family == c->before.family &&
+    return c->before.nodes > 0 && family_of(c, c->best) == c->before.method.family &&
            c->best->info.outcome != MORAY_NLP_INTERRUPTED && (!again || here->nodes > c->before.nodes);
 }
 
@@ -76,14 +93,13 @@ moray_status moray_go_back(struct campaign *c, moray_solution **solution)
 {
     double error;
     c->history[c->tried - 1].changed_to = c->before.scheme;
-    c->left[c->family] = true;
-    c->family = c->before.family;
-    c->stages = c->before.stages;
+    c->left[c->method.family] = true;
+    c->method = c->before.method;
     c->before.nodes = 0;
     c->vain = 0;
     if (*solution != c->best)
         moray_campaign_drop(*solution);
     *solution = c->best;
     moray_campaign_free_meshes(c);
-    return moray_refine(c->best, c->settings->mesh_tolerance, c->stages, c->meshes, &error);
+    return moray_refine(c->best, c->settings->mesh_tolerance, c->meshes, &error);
 }

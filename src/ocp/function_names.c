@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "ocp/names.h"
+#include "ocp/observe/observed.h"
 #include "ocp/probe.h"
 
 void moray_function_entry_name(const char *kind, const char *letter, const char *const *names, int i, char *text,
@@ -58,6 +59,11 @@ void moray_phase_end_name(const struct phase *phase, int i, char *text, int size
     snprintf(text, (size_t)size, "%s of phase %s", what, phase->name);
 }
 
+void moray_observed_name(const struct phase *phase, int k, const char *what, char *text, int size)
+{
+    snprintf(text, (size_t)size, "%s of phase %s observed at t = %.6g", what, phase->name, phase->observed.time[k]);
+}
+
 // Inputs [x, u] of each observed time in turn.
 static void observed_input_name(const moray_ocp *ocp, int i, char *text, int size)
 {
@@ -66,8 +72,7 @@ static void observed_input_name(const moray_ocp *ocp, int i, char *text, int siz
         const int width = ocp->phase[p].nx + ocp->phase[p].nu, n = ocp->phase[p].observed.n;
         if (i < width * n) {
             moray_phase_input_name(ocp, p, i % width, what, name_size);
-            snprintf(text, (size_t)size, "%s of phase %s observed at t = %.6g", what, ocp->phase[p].name,
-                     ocp->phase[p].observed.time[i / width]);
+            moray_observed_name(&ocp->phase[p], i / width, what, text, size);
             return;
         }
         i -= width * n;
@@ -90,10 +95,28 @@ void moray_endpoint_input_name(const moray_ocp *ocp, int i, char *text, int size
         observed_input_name(ocp, i - ocp->ns, text, size);
 }
 
+static void observed_event_name(const moray_ocp *ocp, int i, char *text, int size)
+{
+    char what[name_size];
+    int p = 0, k, j;
+    for (int n; p + 1 < ocp->phases && i >= (n = moray_observed_events(&ocp->phase[p].observed)); p++)
+        i -= n;
+    const struct observed *o = &ocp->phase[p].observed;
+    moray_observed_event(o, i, &k, &j);
+    if (k == o->n) {
+        snprintf(text, (size_t)size, "sum of the observations of phase %s", ocp->phase[p].name);
+        return;
+    }
+    moray_function_entry_name("residual", "y", o->names, j, what, name_size);
+    snprintf(text, (size_t)size, "%s of phase %s at t = %.6g", what, ocp->phase[p].name, o->time[k]);
+}
+
 void moray_endpoint_output_name(const moray_ocp *ocp, int i, char *text, int size)
 {
     if (i == 0)
         snprintf(text, (size_t)size, "objective");
-    else
+    else if (i <= ocp->ne)
         moray_function_entry_name("event", "e", ocp->e_names, i - 1, text, size);
+    else
+        observed_event_name(ocp, i - 1 - ocp->ne, text, size);
 }

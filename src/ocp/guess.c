@@ -167,8 +167,7 @@ static void guess_from_solution(const struct transcription *t, int p, const mora
         x[layout->t0] = t0;
     if (layout->tf >= 0)
         x[layout->tf] = tf;
-    if (!guess->along_time && from->transcription->layout.family == t->layout.family &&
-        moray_mesh_equal(&old->mesh, &layout->mesh)) {
+    if (!guess->along_time && moray_mesh_equal(&old->mesh, &layout->mesh)) {
         memcpy(x + layout->node[0].x, from->iterate.x + old->node[0].x, nodes * sizeof *x);
         return;
     }
@@ -186,7 +185,7 @@ moray_guess moray_guess_from_solution(const moray_solution *solution)
     return (moray_guess){.from = solution};
 }
 
-// q and the controls at the ends of the guessed trajectory: what makes their definitions hold.
+// q, the controls at the ends and what moving data see of the guessed trajectory: what makes their definitions hold.
 static void guess_defined(const struct transcription *t, const double *g, double *x)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
@@ -196,6 +195,9 @@ static void guess_defined(const struct transcription *t, const double *g, double
         for (int end = 0; end < 2; end++)
             for (int r = 0; r < t->ocp->phase[p].nu && layout->u_row[end] >= 0; r++)
                 x[layout->u_end[end] + r] -= g[layout->u_row[end] + r];
+        for (int k = 0; layout->sight && k < t->ocp->phase[p].observed.n; k++)
+            for (int r = 0; r < t->ocp->phase[p].nx + t->ocp->phase[p].nu; r++)
+                x[layout->sight[k].x + r] -= g[layout->sight[k].row + r];
     }
 }
 
@@ -210,6 +212,8 @@ static moray_status fill_phase(struct transcription *t, int p, const moray_guess
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     memset(x + layout->q, 0, (size_t)phase->nq * sizeof *x);
+    if (layout->sight)
+        memset(x + layout->sight[0].x, 0, (size_t)(phase->observed.n * (phase->nx + phase->nu)) * sizeof *x);
     for (int end = 0; end < 2; end++)
         for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
             x[layout->u_end[end] + r] = moray_bounds_middle(phase->u[r]);

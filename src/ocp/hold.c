@@ -26,14 +26,14 @@ bool moray_holds_at(const struct phase *phase, double tau)
     return false;
 }
 
-moray_status moray_link_holds(struct phase_layout *layout, const struct phase *phase, moray_family family)
+moray_status moray_link_holds(struct phase_layout *layout, const struct phase *phase)
 {
     int last = -1, hold = 0;
     for (int n = 0; n < layout->nodes; n++)
         layout->node[n].before = -1;
     if (phase->n_held == 0)
         return moray_ok();
-    if (family == MORAY_LOBATTO)
+    if (layout->mesh.method.family == MORAY_LOBATTO)
         return moray_error(MORAY_INPUT,
                            "phase %s holds controls, which jump, and this scheme has one control on both sides of an "
                            "edge: the scheme must be radau<s> or gauss<s>",

@@ -11,7 +11,7 @@ bool moray_is_held(const struct phase *phase, int control);
 bool moray_holds_at(const struct phase *phase, double tau); // whether a hold begins or ends there
 
 // Fills node.before. Error: MORAY_INPUT where the scheme has nodes on both sides of a jump, or the mesh no edge there.
-moray_status moray_link_holds(struct phase_layout *layout, const struct phase *phase, moray_family family);
+moray_status moray_link_holds(struct phase_layout *layout, const struct phase *phase);
 
 // The rows at the current point, their entries of the Jacobian, and what they add to the Lagrangian's gradient.
 void moray_assemble_holds(const struct transcription *t, int p, double *g);

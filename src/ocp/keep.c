@@ -10,6 +10,7 @@
 
 #include "base/number.h"
 #include "base/text.h"
+#include "ocp/observe/sight.h"
 #include "ocp/refine.h"
 
 static const char *const families[] = {[MORAY_LOBATTO] = "lobatto", [MORAY_RADAU] = "radau", [MORAY_GAUSS] = "gauss"};
@@ -23,12 +24,19 @@ static int name_length(const moray_ocp *ocp)
 
 // ---- Saving ----
 
+// Of the first phase: others say where theirs differs.
+static moray_family family_of(const struct layout *layout)
+{
+    return layout->phase[0].mesh.method.family;
+}
+
 static void write_meshes(FILE *file, const struct layout *layout, const moray_ocp *ocp)
 {
     for (int p = 0; p < layout->phases; p++) {
         const struct mesh *mesh = &layout->phase[p].mesh;
-        fprintf(file, "phase %d %d %d %d intervals %d\n", ocp->phase[p].nx, ocp->phase[p].nu, ocp->phase[p].nc,
-                ocp->phase[p].nq, mesh->intervals);
+        const bool other = mesh->method.family != family_of(layout);
+        fprintf(file, "phase %d %d %d %d intervals %d%s%s\n", ocp->phase[p].nx, ocp->phase[p].nu, ocp->phase[p].nc,
+                ocp->phase[p].nq, mesh->intervals, other ? " " : "", other ? families[mesh->method.family] : "");
         for (int k = 0; k < mesh->intervals; k++)
             fprintf(file, "%d %.17g\n", mesh->stages[k], mesh->edge[k + 1]);
     }
@@ -40,7 +48,7 @@ void moray_solution_write(const moray_solution *solution, FILE *file)
     const moray_iterate *it = &solution->iterate;
     const locale_t before = moray_c_locale_begin();
     fprintf(file, MORAY_SOLUTION_MARK " 1 %.*s\nscheme %s phases %d parameters %d events %d\n", name_length(t->ocp),
-            t->ocp->name, families[t->layout.family], t->ocp->phases, t->ocp->ns, t->ocp->ne);
+            t->ocp->name, families[family_of(&t->layout)], t->ocp->phases, t->ocp->ns, t->ocp->ne);
     write_meshes(file, &t->layout, t->ocp);
     fprintf(file, "outcome %d iterations %d seconds %.17g\n", solution->info.outcome, solution->info.iterations,
             solution->info.seconds);
@@ -125,6 +133,16 @@ static moray_status read_name(struct reader *r, const moray_ocp *ocp)
     return moray_ok();
 }
 
+static bool find_family(const char *name, moray_family *family)
+{
+    for (int f = MORAY_LOBATTO; f <= MORAY_GAUSS; f++)
+        if (strcmp(name, families[f]) == 0) {
+            *family = (moray_family)f;
+            return true;
+        }
+    return false;
+}
+
 static moray_status read_head(struct reader *r, const moray_ocp *ocp, moray_family *family)
 {
     char scheme[20];
@@ -139,20 +157,17 @@ static moray_status read_head(struct reader *r, const moray_ocp *ocp, moray_fami
         return moray_error(MORAY_INPUT, "%s: has %d phases, %d parameters and %d events; problem %s has %d, %d and %d",
                            moray_path_tail(r->text.path), phases, parameters, events, ocp->name, ocp->phases, ocp->ns,
                            ocp->ne);
-    for (int f = MORAY_LOBATTO; f <= MORAY_GAUSS; f++)
-        if (strcmp(scheme, families[f]) == 0) {
-            *family = (moray_family)f;
-            return moray_ok();
-        }
-    return damaged(r, "scheme lobatto, radau or gauss");
+    return find_family(scheme, family) ? moray_ok() : damaged(r, "scheme lobatto, radau or gauss");
 }
 
-static moray_status read_mesh(struct reader *r, const struct phase *phase, struct mesh *mesh)
+static moray_status read_mesh(struct reader *r, const struct phase *phase, moray_family family, struct mesh *mesh)
 {
+    char own[20] = "";
     int nx, nu, nc, nq, intervals, used = 0;
     MORAY_TRY(next_line(r));
-    if (sscanf(r->line, "phase %d %d %d %d intervals %d%n", &nx, &nu, &nc, &nq, &intervals, &used) != 5 ||
-        !is_end(r->line + used) || intervals < 1 || intervals > 1000000)
+    if (sscanf(r->line, "phase %d %d %d %d intervals %d%n %19s%n", &nx, &nu, &nc, &nq, &intervals, &used, own, &used) <
+            5 ||
+        !is_end(r->line + used) || intervals < 1 || intervals > 1000000 || (own[0] && !find_family(own, &family)))
         return damaged(r, "phase nx nu nc nq intervals k");
     if (nx != phase->nx || nu != phase->nu || nc != phase->nc || nq != phase->nq)
         return moray_error(MORAY_INPUT,
@@ -161,6 +176,7 @@ static moray_status read_mesh(struct reader *r, const struct phase *phase, struc
                            moray_path_tail(r->text.path), nx, nu, nc, nq, phase->name, phase->nx, phase->nu, phase->nc,
                            phase->nq);
     MORAY_TRY(moray_mesh_new(mesh, intervals));
+    mesh->method.family = family;
     for (int k = 0; k < intervals; k++) {
         double numbers[2];
         MORAY_TRY(read_numbers(r, 2, numbers));
@@ -180,9 +196,9 @@ static moray_status read_transcription(struct reader *r, const moray_ocp *ocp, m
     struct mesh *meshes = calloc((size_t)ocp->phases, sizeof *meshes);
     moray_status status = meshes ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d meshes", ocp->phases);
     for (int p = 0; p < ocp->phases && !moray_failed(status); p++)
-        status = read_mesh(r, &ocp->phase[p], &meshes[p]);
+        status = read_mesh(r, &ocp->phase[p], family, &meshes[p]);
     if (!moray_failed(status))
-        status = moray_transcription_new(&solution->transcription, ocp, family, meshes);
+        status = moray_transcription_new(&solution->transcription, ocp, meshes);
     for (int p = 0; meshes && p < ocp->phases; p++)
         moray_mesh_free(&meshes[p]);
     free(meshes);
@@ -231,10 +247,31 @@ moray_status moray_complete_solution(moray_solution *solution)
     if (!solution->history)
         return moray_error(MORAY_MEMORY, "no memory for a history");
     if (moray_is_solved(solution))
-        MORAY_TRY(moray_refine(solution, solution->settings.mesh_tolerance, 2, NULL, &error));
+        MORAY_TRY(moray_refine(solution, solution->settings.mesh_tolerance, NULL, &error));
     solution->history[solution->meshes++] = moray_record_of(solution, error);
     moray_diagnose(solution);
     return moray_ok();
+}
+
+// Data that move are seen in intervals that the times in the file tell: the same columns and rows.
+static moray_status place_data(moray_solution *solution)
+{
+    struct transcription *old = solution->transcription;
+    const moray_ocp *ocp = old->ocp;
+    struct mesh *meshes = calloc((size_t)ocp->phases, sizeof *meshes);
+    if (!meshes)
+        return moray_error(MORAY_MEMORY, "no memory for %d meshes", ocp->phases);
+    for (int p = 0; p < ocp->phases; p++)
+        meshes[p] = old->layout.phase[p].mesh;
+    moray_status status = moray_ok();
+    if (!moray_transcription_values(old, solution->iterate.x))
+        status = moray_error(MORAY_NUMERIC, "at this solution, %s", old->failure.text);
+    else if (moray_sights_left(old, meshes)) {
+        status = moray_transcription_new(&solution->transcription, ocp, meshes);
+        moray_transcription_free(old);
+    }
+    free(meshes);
+    return status;
 }
 
 static moray_status load(moray_solution *solution, const moray_ocp *ocp, const char *path)
@@ -246,6 +283,8 @@ static moray_status load(moray_solution *solution, const moray_ocp *ocp, const c
     if (!moray_failed(status))
         status = read_iterate(&reader, solution);
     moray_text_free(&reader.text);
+    if (!moray_failed(status))
+        status = place_data(solution);
     return moray_failed(status) ? status : moray_complete_solution(solution);
 }
 

@@ -4,24 +4,25 @@
 #include <stdlib.h>
 
 #include "ocp/hold.h"
-
 #include "ocp/observe/observed.h"
+#include "ocp/observe/sight.h"
 
-static moray_status need_scheme(struct layout *layout, int stages)
+static moray_status need_scheme(struct layout *layout, moray_family family, int stages)
 {
     if (stages < 1 || stages > MORAY_MAX_STAGES)
         return moray_error(MORAY_INPUT, "stages = %d: must be 1 to %d", stages, MORAY_MAX_STAGES);
-    if (layout->scheme[stages].points)
+    if (layout->scheme[family][stages].points)
         return moray_ok();
-    return moray_scheme_new(&layout->scheme[stages], layout->family, stages);
+    return moray_scheme_new(&layout->scheme[family][stages], family, stages);
 }
 
 static moray_status allocate_phase(struct layout *layout, struct phase_layout *phase)
 {
+    const moray_family family = phase->mesh.method.family;
     phase->nodes = 1;
     for (int k = 0; k < phase->mesh.intervals; k++) {
-        MORAY_TRY(need_scheme(layout, phase->mesh.stages[k]));
-        phase->nodes += layout->scheme[phase->mesh.stages[k]].points - 1;
+        MORAY_TRY(need_scheme(layout, family, phase->mesh.stages[k]));
+        phase->nodes += layout->scheme[family][phase->mesh.stages[k]].points - 1;
     }
     phase->node = calloc((size_t)phase->nodes, sizeof *phase->node);
     phase->interval = calloc((size_t)phase->mesh.intervals, sizeof *phase->interval);
@@ -34,7 +35,7 @@ static void place_points(const struct layout *layout, struct phase_layout *phase
 {
     for (int k = 0, first = 0; k < phase->mesh.intervals; k++) {
         const double left = phase->mesh.edge[k], width = phase->mesh.edge[k + 1] - left;
-        const moray_scheme *scheme = &layout->scheme[phase->mesh.stages[k]];
+        const moray_scheme *scheme = &layout->scheme[phase->mesh.method.family][phase->mesh.stages[k]];
         phase->interval[k] = (struct interval){.scheme = scheme, .first = first, .width = width};
         for (int j = 0; j < scheme->points; j++) {
             struct node *node = &phase->node[first + j];
@@ -71,7 +72,7 @@ static void number_end_controls(struct layout *layout, struct phase_layout *phas
 }
 
 // Columns and rows of a phase in the order of time, which keeps the factorisation's fill low.
-static void number_phase(struct layout *layout, struct phase_layout *phase, const struct phase *p)
+static moray_status number_phase(struct layout *layout, struct phase_layout *phase, const struct phase *p)
 {
     for (int n = 0; n < phase->nodes; n++) {
         phase->node[n].x = layout->columns;
@@ -99,14 +100,14 @@ static void number_phase(struct layout *layout, struct phase_layout *phase, cons
     const bool may_turn = phase->t0 >= 0 && phase->tf >= 0 && p->t0.upper > p->tf.lower;
     const bool measured = phase->t0 >= 0 && phase->tf >= 0 && p->has_duration;
     phase->length_row = may_turn || measured ? layout->rows++ : -1;
+    return moray_place_sights(layout, phase, p);
 }
 
 // Numbers columns and rows interval by interval along time, parameters and events last: the order in which bands are
 // narrow.
-moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family,
-                              const struct mesh *meshes)
+moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, const struct mesh *meshes)
 {
-    *layout = (struct layout){.family = family, .phases = ocp->phases};
+    *layout = (struct layout){.phases = ocp->phases};
     layout->phase = calloc((size_t)ocp->phases, sizeof *layout->phase);
     moray_status status =
         layout->phase ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d phases", ocp->phases);
@@ -120,15 +121,16 @@ moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray
         if (moray_failed(status))
             break;
         place_points(layout, phase);
-        status = moray_link_holds(phase, &ocp->phase[p], family);
-        if (moray_failed(status))
-            break;
-        number_phase(layout, phase, &ocp->phase[p]);
+        status = moray_link_holds(phase, &ocp->phase[p]);
+        if (!moray_failed(status))
+            status = number_phase(layout, phase, &ocp->phase[p]);
     }
     layout->s = layout->columns;
     layout->columns += ocp->ns;
     layout->events = layout->rows;
     layout->rows += ocp->ne;
+    for (int p = 0; p < ocp->phases; p++)
+        layout->rows += moray_observed_events(&ocp->phase[p].observed);
     if (moray_failed(status))
         moray_layout_free(layout);
     return status;
@@ -140,10 +142,12 @@ void moray_layout_free(struct layout *layout)
         moray_mesh_free(&layout->phase[p].mesh);
         free(layout->phase[p].node);
         free(layout->phase[p].interval);
+        free(layout->phase[p].sight);
     }
     free(layout->phase);
-    for (int s = 0; s <= MORAY_MAX_STAGES; s++)
-        moray_scheme_free(&layout->scheme[s]);
+    for (int family = MORAY_LOBATTO; family <= MORAY_GAUSS; family++)
+        for (int s = 0; s <= MORAY_MAX_STAGES; s++)
+            moray_scheme_free(&layout->scheme[family][s]);
     *layout = (struct layout){0};
 }
 

@@ -24,23 +24,28 @@ struct interval {
     int defect;   // first row; defect i of state r is row defect + i nx + r
 };
 
+// Where a datum that moves is seen, see sight.h: in an interval, with columns and rows of its own.
+struct sight {
+    int interval, x, row;
+};
+
 struct phase_layout {
     struct mesh mesh;
     int nodes;
     struct node *node;
     struct interval *interval;
-    int t0, tf;       // columns, -1 where fixed
-    int q;            // first column of the integrals
-    int integral_row; // first row of their definitions
-    int u_end[2];     // first columns of the controls at the ends: of a node, or after q; -1 where nothing asks
-    int u_row[2];     // first rows of the definitions of those after q, after those of the integrals; else -1
-    int hold_row;     // first row of all that hold controls
-    int length_row;   // tf - t0 >= 0, or within its bounds; -1 where the bounds of the times say so already
+    int t0, tf;          // columns, -1 where fixed
+    int q;               // first column of the integrals
+    int integral_row;    // first row of their definitions
+    int u_end[2];        // first columns of the controls at the ends: of a node, or after q; -1 where nothing asks
+    int u_row[2];        // first rows of the definitions of those after q, after those of the integrals; else -1
+    int hold_row;        // first row of all that hold controls
+    int length_row;      // tf - t0 >= 0, or within its bounds; -1 where the bounds of the times say so already
+    struct sight *sight; // [observations] of data that move; else NULL
 };
 
 struct layout {
-    moray_scheme scheme[MORAY_MAX_STAGES + 1]; // by stages, of one family, made when first used
-    moray_family family;
+    moray_scheme scheme[MORAY_GAUSS + 1][MORAY_MAX_STAGES + 1]; // by family and stages, made when first used
     int phases;
     struct phase_layout *phase;
     int s, events; // first column of the parameters, first row of the events
@@ -48,8 +53,7 @@ struct layout {
 };
 
 // Takes over nothing: copies the meshes. Error: MORAY_MEMORY, MORAY_INPUT (stages).
-moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, moray_family family,
-                              const struct mesh *meshes);
+moray_status moray_layout_new(struct layout *layout, const moray_ocp *ocp, const struct mesh *meshes);
 void moray_layout_free(struct layout *layout);
 
 // The interval at an end (0, 1) of a phase, and ell[points] of its nodes' controls in the control there.

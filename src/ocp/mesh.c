@@ -26,19 +26,20 @@ moray_status moray_mesh_new(struct mesh *mesh, int intervals)
     return moray_error(MORAY_MEMORY, "no memory for a mesh of %d intervals", intervals);
 }
 
-moray_status moray_mesh_uniform(struct mesh *mesh, int intervals, int stages)
+moray_status moray_mesh_uniform(struct mesh *mesh, int intervals, struct method method)
 {
     MORAY_TRY(moray_mesh_new(mesh, intervals));
+    mesh->method = method;
     for (int k = 0; k <= intervals; k++)
         mesh->edge[k] = (double)k / intervals;
     for (int k = 0; k < intervals; k++)
-        mesh->stages[k] = stages;
+        mesh->stages[k] = method.stages;
     return moray_ok();
 }
 
-moray_status moray_mesh_of(struct mesh *mesh, const double *edge, int intervals, int stages)
+moray_status moray_mesh_of(struct mesh *mesh, const double *edge, int intervals, struct method method)
 {
-    MORAY_TRY(moray_mesh_uniform(mesh, intervals, stages));
+    MORAY_TRY(moray_mesh_uniform(mesh, intervals, method));
     if (edge)
         memcpy(mesh->edge, edge, ((size_t)intervals + 1) * sizeof *mesh->edge);
     return moray_ok();
@@ -47,6 +48,8 @@ moray_status moray_mesh_of(struct mesh *mesh, const double *edge, int intervals,
 moray_status moray_mesh_copy(struct mesh *copy, const struct mesh *mesh)
 {
     MORAY_TRY(moray_mesh_new(copy, mesh->intervals));
+    copy->method = mesh->method;
+    copy->t0 = mesh->t0, copy->tf = mesh->tf;
     memcpy(copy->edge, mesh->edge, ((size_t)mesh->intervals + 1) * sizeof *copy->edge);
     memcpy(copy->raised_from, mesh->raised_from, (size_t)mesh->intervals * sizeof *copy->raised_from);
     memcpy(copy->stages, mesh->stages, (size_t)mesh->intervals * sizeof *copy->stages);
@@ -57,6 +60,7 @@ moray_status moray_mesh_copy(struct mesh *copy, const struct mesh *mesh)
 bool moray_mesh_equal(const struct mesh *one, const struct mesh *other)
 {
     const size_t n = (size_t)one->intervals;
-    return one->intervals == other->intervals && memcmp(one->edge, other->edge, (n + 1) * sizeof *one->edge) == 0 &&
+    return one->method.family == other->method.family && one->intervals == other->intervals &&
+           memcmp(one->edge, other->edge, (n + 1) * sizeof *one->edge) == 0 &&
            memcmp(one->stages, other->stages, n * sizeof *one->stages) == 0;
 }

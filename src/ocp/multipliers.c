@@ -133,7 +133,7 @@ static moray_status carry_phase(const moray_guess *guess, moray_solution *to, in
 
 static bool same_meshes(const struct layout *one, const struct layout *other)
 {
-    bool same = one->family == other->family;
+    bool same = true;
     for (int p = 0; p < one->phases && same; p++)
         same = moray_mesh_equal(&one->phase[p].mesh, &other->phase[p].mesh);
     return same;
@@ -152,9 +152,11 @@ moray_status moray_carry_multipliers(const moray_guess *guess, moray_solution *t
     }
     for (int p = 0; p < ocp->phases; p++)
         MORAY_TRY(carry_phase(guess, to, p));
+    const int events = new->rows - new->events, before = old->rows - old->events;
     const size_t parameters = (size_t)ocp->ns * sizeof(double);
     memcpy(to->iterate.z_lower + new->s, from->iterate.z_lower + old->s, parameters);
     memcpy(to->iterate.z_upper + new->s, from->iterate.z_upper + old->s, parameters);
-    memcpy(to->iterate.lambda + new->events, from->iterate.lambda + old->events, (size_t)ocp->ne * sizeof(double));
+    memcpy(to->iterate.lambda + new->events, from->iterate.lambda + old->events,
+           (size_t)(events < before ? events : before) * sizeof(double));
     return moray_ok();
 }

@@ -24,6 +24,12 @@ void moray_layout_column_name(const struct layout *layout, const moray_ocp *ocp,
     while (p + 1 < layout->phases && column >= layout->phase[p + 1].node[0].x)
         p++;
     const struct phase_layout *phase = &layout->phase[p];
+    if (phase->sight && column >= phase->sight[0].x) {
+        const int width = ocp->phase[p].nx + ocp->phase[p].nu, i = column - phase->sight[0].x;
+        moray_phase_input_name(ocp, p, i % width, what, name_size);
+        moray_observed_name(&ocp->phase[p], i / width, what, text, size);
+        return;
+    }
     if (column >= phase->q) {
         const int nx = ocp->phase[p].nx, m = column - phase->q;
         const int input = column == phase->t0 ? nx : column == phase->tf ? 2 * nx + 1 : 2 * nx + 2 + m;
@@ -73,14 +79,20 @@ void moray_layout_row_name(const struct layout *layout, const moray_ocp *ocp, co
 {
     char what[name_size];
     if (row >= layout->events) {
-        moray_function_entry_name("event", "e", ocp->e_names, row - layout->events, text, size);
+        moray_endpoint_output_name(ocp, 1 + row - layout->events, text, size);
         return;
     }
     int p = 0;
     while (p + 1 < layout->phases && row >= layout->phase[p + 1].node[0].path)
         p++;
     const struct phase_layout *phase = &layout->phase[p];
-    if (row == phase->length_row) {
+    if (phase->sight && row >= phase->sight[0].row) {
+        const int width = ocp->phase[p].nx + ocp->phase[p].nu, i = row - phase->sight[0].row;
+        char input[name_size];
+        moray_phase_input_name(ocp, p, i % width, input, name_size);
+        snprintf(what, name_size, "definition of %.80s", input);
+        moray_observed_name(&ocp->phase[p], i / width, what, text, size);
+    } else if (row == phase->length_row) {
         snprintf(text, (size_t)size, "length of phase %s", ocp->phase[p].name);
     } else if (row >= phase->hold_row) {
         hold_name(layout, ocp, x, p, row, text, size);

@@ -155,6 +155,13 @@ static moray_status take_duration(struct phase *phase, moray_bounds duration)
     return moray_ok();
 }
 
+static moray_status take_scheme(struct phase *phase, const char *name)
+{
+    const moray_status status =
+        name ? moray_scheme_parse(name, &phase->method.family, &phase->method.stages) : moray_ok();
+    return moray_failed(status) ? moray_error(status.code, "phase %s: %s", phase->name, status.text) : status;
+}
+
 static moray_status copy_mesh(moray_ocp *ocp, struct phase *phase, const moray_phase_spec *spec)
 {
     const int n = spec->intervals;
@@ -190,14 +197,22 @@ static moray_status copy_observed(moray_ocp *ocp, struct phase *phase, const mor
     if (given->n == 0)
         return moray_ok();
     MORAY_TRY(moray_check_observations(phase, given));
+    moray_hold_observations(phase, given);
     struct observed *o = &phase->observed;
     *o = (struct observed){.n = given->n,
                            .ny = given->ny,
                            .map = given->map,
                            .observe = given->observe,
                            .loss = given->loss,
-                           .threshold = given->threshold};
+                           .threshold = given->threshold,
+                           .sum = given->sum,
+                           .has_sum = given->sum.lower != 0 || given->sum.upper != 0,
+                           .events_only = given->events_only};
     MORAY_TRY(copy_names(ocp, given->names, given->ny, &o->names));
+    MORAY_TRY(check_bounds((struct place){"sum of observations", phase->name}, NULL, 0, given->sum));
+    if (given->residual.n > 0)
+        MORAY_TRY(copy_bounds(ocp, (struct place){"residual", phase->name}, given->residual, given->ny, o->names, true,
+                              &o->residual));
     MORAY_TRY(copy_numbers(ocp, given->time, given->n, &o->time));
     MORAY_TRY(copy_numbers(ocp, given->value, given->n * given->ny, &o->value));
     return copy_numbers(ocp, given->weight, given->ny, &o->weight);
@@ -241,6 +256,7 @@ static moray_status copy_phase(moray_ocp *ocp, const moray_phase_spec *spec, int
     MORAY_TRY(check_bounds((struct place){"t0", phase->name}, NULL, 0, spec->t0));
     MORAY_TRY(check_bounds((struct place){"tf", phase->name}, NULL, 0, spec->tf));
     MORAY_TRY(take_duration(phase, spec->duration));
+    MORAY_TRY(take_scheme(phase, spec->scheme));
     MORAY_TRY(copy_mesh(ocp, phase, spec));
     MORAY_TRY(copy_held(ocp, phase, spec));
     MORAY_TRY(copy_names(ocp, spec->x_names, spec->nx, &phase->x_names));

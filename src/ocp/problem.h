@@ -5,6 +5,7 @@
 #define SRC_OCP_PROBLEM_H
 
 #include "moray/ocp.h"
+#include "ocp/mesh.h"
 
 // A map of a user function. Transcriptions of before its patterns were widened go on using the older one.
 struct own_map {
@@ -24,6 +25,8 @@ struct observed {
     const char **names; // NULL where the user named nothing
     moray_loss loss;
     double threshold;
+    moray_bounds *residual, sum; // [ny], NULL: free
+    bool has_sum, events_only;
 };
 
 struct phase {
@@ -35,9 +38,10 @@ struct phase {
     struct observed observed;
     moray_bounds t0, tf, duration;
     bool has_duration;
-    int intervals; // of the first mesh; 0: those of the settings
-    double *mesh;  // [intervals + 1]; NULL: of equal length
-    int *held;     // [n_held] controls that are constant over each of these intervals
+    struct method method; // of its own; stages 0: none
+    int intervals;        // of the first mesh; 0: those of the settings
+    double *mesh;         // [intervals + 1]; NULL: of equal length
+    int *held;            // [n_held] controls that are constant over each of these intervals
     int n_held;
     moray_bounds *x, *x0, *xf, *u, *u0, *uf, *c, *q;
     bool end_controls, bounds_end_controls;     // whether the endpoint reads u0 and uf; whether one is narrower than u

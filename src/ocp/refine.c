@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "ocp/certificate/unseen.h"
 #include "ocp/examine.h"
 #include "ocp/legendre.h"
 #include "ocp/hold.h"
@@ -21,9 +22,10 @@ static const double vain = 0.3; // part of the error left by more stages that sa
 struct refinement {
     struct examiner e;
     double tolerance;
-    int base_stages;
     struct mesh mesh; // grows
     double spare;     // error of its last interval where that stands as it was, else infinite
+    double *error;    // [intervals] of the old mesh
+    double *where;    // [2 intervals] in them, 0..1, where there is what no node tells, NaN: nowhere; and scratch
 };
 
 // Contribution of the slope of the i-th integrated quantity at stage point j to it, relative to its size.
@@ -107,6 +109,20 @@ static void split_evenly(struct mesh *mesh, double end, int pieces, int stages)
     add_interval(mesh, end, stages);
 }
 
+// An effect that no node tells is cut out at the points on either side of where it is largest, so that it gets nodes.
+static void cut_out(struct refinement *r, const struct interval *interval, double where)
+{
+    const struct node *node = r->e.solution->transcription->layout.phase[r->e.p].node + interval->first;
+    const double apart = 1.0 / moray_points_between(interval, interval->scheme->points);
+    const double start = node[0].tau, end = node[interval->scheme->points - 1].tau;
+    const double left = start + (where - apart) * interval->width, right = start + (where + apart) * interval->width;
+    if (left > start + least_width)
+        add_interval(&r->mesh, left, r->mesh.method.stages);
+    if (right < end - least_width)
+        add_interval(&r->mesh, right, r->mesh.method.stages);
+    add_interval(&r->mesh, end, r->mesh.method.stages);
+}
+
 // A jump or kink between two nodes is cut out at those nodes; elsewhere the error falls with width^(stages + 1), which
 // gives the number of even pieces.
 static void split(struct refinement *r, const struct interval *interval, double excess)
@@ -120,10 +136,10 @@ static void split(struct refinement *r, const struct interval *interval, double 
         return;
     }
     if (j > 0)
-        add_interval(&r->mesh, node[j].tau, r->base_stages);
-    split_evenly(&r->mesh, node[j + 1].tau, 2, r->base_stages);
+        add_interval(&r->mesh, node[j].tau, r->mesh.method.stages);
+    split_evenly(&r->mesh, node[j + 1].tau, 2, r->mesh.method.stages);
     if (j + 1 < last)
-        add_interval(&r->mesh, node[last].tau, r->base_stages);
+        add_interval(&r->mesh, node[last].tau, r->mesh.method.stages);
 }
 
 // Makes one of an interval and the one before it.
@@ -157,22 +173,25 @@ static void keep(struct refinement *r, double end, int stages, enum mesh_past pa
 
 // Coefficients e^(-rate k) need log(excess)/rate more stages; where more stages did not help last time the interval is
 // cut.
-static void refine_interval(struct refinement *r, int k, double error)
+static void refine_interval(struct refinement *r, int k)
 {
+    const double error = r->error[k], unseen_at = r->where[k];
     const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
     const struct interval *interval = &layout->interval[k];
     const double raised_from = layout->mesh.raised_from[k];
     const struct node *node = layout->node + interval->first;
     const int s = interval->scheme->stages, first = r->mesh.intervals;
     const double end = node[interval->scheme->points - 1].tau, excess = error / (aim * r->tolerance);
-    if (error <= r->tolerance || interval->width < least_width) {
+    if ((error <= r->tolerance && isnan(unseen_at)) || interval->width < least_width) {
         keep(r, end, s, layout->mesh.past[k], error);
         return;
     }
     r->spare = INFINITY;
     const double rate = decay(r, interval), stages = isnan(rate) ? first_raise : s + ceil(log(excess) / rate);
     const bool in_vain = error > vain * raised_from;
-    if (stages > s && stages <= REFINE_MOST_STAGES && (raised_from == 0 || !in_vain)) {
+    if (!isnan(unseen_at)) {
+        cut_out(r, interval, unseen_at);
+    } else if (stages > s && stages <= REFINE_MOST_STAGES && (raised_from == 0 || !in_vain)) {
         r->mesh.raised_from[r->mesh.intervals] = error;
         add_interval(&r->mesh, end, (int)stages);
     } else {
@@ -182,46 +201,83 @@ static void refine_interval(struct refinement *r, int k, double error)
         r->mesh.past[i] = layout->mesh.past[k] == mesh_untouched ? mesh_untouched : mesh_settled;
 }
 
-static moray_status refine_phase(struct refinement *r, struct mesh *mesh, double *worst)
+// r->where of what the nodes of an interval do not tell, where the phase has much of it; *sum: in parts of its limit.
+static moray_status find_unseen(struct refinement *r, double objective, double *sum)
 {
     const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
-    if (mesh) {
-        MORAY_TRY(moray_mesh_new(&r->mesh, most_pieces * layout->mesh.intervals));
-        r->mesh.intervals = 0;
+    const int intervals = layout->mesh.intervals;
+    struct unseen u;
+    double *part = r->where + intervals, jumps; // which no mesh mends
+    MORAY_TRY(moray_unseen_new(&u, &r->e));
+    *sum = 0;
+    for (int k = 0; k < intervals; k++) {
+        part[k] = moray_unseen_interval(&u, &layout->interval[k], objective, &jumps, &r->where[k]) / MORAY_LIMIT_UNSEEN;
+        *sum += part[k];
     }
+    for (int k = 0; k < intervals; k++)
+        if (*sum <= 1 || part[k] * intervals < *sum)
+            r->where[k] = NAN;
+    moray_unseen_free(&u);
+    return moray_ok();
+}
+
+// Errors of the intervals, what the certificate will ask. What no node tells is looked for where these are small.
+static moray_status measure(struct refinement *r, double objective, double *worst)
+{
+    const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
+    double unseen = 0, largest = 0;
     for (int k = 0; k < layout->mesh.intervals; k++) {
         double outside = 0;
-        double error = moray_examiner_interval(&r->e, &layout->interval[k], &outside);
-        error = fmax(error, outside / violation_slack); // what the certificate will ask
-        *worst = fmax(*worst, error);
-        if (mesh)
-            refine_interval(r, k, error);
+        const double error = moray_examiner_interval(&r->e, &layout->interval[k], &outside);
+        r->error[k] = fmax(error, outside / violation_slack);
+        r->where[k] = NAN;
+        largest = fmax(largest, r->error[k]);
     }
-    if (mesh)
-        *mesh = r->mesh;
+    if (largest <= r->tolerance)
+        MORAY_TRY(find_unseen(r, objective, &unseen));
+    *worst = fmax(*worst, unseen > 1 ? fmax(largest, unseen * MORAY_LIMIT_UNSEEN) : largest);
     return moray_ok();
 }
 
-static moray_status refine_all(const struct witness *w, double tolerance, int base_stages, struct mesh *meshes,
-                               double *worst)
+static moray_status make_mesh(struct refinement *r, struct mesh *mesh)
 {
-    for (int p = 0; p < w->solution->transcription->ocp->phases; p++) {
-        struct refinement r = {.tolerance = tolerance, .base_stages = base_stages, .spare = INFINITY};
-        MORAY_TRY(moray_examiner_new(&r.e, w, p));
-        const moray_status status = refine_phase(&r, meshes ? &meshes[p] : NULL, worst);
-        moray_examiner_free(&r.e);
-        MORAY_TRY(status);
-    }
+    const struct transcription *t = r->e.solution->transcription;
+    const struct mesh *old = &t->layout.phase[r->e.p].mesh;
+    MORAY_TRY(moray_mesh_new(&r->mesh, most_pieces * old->intervals));
+    r->mesh.intervals = 0;
+    r->mesh.method = old->method;
+    r->mesh.t0 = t->phase[r->e.p].t0;
+    r->mesh.tf = t->phase[r->e.p].tf;
+    for (int k = 0; k < old->intervals; k++)
+        refine_interval(r, k);
+    *mesh = r->mesh;
     return moray_ok();
 }
 
-moray_status moray_refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
-                          double *worst)
+static moray_status refine_phase(const struct witness *w, int p, double tolerance, struct mesh *mesh, double *worst)
+{
+    struct refinement r = {.tolerance = tolerance, .spare = INFINITY};
+    const size_t intervals = (size_t)w->solution->transcription->layout.phase[p].mesh.intervals;
+    MORAY_TRY(moray_examiner_new(&r.e, w, p));
+    r.error = calloc(3 * intervals, sizeof *r.error);
+    r.where = r.error + intervals;
+    moray_status status = r.error ? measure(&r, moray_witness_objective(w), worst)
+                                  : moray_error(MORAY_MEMORY, "no memory to refine a mesh");
+    if (mesh && !moray_failed(status))
+        status = make_mesh(&r, mesh);
+    free(r.error);
+    moray_examiner_free(&r.e);
+    return status;
+}
+
+moray_status moray_refine(const moray_solution *solution, double tolerance, struct mesh *meshes, double *worst)
 {
     struct witness w;
     *worst = 0;
     MORAY_TRY(moray_witness_of_sizes(&w, solution));
-    const moray_status status = refine_all(&w, tolerance, base_stages, meshes, worst);
+    moray_status status = moray_ok();
+    for (int p = 0; p < solution->transcription->ocp->phases && !moray_failed(status); p++)
+        status = refine_phase(&w, p, tolerance, meshes ? &meshes[p] : NULL, worst);
     moray_witness_free(&w);
     return status;
 }

@@ -8,8 +8,7 @@ enum { REFINE_MOST_STAGES = 10 };
 
 // Errors of the solution's intervals, see moray_mesh_record.error: the largest of all phases; with `meshes`
 // (zeroed, one a phase) not NULL, also finer meshes that should bring every interval to `tolerance`, new intervals with
-// base_stages. The caller frees the meshes, whatever is returned. Error: MORAY_MEMORY.
-moray_status moray_refine(const moray_solution *solution, double tolerance, int base_stages, struct mesh *meshes,
-                          double *worst);
+// the stages of the mesh. The caller frees the meshes, whatever is returned. Error: MORAY_MEMORY.
+moray_status moray_refine(const moray_solution *solution, double tolerance, struct mesh *meshes, double *worst);
 
 #endif

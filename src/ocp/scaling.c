@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "ocp/hold.h"
+#include "ocp/observe/sight.h"
 
 static double size_of(moray_bounds bounds, double guess)
 {
@@ -42,7 +43,10 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
     for (int end = 0; end < 2; end++)
         for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
             x_scale[layout->u_end[end] + r] = g_scale[layout->u_row[end] + r] = 1 / size[phase->nx + r];
-    moray_fill_holds(layout, phase, x_scale + layout->node[1].x + phase->nx, g_scale); // collocated where any is held
+    const double *in_node = x_scale + layout->node[1].x; // which every scheme collocates
+    moray_fill_holds(layout, phase, in_node + phase->nx, g_scale);
+    moray_fill_sights(layout, phase, in_node, false, x_scale);
+    moray_fill_sights(layout, phase, in_node, true, g_scale);
     for (int m = 0; m < phase->nq; m++) {
         const double here = fabs(x[layout->q + m]);
         x_scale[layout->q + m] = g_scale[layout->integral_row + m] =

@@ -119,7 +119,7 @@ static moray_status on_same_mesh(const moray_solution *solution, const moray_ocp
         return moray_error(MORAY_MEMORY, "no memory for %d meshes", ocp->phases);
     for (int p = 0; p < ocp->phases; p++)
         meshes[p] = own->layout.phase[p].mesh;
-    moray_status status = moray_transcription_new(result, ocp, own->layout.family, meshes);
+    moray_status status = moray_transcription_new(result, ocp, meshes);
     free(meshes);
     if (moray_failed(status) || ((*result)->nlp.n == own->nlp.n && (*result)->nlp.m == own->nlp.m))
         return status;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,9 +8,10 @@
 #include "ocp/family.h"
 #include "ocp/refine.h"
 
-static const double falls = 0.9;  // of the least error before: what counts as less
-static const double nonsense = 1; // error of a mesh whose solution is no start for the next
-enum { patience = 8 };            // meshes in a row whose error is no less
+static const double falls = 0.9;   // of the least error before: what counts as less
+static const double margin = 0.98; // of the mesh tolerance: the sizes of the certificate are a little different
+static const double nonsense = 1;  // error of a mesh whose solution is no start for the next
+enum { patience = 8 };             // meshes in a row whose error is no less
 
 moray_settings moray_settings_default(void)
 {
@@ -51,27 +53,68 @@ void moray_campaign_free_meshes(struct campaign *c)
 moray_status moray_campaign_first_mesh(const struct campaign *c, int p, int intervals)
 {
     const struct phase *phase = &c->ocp->phase[p];
-    return moray_mesh_of(&c->meshes[p], phase->mesh, phase->intervals > 0 ? phase->intervals : intervals, c->stages);
+    return moray_mesh_of(&c->meshes[p], phase->mesh, phase->intervals > 0 ? phase->intervals : intervals,
+                         moray_campaign_method(c, p));
+}
+
+struct method moray_campaign_method(const struct campaign *c, int p)
+{
+    return c->own && c->own[p].stages > 0 ? c->own[p] : c->method;
+}
+
+// One name for all phases that have no scheme of their own, or one for each, with commas between.
+static moray_status read_schemes(struct campaign *c)
+{
+    const char *name = c->settings->scheme;
+    const int phases = c->ocp->phases;
+    int names = 0;
+    for (int p = 0; p < phases; p++)
+        c->own[p] = c->ocp->phase[p].method;
+    if (!strchr(name, ','))
+        return moray_scheme_parse(name, &c->method.family, &c->method.stages);
+    for (; name; name = strchr(name, ','), names++) {
+        char one[40];
+        name += *name == ',';
+        snprintf(one, sizeof one, "%.*s", (int)strcspn(name, ","), name);
+        MORAY_TRY(moray_scheme_parse(one, &c->method.family, &c->method.stages));
+        if (names < phases)
+            c->own[names] = c->method;
+    }
+    if (names != phases)
+        return moray_error(MORAY_INPUT, "scheme = %.80s: %d names for %d phases", c->settings->scheme, names, phases);
+    return moray_ok();
+}
+
+// The mesh of the solution that the guess comes from.
+static moray_status continued_mesh(struct campaign *c, const struct layout *other, int p)
+{
+    if (p >= other->phases)
+        return moray_error(MORAY_INPUT, "guess: the solution has %d phases, the problem %d", other->phases,
+                           c->ocp->phases);
+    struct method *method = &c->meshes[p].method;
+    MORAY_TRY(moray_mesh_copy(&c->meshes[p], &other->phase[p].mesh));
+    method->stages = moray_campaign_method(c, p).stages;
+    if (method->family == MORAY_LOBATTO && method->stages < 2)
+        method->stages = 2;
+    if (c->own[p].stages > 0)
+        c->own[p] = *method;
+    else
+        c->method = *method;
+    return moray_ok();
 }
 
 // Meshes of the settings, or those of the solution that the guess comes from.
 static moray_status first_meshes(struct campaign *c, const moray_guess *guess)
 {
-    const struct layout *other = guess && guess->from ? &guess->from->transcription->layout : NULL;
-    MORAY_TRY(moray_scheme_parse(c->settings->scheme, &c->family, &c->stages));
-    c->meshes = calloc((size_t)c->ocp->phases, sizeof *c->meshes);
-    if (!c->meshes)
-        return moray_error(MORAY_MEMORY, "no memory for %d meshes", c->ocp->phases);
-    if (c->settings->intervals == 0)
-        c->family = other->family;
-    for (int p = 0; p < c->ocp->phases; p++)
-        if (c->settings->intervals > 0)
-            MORAY_TRY(moray_campaign_first_mesh(c, p, c->settings->intervals));
-        else if (p < other->phases)
-            MORAY_TRY(moray_mesh_copy(&c->meshes[p], &other->phase[p].mesh));
-        else
-            return moray_error(MORAY_INPUT, "guess: the solution has %d phases, the problem %d", other->phases,
-                               c->ocp->phases);
+    const int phases = c->ocp->phases;
+    c->meshes = calloc((size_t)phases, sizeof *c->meshes);
+    c->own = calloc((size_t)phases, sizeof *c->own);
+    if (!c->meshes || !c->own)
+        return moray_error(MORAY_MEMORY, "no memory for %d meshes", phases);
+    MORAY_TRY(read_schemes(c));
+    for (int p = 0; p < phases; p++)
+        MORAY_TRY(c->settings->intervals > 0 ? moray_campaign_first_mesh(c, p, c->settings->intervals)
+                                             : continued_mesh(c, &guess->from->transcription->layout, p));
     return moray_ok();
 }
 
@@ -89,19 +132,20 @@ static bool within_limits(const struct campaign *c)
 
 static bool may_refine(const struct campaign *c)
 {
-    return c->tried - c->widenings - c->escapes < c->settings->max_refinements;
+    return c->tried - c->widenings - c->escapes - c->moves < c->settings->max_refinements;
 }
 
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
 static moray_status record_and_refine(struct campaign *c, moray_solution *solution, bool *again)
 {
     double error = NAN;
+    const double tolerance = margin * c->settings->mesh_tolerance;
     const bool more = may_refine(c);
     moray_campaign_free_meshes(c);
     if (moray_is_solved(solution))
-        MORAY_TRY(moray_refine(solution, c->settings->mesh_tolerance, c->stages, more ? c->meshes : NULL, &error));
+        MORAY_TRY(moray_refine(solution, tolerance, more ? c->meshes : NULL, &error));
     moray_campaign_record(c, solution, error, 0);
-    *again = more && error > c->settings->mesh_tolerance;
+    *again = more && error > tolerance;
     if (*again)
         MORAY_TRY(moray_leave_ringing(c, solution));
     *again = *again && within_limits(c);
@@ -172,7 +216,7 @@ static void keep_best(struct campaign *c, moray_solution **solution)
 
 static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
 {
-    const int room = c->settings->max_refinements + 1 + most_widenings + most_escapes;
+    const int room = c->settings->max_refinements + 1 + most_widenings + most_escapes + most_moves;
     c->history = calloc((size_t)room, sizeof *c->history);
     if (!c->history)
         return moray_error(MORAY_MEMORY, "no memory for a history of %d meshes", room);
@@ -196,6 +240,7 @@ moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, c
         status = run_campaign(&c, guess, solution);
     moray_campaign_free_meshes(&c);
     free(c.meshes);
+    free(c.own);
     if (moray_failed(status)) {
         if (*solution)
             moray_campaign_drop(*solution);

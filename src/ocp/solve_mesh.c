@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "ocp/certificate/saddle.h"
+#include "ocp/observe/observed.h"
+#include "ocp/observe/sight.h"
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-2;
@@ -48,21 +50,22 @@ bool moray_is_solved(const moray_solution *solution)
     return solution->info.outcome == MORAY_NLP_SOLVED || solution->info.outcome == MORAY_NLP_ACCEPTABLE;
 }
 
-static bool holds_controls(const moray_ocp *ocp)
+static bool has_rows_of_its_own(const moray_ocp *ocp)
 {
     for (int p = 0; p < ocp->phases; p++)
-        if (ocp->phase[p].n_held > 0)
+        if (ocp->phase[p].n_held > 0 || moray_data_move(&ocp->phase[p]))
             return true;
     return false;
 }
 
-// Multipliers of holds do not go from mesh to mesh. Multipliers of a solved mesh whose error is small halve the
-// iterations or better; of a coarse one they mislead.
+// Multipliers of holds, and of what moving data see, do not go from mesh to mesh. Multipliers of a solved mesh whose
+// error is small halve the iterations or better; of a coarse one they mislead.
 static bool can_start_warm(const moray_solution *solution, const moray_guess *guess)
 {
     const moray_solution *from = guess ? guess->from : NULL;
     return from && from->transcription->ocp == solution->transcription->ocp && moray_is_solved(from) &&
-           !holds_controls(solution->transcription->ocp) && from->history[from->meshes - 1].error < worst_warm_error;
+           !has_rows_of_its_own(solution->transcription->ocp) &&
+           from->history[from->meshes - 1].error < worst_warm_error;
 }
 
 static bool is_small(double scaled)
@@ -137,19 +140,19 @@ static moray_status run(moray_solution *solution, const moray_guess *guess)
 
 static moray_status transcribe(const struct campaign *c, moray_solution *solution)
 {
-    MORAY_TRY(moray_transcription_new(&solution->transcription, c->ocp, c->family, c->meshes));
+    MORAY_TRY(moray_transcription_new(&solution->transcription, c->ocp, c->meshes));
     return moray_allocate_iterate(solution);
 }
 
-// Transcribed with patterns that hold at the guess.
+// Transcribed with patterns that hold at the guess, and data in the intervals into which they fall there.
 static moray_status transcribe_at_guess(const struct campaign *c, const moray_guess *guess, moray_solution *solution)
 {
-    int found = 1;
     MORAY_TRY(transcribe(c, solution));
-    for (int k = 0; k < most_widenings && found > 0; k++) {
+    for (int k = 0; k < most_widenings; k++) {
+        int found = 0;
         MORAY_TRY(moray_fill_guess(solution->transcription, guess, solution->iterate.x));
         MORAY_TRY(moray_widen_patterns(solution->transcription, &found));
-        if (found == 0)
+        if (!moray_sights_left(solution->transcription, c->meshes) && found == 0)
             break;
         moray_transcription_free(solution->transcription);
         free(solution->iterate.x);
@@ -212,20 +215,24 @@ void moray_campaign_drop(moray_solution *solution)
     moray_solution_free(solution);
 }
 
-// Solves on the meshes in c, and again from there where a function turns out to depend on more than its patterns know.
+// Solves on the meshes in c, and again from there where a function turns out to depend on more than its patterns know,
+// or data have left their intervals.
 static moray_status solve_widened(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     MORAY_TRY(solve_once(c, guess, result));
-    while (c->widenings < most_widenings && (*result)->info.outcome != MORAY_NLP_INTERRUPTED) {
+    while ((*result)->info.outcome != MORAY_NLP_INTERRUPTED) {
         int found = 0;
         moray_solution *old = *result;
-        moray_status status = moray_widen_patterns(old->transcription, &found);
-        if (!moray_failed(status) && found == 0)
+        moray_status status =
+            c->widenings < most_widenings ? moray_widen_patterns(old->transcription, &found) : moray_ok();
+        const bool left = moray_sights_left(old->transcription, c->meshes) && c->moves < most_moves;
+        if (!moray_failed(status) && found == 0 && !left)
             return status;
         *result = NULL;
         if (!moray_failed(status)) {
             const moray_guess here = moray_guess_from_solution(old);
-            c->widenings++;
+            c->widenings += found > 0;
+            c->moves += found == 0;
             moray_campaign_record(c, old, NAN, found);
             status = solve_once(c, &here, result);
         }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The nonlinear programme of a problem on a mesh. Decision vector: for every phase the nodes in the order of time
-// (state, then control where collocated), integrals, controls at ends without one that are asked for, free times; then
-// the parameters. Constraints: for every phase path constraints, defects, definitions of the integrals and of those
-// controls, holds of controls, length; then the events.
+// (state, then control where collocated), integrals, controls at ends without one that are asked for, free times, what
+// moving data see; then the parameters. Constraints: for every phase path constraints, defects, definitions of the
+// integrals and of those controls, holds of controls, length, what moving data see; then the events.
 #ifndef SRC_OCP_TRANSCRIPTION_H
 #define SRC_OCP_TRANSCRIPTION_H
 
@@ -18,6 +18,7 @@ struct phase_cache {
     double *in, *out; // [nodes][n_in], [nodes][n_out] of the phase's map
     double *jac;      // [nodes][nnz] of the map's Jacobian
     double *lambda;   // [nodes][nx] scratch: multipliers of f
+    double *by_time;  // [nodes][2][nx] scratch of sights, see sight.h; NULL without
     int *column;      // [n_in - 1] scratch: columns of the node at hand
 };
 
@@ -43,8 +44,7 @@ struct transcription {
 };
 
 // Error: MORAY_MEMORY, MORAY_INPUT.
-moray_status moray_transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
-                                     const struct mesh *meshes);
+moray_status moray_transcription_new(struct transcription **result, const moray_ocp *ocp, const struct mesh *meshes);
 void moray_transcription_free(struct transcription *t);
 
 void moray_transcription_callbacks(struct transcription *t); // sets those of t->nlp
@@ -60,6 +60,10 @@ void moray_walk_hessian(const struct transcription *t, double sigma, const doubl
 
 // lambda_f[nodes][nx]: derivative of the constraint part of the Lagrangian with respect to f at every node.
 void moray_dynamics_multipliers(const struct transcription *t, int p, const double *lambda, double *lambda_f);
+
+// d(factor out_row)/d(in_col) at a node: into the column of x, u or s, or through t = t0 + T tau into the free times.
+void moray_put_input(const struct transcription *t, int p, const struct node *node, const int *column, int row, int in,
+                     double value, triplets *out);
 
 // Columns of the inputs x, u, s of a node (not t), in t->phase[p].column; -1 for a control where none is collocated.
 const int *moray_node_columns(const struct transcription *t, int p, const struct node *node);

@@ -64,6 +64,9 @@ static void set_phase_bounds(struct transcription *t, int p)
     free_held(t, phase, layout);
     for (int r = 0; r < phase->nq; r++)
         set_column(t, layout->q + r, phase->q[r]); // rows of defects and integrals stay at zero
+    for (int k = 0; layout->sight && k < phase->observed.n; k++)
+        for (int i = 0; i < phase->nx + phase->nu; i++)
+            set_column(t, layout->sight[k].x + i, moray_free());
     set_times(t, phase, layout);
 }
 
@@ -75,6 +78,10 @@ static void set_bounds(struct transcription *t)
         set_column(t, t->layout.s + i, t->ocp->s[i]);
     for (int i = 0; i < t->ocp->ne; i++)
         set_row(t, t->layout.events + i, t->ocp->e[i]);
+    int row = t->layout.events + t->ocp->ne, k, j;
+    for (int p = 0; p < t->ocp->phases; p++)
+        for (int i = 0; i < moray_observed_events(&t->ocp->phase[p].observed); i++)
+            set_row(t, row++, moray_observed_event(&t->ocp->phase[p].observed, i, &k, &j));
 }
 
 // A control that is no variable at an observed time is none that h depends on, see moray_fit_map_new.
@@ -83,9 +90,10 @@ static void set_observed_columns(struct transcription *t, int *column)
     for (int p = 0; p < t->ocp->phases; p++) {
         const struct phase *phase = &t->ocp->phase[p];
         for (int k = 0; k < phase->observed.n; k++) {
-            const struct node *node = moray_observed_node(&t->layout, t->ocp, p, k);
+            const struct sight *sight = t->layout.phase[p].sight ? &t->layout.phase[p].sight[k] : NULL;
+            const struct node *node = sight ? NULL : moray_observed_node(&t->layout, t->ocp, p, k);
             for (int i = 0; i < phase->nx + phase->nu; i++)
-                *column++ = i < phase->nx || node->collocated ? node->x + i : -1;
+                *column++ = sight ? sight->x + i : i < phase->nx || node->collocated ? node->x + i : -1;
         }
     }
 }
@@ -127,7 +135,9 @@ static moray_status allocate_phase_cache(struct transcription *t, int p)
     cache->jac = calloc(nodes * map->jac.nnz + 1, sizeof(double));
     cache->lambda = calloc(nodes * t->ocp->phase[p].nx, sizeof(double));
     cache->column = calloc((size_t)map->n_in, sizeof(int));
-    if (cache->in && cache->out && cache->jac && cache->lambda && cache->column)
+    const bool sights = t->layout.phase[p].sight != NULL;
+    cache->by_time = sights ? calloc(2 * nodes * (size_t)t->ocp->phase[p].nx, sizeof(double)) : NULL;
+    if (cache->in && cache->out && cache->jac && cache->lambda && cache->column && (cache->by_time || !sights))
         return moray_ok();
     return moray_error(MORAY_MEMORY, "no memory for the %d nodes of phase %s", t->layout.phase[p].nodes,
                        t->ocp->phase[p].name);
@@ -186,8 +196,7 @@ static void describe_programme(struct transcription *t)
 }
 
 // Layout, memory, bounds, then one walk that records both patterns: values later follow the same walk.
-moray_status moray_transcription_new(struct transcription **result, const moray_ocp *ocp, moray_family family,
-                                     const struct mesh *meshes)
+moray_status moray_transcription_new(struct transcription **result, const moray_ocp *ocp, const struct mesh *meshes)
 {
     *result = NULL;
     struct transcription *t = calloc(1, sizeof *t);
@@ -195,7 +204,7 @@ moray_status moray_transcription_new(struct transcription **result, const moray_
         return moray_error(MORAY_MEMORY, "no memory for the transcription");
     t->ocp = ocp;
     t->endpoint = ocp->endpoint->map;
-    moray_status status = moray_layout_new(&t->layout, ocp, family, meshes);
+    moray_status status = moray_layout_new(&t->layout, ocp, meshes);
     if (!moray_failed(status))
         status = moray_fit_map_new(&t->fit, ocp, &t->layout);
     if (t->fit)
@@ -227,6 +236,7 @@ void moray_transcription_free(struct transcription *t)
         free(t->phase[p].out);
         free(t->phase[p].jac);
         free(t->phase[p].lambda);
+        free(t->phase[p].by_time);
         free(t->phase[p].column);
     }
     free(t->phase);

@@ -6,7 +6,7 @@ static const char *const linear_solvers[] = {"moray", "mumps", "ma57", NULL}; //
 static const moray_option shell_rows[] = {
     MORAY_ROW(TEXT, moray_common, scheme, "solver", "scheme", .flag = "scheme", .argument = "NAME",
               .help = "collocation scheme: hermite-simpson, trapezoid, or lobatto, radau or gauss followed by its "
-                      "number of stages"),
+                      "number of stages; or one for each phase, with commas"),
     MORAY_ROW(INT, moray_common, intervals, "solver", "intervals", .flag = "intervals", .argument = "K", .min = 1,
               .max = 100000, .help = "number of collocation intervals"),
     MORAY_ROW(REAL, moray_common, tol, "solver", "tol", .flag = "tol", .max = 1, .open = true,

@@ -14,10 +14,19 @@ bool moray_run_observes(const moray_ocp_spec *spec)
     return false;
 }
 
+// Whether observations are in the objective, so that parameters are fitted to them.
+static bool fits(const moray_ocp_spec *spec)
+{
+    for (int p = 0; p < spec->phases; p++)
+        if (spec->phase[p].observed.n > 0 && !spec->phase[p].observed.events_only)
+            return true;
+    return false;
+}
+
 moray_status moray_run_fit(app_run *run)
 {
     const moray_nlp_outcome outcome = moray_solution_info(run->solution)->outcome;
-    if (!moray_run_observes(run->app->spec) || (outcome != MORAY_NLP_SOLVED && outcome != MORAY_NLP_ACCEPTABLE))
+    if (!fits(run->app->spec) || (outcome != MORAY_NLP_SOLVED && outcome != MORAY_NLP_ACCEPTABLE))
         return moray_ok();
     moray_status status = moray_fit_new(&run->fit, run->solution, run->app->known_variance);
     run->fitted = !moray_failed(status);

@@ -106,6 +106,8 @@ static int mesh_rows(const app_run *run, moray_table_row *rows)
     return meshes;
 }
 
+enum { CERTIFICATE_ROWS = 12 };
+
 static int certificate_rows(const app_run *run, moray_table_row *rows)
 {
     const moray_certificate *c = &run->certificate;
@@ -116,23 +118,25 @@ static int certificate_rows(const app_run *run, moray_table_row *rows)
         {.label = "downward curvature", .value = {c->curvature, MORAY_LIMIT_CURVATURE}},
         {.label = "error of the dynamics between nodes", .value = {c->mesh_error, run->mesh_tol}},
         {.label = "violation of limits between nodes", .value = {c->between_nodes, loose}},
+        {.label = "effects that no node tells", .value = {c->unseen, MORAY_LIMIT_UNSEEN}},
         {.label = "re-simulation of each interval", .value = {c->resimulation, loose}},
         {.label = "re-simulation of whole phases", .value = {c->composed, NAN}},
         {.label = "derivatives against differences", .value = {c->derivatives, MORAY_LIMIT_DERIVATIVES}},
         {.label = "share of them that none tells", .value = {c->untold, NAN}},
         {.label = "the same along directions", .value = {c->directions, MORAY_LIMIT_DIRECTIONS}},
         {.label = "drift of the Hamiltonian", .value = {c->hamiltonian, NAN}}};
+    _Static_assert(sizeof filled / sizeof *filled == CERTIFICATE_ROWS, "room for them");
     memcpy(rows, filled, sizeof filled);
-    return sizeof filled / sizeof *filled;
+    return CERTIFICATE_ROWS;
 }
 
 moray_status moray_run_tables_new(run_tables *t, const app_run *run)
 {
-    enum { solver_room = 10, certificate_room = 11 };
+    enum { solver_room = 10 };
     const int solution_room = count_rows(run->app->spec), ns = run->app->spec->ns, fit_room = MORAY_FIT_ROWS + ns;
     int meshes;
     moray_solution_history(run->solution, &meshes);
-    const size_t room = (size_t)(solution_room + fit_room + solver_room + meshes + certificate_room);
+    const size_t room = (size_t)(solution_room + fit_room + solver_room + meshes + CERTIFICATE_ROWS);
     *t = (run_tables){.rows = calloc(room, sizeof *t->rows),
                       .texts = calloc((size_t)(solution_room + ns), sizeof *t->texts)};
     if (!t->rows || !t->texts) {

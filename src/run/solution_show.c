@@ -20,16 +20,16 @@ void moray_solver_to_json(moray_json *json, const moray_solution *solution)
 
 void moray_certificate_to_json(moray_json *json, const moray_certificate *certificate)
 {
-    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, ""};
+    static const moray_certificate none = {false, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, ""};
     const moray_certificate *c = certificate ? certificate : &none;
     moray_json_open(json, "certificate");
     moray_json_bool(json, "pass", c->pass);
-    moray_json_members(json,
-                       MORAY_MEMBERS({"kkt", c->kkt}, {"mesh_error", c->mesh_error},
-                                     {"between_nodes", c->between_nodes}, {"resimulation", c->resimulation},
-                                     {"derivatives", c->derivatives}, {"directions", c->directions},
-                                     {"hamiltonian", c->hamiltonian}, {"gap", c->gap}, {"curvature", c->curvature},
-                                     {"composed", c->composed}, {"untold", c->untold}, {"mesh_limit", c->mesh_limit}));
+    moray_json_members(
+        json, MORAY_MEMBERS({"kkt", c->kkt}, {"mesh_error", c->mesh_error}, {"between_nodes", c->between_nodes},
+                            {"resimulation", c->resimulation}, {"derivatives", c->derivatives},
+                            {"directions", c->directions}, {"hamiltonian", c->hamiltonian}, {"gap", c->gap},
+                            {"curvature", c->curvature}, {"composed", c->composed}, {"untold", c->untold},
+                            {"unseen", c->unseen}, {"mesh_limit", c->mesh_limit}));
     moray_json_text(json, "why", c->why);
     moray_json_close(json);
 }

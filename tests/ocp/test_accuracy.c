@@ -176,8 +176,65 @@ static void test_trapezoid(const char *what, const moray_phase_spec *phase, doub
     moray_ocp_free(ocp);
 }
 
+// ---- A scheme for each phase: x' = -x and y' = -y, one after the other, of the order of its own ----
+
+static void decay(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = -at->x[0];
+}
+
+static void no_cost(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)at, (void)data;
+    out->objective = 0;
+}
+
+static void errors_of_phases(const char *of_settings, const char *first, const char *second, int intervals,
+                             double error[2])
+{
+    const moray_phase_spec phase[] = {
+        {.nx = 1, .continuous = decay, .tf = moray_fixed(2), .x0 = MORAY_BOUNDS(moray_fixed(1)), .scheme = first},
+        {.nx = 1,
+         .continuous = decay,
+         .t0 = moray_fixed(2),
+         .tf = moray_fixed(4),
+         .x0 = MORAY_BOUNDS(moray_fixed(1)),
+         .scheme = second}};
+    moray_ocp *ocp = NULL;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 2, .phase = phase, .endpoint = no_cost}), "two phases");
+    moray_solution *solution = solve(ocp, of_settings, intervals);
+    for (int p = 0; p < 2; p++) {
+        double x;
+        moray_solution_at(solution, p, 2.0 + 2 * p, &x, NULL);
+        error[p] = fabs(x - exp(-2.0));
+    }
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+static void test_phases(void)
+{
+    const struct {
+        const char *of_settings, *first, *second;
+        int intervals;
+        double order[2];
+    } cases[] = {{"trapezoid", NULL, "radau2", 8, {2, 3}},
+                 {"gauss2", "radau2", NULL, 8, {3, 4}},
+                 {"hermite-simpson", "trapezoid", "gauss1", 8, {2, 2}},
+                 {"trapezoid,gauss2", "radau2", NULL, 8, {2, 4}}};
+    for (unsigned k = 0; k < sizeof cases / sizeof *cases; k++) {
+        double coarse[2], fine[2];
+        errors_of_phases(cases[k].of_settings, cases[k].first, cases[k].second, cases[k].intervals, coarse);
+        errors_of_phases(cases[k].of_settings, cases[k].first, cases[k].second, 2 * cases[k].intervals, fine);
+        check_order("first phase", cases[k].of_settings, coarse[0], fine[0], cases[k].order[0]);
+        check_order("second phase", cases[k].of_settings, coarse[1], fine[1], cases[k].order[1]);
+    }
+}
+
 int main(void)
 {
+    test_phases();
     test_regulator();
     moray_phase_spec phase = cart();
     phase.x0 = (moray_bounds_list)MORAY_BOUNDS(moray_fixed(0), moray_fixed(0));

@@ -142,10 +142,9 @@ static void begin(struct change *change, const moray_ocp *ocp, moray_solution *b
     change->history[1].nodes = nodes;
     change->c = (struct campaign){.ocp = ocp,
                                   .settings = &change->settings,
-                                  .family = MORAY_RADAU,
+                                  .method = {MORAY_RADAU, 3},
                                   .left = {[MORAY_GAUSS] = true},
-                                  .before = {MORAY_GAUSS, 2, "gauss2", 40},
-                                  .stages = 3,
+                                  .before = {{MORAY_GAUSS, 2}, "gauss2", 40},
                                   .meshes = &change->mesh,
                                   .history = change->history,
                                   .tried = 2,
@@ -168,8 +167,8 @@ static void test_back(void)
     begin(&change, ocp, best, 41);
     CHECK(moray_is_no_better(c, true), "with more nodes than the family before: no better");
     CHECK_OK(moray_go_back(c, &last), "back");
-    CHECK(c->family == MORAY_GAUSS && c->stages == 2 && last == best && c->vain == 0, "family %d, %d stages", c->family,
-          c->stages);
+    CHECK(c->method.family == MORAY_GAUSS && c->method.stages == 2 && last == best && c->vain == 0,
+          "family %d, %d stages", c->method.family, c->method.stages);
     CHECK(c->left[MORAY_RADAU] && !moray_is_no_better(c, false), "and not to and fro");
     CHECK(change.history[1].changed_to && strcmp(change.history[1].changed_to, "gauss2") == 0, "noted: %s",
           change.history[1].changed_to);

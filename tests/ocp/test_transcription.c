@@ -46,8 +46,19 @@ static void verdict(const moray_ends *at, moray_end_values *out, const void *dat
     }
 }
 
-static moray_status make_problem(moray_ocp **ocp, moray_bounds t0, bool end_controls, bool hold)
+static void watch(const moray_node *at, moray_num *y, const void *data)
 {
+    (void)data;
+    y[0] = at->x[0] * at->u[1] * at->t + at->s[0];
+    y[1] = sin(at->x[1]) * at->s[1] + at->u[0] * at->u[0];
+}
+
+// Of the second leg, whose times are free: in any interval of it, twice at one time, a value missing.
+static const double watched_at[] = {1.8, 1.1, 2.2, 1.1}, watched[] = {0.3, 0.1, -0.2, 0.4, NAN, 0.2, 0.5, 0};
+
+static moray_status make_problem(moray_ocp **ocp, moray_bounds t0, bool end_controls, bool hold, bool data)
+{
+    const moray_bounds near[] = {moray_between(-1, 2), moray_between(-2, 1)};
     const bool held[] = {false, hold};
     const moray_phase_spec phases[] = {{.name = "first",
                                         .nx = 3,
@@ -69,6 +80,13 @@ static moray_status make_problem(moray_ocp **ocp, moray_bounds t0, bool end_cont
                                         .continuous = second_leg,
                                         .t0 = moray_between(0.5, 2),
                                         .tf = moray_between(2, 4),
+                                        .observed = {.n = data ? 4 : 0,
+                                                     .ny = 2,
+                                                     .time = watched_at,
+                                                     .value = watched,
+                                                     .observe = watch,
+                                                     .residual = MORAY_BOUNDS_OF(near),
+                                                     .sum = moray_at_most(3)},
                                         .c = MORAY_BOUNDS(moray_at_most(3), moray_fixed(1))}};
     return moray_ocp_new(ocp, &(moray_ocp_spec){.name = "everything",
                                                 .phases = 2,
@@ -144,17 +162,37 @@ static void check_names(const struct layout *layout, const moray_ocp *ocp, const
     }
 }
 
+static void check_names_of_data(const struct layout *layout, const moray_ocp *ocp, const double *x)
+{
+    const struct sight *sight = layout->phase[1].sight;
+    char name[160];
+    if (!sight)
+        return;
+    CHECK(sight[0].interval == 1 && sight[1].interval == 0, "data stand in their intervals");
+    moray_layout_column_name(layout, ocp, x, sight[1].x + 3, name, sizeof name);
+    CHECK(strcmp(name, "control u[1] of phase second observed at t = 1.1") == 0, "what is seen is named: %s", name);
+    moray_layout_row_name(layout, ocp, x, sight[2].row, name, sizeof name);
+    CHECK(strcmp(name, "definition of state x[0] of phase second observed at t = 2.2") == 0, "so is its row: %s", name);
+    moray_layout_row_name(layout, ocp, x, layout->events + 2 + 4, name, sizeof name); // after a missing one
+    CHECK(strcmp(name, "residual y[1] of phase second at t = 2.2") == 0, "and a residual: %s", name);
+    moray_layout_row_name(layout, ocp, x, layout->rows - 1, name, sizeof name);
+    CHECK(strcmp(name, "sum of the observations of phase second") == 0, "and their sum: %s", name);
+}
+
 static void check_programme(const moray_ocp *ocp, moray_family family, int stages, unsigned long long seed)
 {
     struct mesh mesh[2];
     struct transcription *t;
     moray_map map;
-    CHECK(!moray_failed(moray_mesh_uniform(&mesh[0], 3, stages)) &&
-              !moray_failed(moray_mesh_uniform(&mesh[1], 2, stages)),
+    const struct method method = {family, stages},
+                        other = {family == MORAY_RADAU ? MORAY_GAUSS : MORAY_RADAU, stages}; // a scheme for each phase
+    CHECK(!moray_failed(moray_mesh_uniform(&mesh[0], 3, method)) &&
+              !moray_failed(moray_mesh_uniform(&mesh[1], 2, other)),
           "mesh");
     mesh[0].edge[1] = 0.2; // unequal intervals, of unequal order
     mesh[0].stages[2] = stages + 1;
-    moray_status status = moray_transcription_new(&t, ocp, family, mesh);
+    mesh[1].t0 = 0.6, mesh[1].tf = 2.9; // where data are looked for
+    moray_status status = moray_transcription_new(&t, ocp, mesh);
     if (!CHECK(!moray_failed(status), "family %d, %d stages: transcribed: %s", family, stages, status.text))
         return;
     CHECK_OK(programme_as_map(&t->nlp, &map), "programme as a map");
@@ -164,6 +202,8 @@ static void check_programme(const moray_ocp *ocp, moray_family family, int stage
     double *x = calloc((size_t)map.n_in, sizeof *x), *weight = calloc((size_t)map.n_out, sizeof *weight);
     for (int j = 0; j < map.n_in; j++)
         x[j] = tap_random(&seed, 0.2, 1);
+    if (t->layout.phase[1].sight)
+        x[t->layout.phase[1].t0] = 0.7, x[t->layout.phase[1].tf] = 2.8;
     for (int i = 0; i < map.n_out; i++)
         weight[i] = tap_random(&seed, -1, 1);
     moray_derivative_report report;
@@ -177,9 +217,10 @@ static void check_programme(const moray_ocp *ocp, moray_family family, int stage
     CHECK(strcmp(name, "parameter s[1]") == 0, "the last column is named: %s", name);
     moray_layout_row_name(&t->layout, ocp, x, t->layout.phase[1].interval[1].defect + 1, name, sizeof name);
     CHECK(strstr(name, "defect of state x[1] of phase second at t = "), "a defect is named: %s", name);
-    moray_layout_row_name(&t->layout, ocp, x, t->layout.rows - 1, name, sizeof name);
-    CHECK(strcmp(name, "event e[1]") == 0, "the last row is named: %s", name);
+    moray_layout_row_name(&t->layout, ocp, x, t->layout.events + 1, name, sizeof name);
+    CHECK(strcmp(name, "event e[1]") == 0, "the last event is named: %s", name);
     check_names(&t->layout, ocp, x);
+    check_names_of_data(&t->layout, ocp, x);
     free(x);
     free(weight);
     moray_pattern_free(&map.jac);
@@ -191,17 +232,19 @@ static void check_programme(const moray_ocp *ocp, moray_family family, int stage
 
 int main(void)
 {
-    moray_ocp *free_start, *fixed_start, *with_controls, *holding;
-    CHECK_OK(make_problem(&free_start, moray_between(0, 0.4), false, false), "a problem with free times");
-    CHECK_OK(make_problem(&fixed_start, moray_fixed(0.25), false, false), "a problem with a fixed start");
-    CHECK_OK(make_problem(&with_controls, moray_between(0, 0.4), true, false), "whose endpoint reads controls");
-    CHECK_OK(make_problem(&holding, moray_between(0, 0.4), true, true), "that holds one");
+    moray_ocp *free_start, *fixed_start, *with_controls, *holding, *with_data;
+    CHECK_OK(make_problem(&free_start, moray_between(0, 0.4), false, false, false), "a problem with free times");
+    CHECK_OK(make_problem(&fixed_start, moray_fixed(0.25), false, false, false), "a problem with a fixed start");
+    CHECK_OK(make_problem(&with_controls, moray_between(0, 0.4), true, false, false), "whose endpoint reads controls");
+    CHECK_OK(make_problem(&holding, moray_between(0, 0.4), true, true, false), "that holds one");
+    CHECK_OK(make_problem(&with_data, moray_between(0, 0.4), false, false, true), "with data that move over its mesh");
     for (int stages = 1; stages <= 4; stages++)
         for (int family = 0; family < 3; family++)
             if (family != MORAY_LOBATTO || stages > 1) {
                 check_programme(free_start, (moray_family)family, stages, 7u + (unsigned)stages);
                 check_programme(fixed_start, (moray_family)family, stages, 70u + (unsigned)stages);
                 check_programme(with_controls, (moray_family)family, stages, 700u + (unsigned)stages);
+                check_programme(with_data, (moray_family)family, stages, 77u + (unsigned)stages);
                 if (family != MORAY_LOBATTO)
                     check_programme(holding, (moray_family)family, stages, 7000u + (unsigned)stages);
             }
@@ -209,5 +252,6 @@ int main(void)
     moray_ocp_free(fixed_start);
     moray_ocp_free(with_controls);
     moray_ocp_free(holding);
+    moray_ocp_free(with_data);
     return tap_done();
 }

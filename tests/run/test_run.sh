@@ -22,7 +22,7 @@ check "gate after 1 s" has tf 1 1e-6
 check "half of the effort to it" eval 'tr -d "\n\t" <out | grep -o "\"integrals\":\[[0-9.e-]*\]" | head -n 1 |
     sed "s/.*\[\(.*\)\]/\1/" | awk "{ exit !(\$1 > 1.499999 && \$1 < 1.500001) }"'
 for key in problem version scheme intervals constants phases solver certificate iterations nvar ncon nnz_jac nnz_hess \
-    time_s eval_time_s kkt mesh_error between_nodes resimulation derivatives directions hamiltonian gap curvature composed untold \
+    time_s eval_time_s kkt mesh_error between_nodes resimulation derivatives directions hamiltonian gap curvature composed untold unseen \
     why; do
     check "summary has $key" grep -q "\"$key\":" out
 done

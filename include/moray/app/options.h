@@ -63,7 +63,7 @@ typedef struct moray_option {
         .help = text "; 0: one a processor"                                                                            \
     }
 
-enum { MORAY_SCHEME_SIZE = 32, MORAY_PATH_SIZE = 4096 };
+enum { MORAY_SCHEME_SIZE = 256, MORAY_PATH_SIZE = 4096 };
 
 // Options of Ipopt that the user names, for moray_settings.ipopt.
 enum { MORAY_IPOPT_OPTIONS = 32, MORAY_IPOPT_SIZE = 128 };

@@ -5,11 +5,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "ocp/certificate/bends.h"
 #include "ocp/certificate/certify.h"
 #include "ocp/certificate/curvature.h"
 #include "ocp/certificate/differences.h"
 #include "ocp/names.h"
 #include "ocp/certificate/optimality.h"
+#include "ocp/certificate/sizes.h"
+#include "ocp/certificate/unseen.h"
 
 static const double no_length = 1e-5; // of a phase, relative to the longest: what a barrier leaves of none
 enum { where_size = 300, good_stages = 4 };
@@ -18,9 +21,10 @@ enum { where_size = 300, good_stages = 4 };
 struct verdict {
     const moray_solution *solution;
     moray_certificate *c;
-    struct finding mesh, between, shooting, drift, constant; // constant: drift of the phases where it should be 0
+    struct finding mesh, between, shooting, drift, constant, unseen,
+        jumps; // constant: drift of the phases where it should be 0
     struct optimality optimality;
-    char derivative[where_size];
+    char derivative[where_size], second[200];
 };
 
 void moray_find(struct finding *finding, double value, int p, double time)
@@ -30,6 +34,31 @@ void moray_find(struct finding *finding, double value, int p, double time)
 }
 
 // ---- Numbers ----
+
+// Of a phase as a whole, where its intervals have most of it.
+static moray_status look_for_unseen(struct verdict *v, const struct witness *w, struct examiner *e)
+{
+    struct unseen u;
+    MORAY_TRY(moray_unseen_new(&u, e));
+    const struct phase_layout *layout = &v->solution->transcription->layout.phase[e->p];
+    struct finding most = {.value = -1}, jump = {.value = -1};
+    double sum = 0, all_jumps = 0;
+    for (int k = 0; k < layout->mesh.intervals; k++) {
+        double where, jumps;
+        const struct interval *interval = &layout->interval[k];
+        const double here = moray_unseen_interval(&u, interval, moray_witness_objective(w), &jumps, &where);
+        const struct phase_cache *cache = moray_witness_cache(w, e->p);
+        const double start = cache->t0 + (cache->tf - cache->t0) * layout->mesh.edge[k];
+        sum += here;
+        all_jumps += jumps;
+        moray_find(&most, here, e->p, start + (cache->tf - cache->t0) * where * interval->width);
+        moray_find(&jump, jumps, e->p, start);
+    }
+    moray_find(&v->unseen, sum, most.p, most.time);
+    moray_find(&v->jumps, all_jumps, jump.p, jump.time);
+    moray_unseen_free(&u);
+    return moray_ok();
+}
 
 static moray_status examine_phase(struct verdict *v, const struct witness *w, int p, const moray_integrator *integrator)
 {
@@ -45,7 +74,9 @@ static moray_status examine_phase(struct verdict *v, const struct witness *w, in
         moray_find(&v->mesh, error, p, middle);
         moray_find(&v->between, outside, p, middle);
     }
-    const moray_status status = moray_resimulate(&e, integrator, &v->shooting, &v->c->composed);
+    moray_status status = look_for_unseen(v, w, &e);
+    if (!moray_failed(status))
+        status = moray_resimulate(&e, integrator, &v->shooting, &v->c->composed);
     moray_examiner_free(&e);
     return status;
 }
@@ -73,6 +104,7 @@ static moray_status question_witness(struct verdict *v, const struct witness *w,
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
         MORAY_TRY(question_hamiltonian(v, w, p));
     MORAY_TRY(moray_difference_solution(v->solution, &v->c->directions));
+    MORAY_TRY(moray_difference_bends(w, &v->c->directions, v->second, sizeof v->second));
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
         MORAY_TRY(examine_phase(v, w, p, integrator));
     return moray_ok();
@@ -90,6 +122,7 @@ static moray_status gather(struct verdict *v, const moray_integrator *integrator
     v->c->mesh_error = v->mesh.value;
     v->c->between_nodes = v->between.value;
     v->c->resimulation = v->shooting.value;
+    v->c->unseen = fmax(v->unseen.value, v->jumps.value);
     v->c->hamiltonian = v->drift.value < 0 ? NAN : v->drift.value;
     return moray_ok();
 }
@@ -147,10 +180,12 @@ static void judge_optimality(struct verdict *v)
 static bool has_good_costates(const moray_solution *solution)
 {
     const struct layout *layout = &solution->transcription->layout;
-    for (int p = 0; p < layout->phases && layout->family == MORAY_LOBATTO; p++)
-        for (int k = 0; k < layout->phase[p].mesh.intervals; k++)
-            if (layout->phase[p].interval[k].scheme->stages < good_stages)
+    for (int p = 0; p < layout->phases; p++)
+        for (int k = 0; k < layout->phase[p].mesh.intervals; k++) {
+            const moray_scheme *scheme = layout->phase[p].interval[k].scheme;
+            if (scheme->family == MORAY_LOBATTO && scheme->stages < good_stages)
                 return false;
+        }
     return true;
 }
 
@@ -161,11 +196,14 @@ static void judge_all(struct verdict *v)
     judge(v, "derivatives in use differ from differences of the functions", v->c->derivatives, MORAY_LIMIT_DERIVATIVES,
           v->derivative);
     judge(v, "derivatives of the programme differ from differences along directions", v->c->directions,
-          MORAY_LIMIT_DIRECTIONS, "a second derivative, or a kink");
+          MORAY_LIMIT_DIRECTIONS, *v->second ? v->second : "a second derivative, or a kink");
     judge_optimality(v);
     judge_finding(v, "error of the dynamics between the nodes", &v->mesh, settings->mesh_tolerance);
     judge_finding(v, "violation of limits between the nodes", &v->between, loose);
     judge_finding(v, "difference to a re-simulation of an interval", &v->shooting, loose);
+    judge_finding(v, "effects between the nodes that none of them tells", &v->unseen, MORAY_LIMIT_UNSEEN);
+    judge_finding(v, "functions jump with a state, which no derivative tells (give each side a phase)", &v->jumps,
+                  MORAY_LIMIT_UNSEEN);
     if (has_good_costates(v->solution))
         judge_finding(v, "drift of the Hamiltonian", &v->constant, MORAY_LIMIT_HAMILTONIAN);
 }
@@ -197,7 +235,7 @@ moray_status moray_certify(const moray_solution *solution, const moray_integrato
         certificate->pass = false;
         certificate->kkt = certificate->mesh_error = certificate->between_nodes = certificate->resimulation = NAN;
         certificate->derivatives = certificate->directions = certificate->hamiltonian = certificate->composed = NAN;
-        certificate->gap = certificate->curvature = certificate->untold = NAN;
+        certificate->gap = certificate->curvature = certificate->untold = certificate->unseen = NAN;
         return moray_ok();
     }
     MORAY_TRY(gather(&v, integrator));

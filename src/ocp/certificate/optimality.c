@@ -9,6 +9,9 @@
 #include <string.h>
 
 #include "ocp/hold.h"
+#include "ocp/observe/sight.h"
+
+static const double give = 2e-8; // of a bound, relative: twice the solver's
 
 struct measure {
     const struct witness *e;
@@ -102,6 +105,7 @@ static void add_linear(struct measure *m, int p)
         if (layout->u_row[end] >= 0)
             add_end_controls(m, p, end);
     moray_add_holds(m->t, p, lambda, m->gradient);
+    moray_add_sights(m->t, p, lambda, m->gradient);
     if (layout->length_row >= 0)
         add_time(m, layout, -lambda[layout->length_row], lambda[layout->length_row]);
 }
@@ -111,7 +115,7 @@ static void add_endpoint(struct measure *m)
     const moray_map *map = m->t->endpoint;
     m->weight[0] = 1;
     memcpy(m->weight + 1, m->e->solution->iterate.lambda + m->t->layout.events,
-           (size_t)m->t->ocp->ne * sizeof *m->weight);
+           (size_t)(map->n_out - 1) * sizeof *m->weight);
     moray_witness_at(m->e, -1, 0);
     moray_witness_in_use(m->e, -1, 0, m->in_use);
     for (int j = 0; j < map->n_in; j++)
@@ -168,9 +172,12 @@ static double row_gain(const struct measure *m, int i, struct optimality *o)
     return slackness(fabs(lambda), slack, bounded, m->row[i], o);
 }
 
+// Beyond what solvers let a bound give way by.
 static double outside(double value, double lower, double upper)
 {
-    return isnan(value) ? INFINITY : fmax(fmax(lower - value, value - upper), 0);
+    const double low = fabs(lower) < MORAY_INFINITY && lower < upper ? give * fabs(lower) : 0;
+    const double high = fabs(upper) < MORAY_INFINITY && lower < upper ? give * fabs(upper) : 0;
+    return isnan(value) ? INFINITY : fmax(fmax(lower - low - value, value - upper - high), 0);
 }
 
 static void judge(const struct measure *m, struct optimality *o)
@@ -199,6 +206,19 @@ static void judge(const struct measure *m, struct optimality *o)
     o->told = fabs(m->e->solution->iterate.objective - m->t->end_out[0]) / moray_witness_objective(m->e);
 }
 
+// What moving data see, against the trajectory. work[nx + nu].
+static double sight_error(const struct measure *m, double *work)
+{
+    const struct transcription *t = m->t;
+    double worst = 0;
+    for (int p = 0; p < t->ocp->phases; p++)
+        for (int k = 0; t->layout.phase[p].sight && k < t->ocp->phase[p].observed.n; k++) {
+            moray_solution_at(m->e->solution, p, t->ocp->phase[p].observed.time[k], work, work + t->ocp->phase[p].nx);
+            worst = fmax(worst, moray_sight_error(t, p, k, work, work + t->ocp->phase[p].nx, m->e->phase[p].size));
+        }
+    return worst;
+}
+
 static moray_status allocate(struct measure *m)
 {
     const struct transcription *t = m->t;
@@ -206,7 +226,9 @@ static moray_status allocate(struct measure *m)
     for (int p = 0; p < t->ocp->phases; p++) {
         const size_t n_out = (size_t)t->phase[p].map->n_out, entries = n_out * (size_t)t->phase[p].map->n_in;
         const size_t states = (size_t)(t->layout.phase[p].nodes * t->ocp->phase[p].nx);
+        const size_t n_in = (size_t)t->phase[p].map->n_in;
         out = n_out > out ? n_out : out;
+        out = n_in > out ? n_in : out;
         block = entries > block ? entries : block;
         f = states > f ? states : f;
     }
@@ -233,6 +255,7 @@ moray_status moray_measure_optimality(const struct witness *e, struct optimality
     moray_assemble_constraints(m.t, m.g);
     fill_gradient(&m);
     judge(&m, optimality);
+    optimality->told = fmax(optimality->told, sight_error(&m, m.weight));
     free(m.gradient);
     return moray_ok();
 }

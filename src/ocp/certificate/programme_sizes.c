@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "ocp/hold.h"
+#include "ocp/observe/sight.h"
 #include "ocp/probe.h"
 
 void moray_witness_columns(const struct witness *e, double *size)
@@ -21,6 +22,7 @@ void moray_witness_columns(const struct witness *e, double *size)
         for (int end = 0; end < 2; end++)
             if (layout->u_row[end] >= 0)
                 memcpy(size + layout->u_end[end], e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
+        moray_fill_sights(layout, phase, e->phase[p].size, false, size);
         if (layout->t0 >= 0)
             size[layout->t0] = e->duration;
         if (layout->tf >= 0)
@@ -51,10 +53,11 @@ void moray_witness_rows(const struct witness *e, double *size)
             if (layout->u_row[end] >= 0)
                 memcpy(size + layout->u_row[end], e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
         moray_fill_holds(layout, phase, e->phase[p].size + phase->nx, size);
+        moray_fill_sights(layout, phase, e->phase[p].size, true, size);
         if (layout->length_row >= 0)
             size[layout->length_row] = e->duration;
     }
-    memcpy(size + t->layout.events, e->end_out_size + 1, (size_t)t->ocp->ne * sizeof *size);
+    memcpy(size + t->layout.events, e->end_out_size + 1, (size_t)(t->endpoint->n_out - 1) * sizeof *size);
     for (int i = 0; i < t->layout.rows; i++)
         size[i] = size[i] > 0 ? size[i] : 1;
 }

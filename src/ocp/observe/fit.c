@@ -187,9 +187,13 @@ static moray_status solve_row(struct inverse *v, moray_fit *fit, int i)
     return moray_ok();
 }
 
-static void add_up(struct inverse *v, moray_fit *fit, const moray_residual *residual)
+// Of those that the objective has.
+static void add_up(struct inverse *v, moray_fit *fit, const moray_residual *residual, int n)
 {
-    for (int k = 0; k < fit->observations; k++) {
+    for (int k = 0; k < n; k++) {
+        if (v->t->ocp->phase[residual[k].phase].observed.events_only)
+            continue;
+        fit->observations++;
         const double r = residual[k].predicted - residual[k].observed;
         fit->sum += residual[k].weight * r * r;
         v->data += residual[k].weight * fmax(pow(residual[k].observed, 2), pow(residual[k].predicted, 2));
@@ -200,11 +204,12 @@ static void add_up(struct inverse *v, moray_fit *fit, const moray_residual *resi
 static moray_status gather(struct inverse *v, moray_fit *fit, bool known)
 {
     const double *parameters = moray_solution_parameters(v->solution);
-    moray_residual *residual = calloc((size_t)fit->observations + 1, sizeof *residual);
+    const int n = moray_solution_residuals(v->solution, NULL);
+    moray_residual *residual = calloc((size_t)n + 1, sizeof *residual);
     if (!residual)
         return no_memory();
     moray_solution_residuals(v->solution, residual);
-    add_up(v, fit, residual);
+    add_up(v, fit, residual, n);
     free(residual);
     MORAY_TRY(allocate(v));
     MORAY_TRY(factor(v));
@@ -226,13 +231,21 @@ static moray_status gather(struct inverse *v, moray_fit *fit, bool known)
     return moray_ok();
 }
 
+static bool fits(const moray_ocp *ocp)
+{
+    for (int p = 0; p < ocp->phases; p++)
+        if (ocp->phase[p].observed.n > 0 && !ocp->phase[p].observed.events_only)
+            return true;
+    return false;
+}
+
 moray_status moray_fit_new(moray_fit *fit, const moray_solution *solution, bool known)
 {
     const struct transcription *t = solution->transcription;
     const size_t ns = (size_t)t->ocp->ns;
     *fit = (moray_fit){.ns = t->ocp->ns};
-    if (!t->fit)
-        return moray_error(MORAY_INPUT, "nothing is observed in %s", t->ocp->name);
+    if (!fits(t->ocp))
+        return moray_error(MORAY_INPUT, "nothing that is observed in %s is in its objective", t->ocp->name);
     if (!moray_is_solved(solution))
         return moray_error(MORAY_NOT_SOLVED, "confidence is that of an optimum, and this is none: %s",
                            moray_nlp_outcome_text(solution->info.outcome));
@@ -243,7 +256,6 @@ moray_status moray_fit_new(moray_fit *fit, const moray_solution *solution, bool 
     fit->lower = fit->error + ns;
     fit->upper = fit->lower + ns;
     fit->covariance = fit->upper + ns;
-    fit->observations = moray_solution_residuals(solution, NULL);
     struct inverse v = {.solution = solution, .t = t};
     const moray_status status = gather(&v, fit, known);
     release(&v);

@@ -2,6 +2,7 @@
 //
 // J + sum over times and channels of rho(z), z = sqrt(w) (h - y), with gradient rho' sqrt(w) h' and Hessian
 // rho'' w h' h'^T + rho' sqrt(w) h''. Every time has inputs x, u of its own; parameters are shared with the endpoint.
+// Residuals h - y and the sum may be events too.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,8 +59,9 @@ const double *moray_fit_predict(const struct fit_map *fit, int p, int k, const d
     return fit->part[p].out;
 }
 
-// bend[locals][locals], full, of one time.
-static void bend_at(const struct fit_map *fit, const struct part *part, int k, bool curvature_of_h)
+// bend[locals][locals], full, of one time, where its losses count `times` and its residuals weight[outputs] (NULL: 0).
+static void bend_at(const struct fit_map *fit, const struct part *part, int k, double times, const double *weight,
+                    bool curvature_of_h)
 {
     const int n = moray_fit_width(part) + fit->ocp->ns;
     const moray_pattern *jac = &part->map->jac, *hess = &part->map->hess;
@@ -67,14 +69,15 @@ static void bend_at(const struct fit_map *fit, const struct part *part, int k, b
     for (int j = 0; j < part->map->n_out; j++) {
         double slope, curvature;
         loss_of(part, k, j, &slope, &curvature);
-        part->weight[j] = slope;
+        const int event = part->event[k * part->map->n_out + j];
+        part->weight[j] = times * slope + (weight && event >= 0 ? weight[event] : 0);
         memset(part->gradient, 0, (size_t)n * sizeof *part->gradient);
         for (int e = 0; e < jac->nnz; e++)
             if (jac->row[e] == j && jac->col[e] < n)
                 part->gradient[jac->col[e]] = part->jac[e];
         for (int e = 0; e < part->pairs; e++)
             part->bend[part->a[e] * n + part->b[e]] +=
-                curvature * part->gradient[part->a[e]] * part->gradient[part->b[e]];
+                times * curvature * part->gradient[part->a[e]] * part->gradient[part->b[e]];
     }
     if (!curvature_of_h)
         return;
@@ -89,14 +92,24 @@ static void bend_at(const struct fit_map *fit, const struct part *part, int k, b
 static void value(void *self, const double *in, double *out)
 {
     const struct fit_map *fit = self;
-    double slope, curvature;
     fit->base->value(fit->base->self, in, out);
-    for (int p = 0; p < fit->ocp->phases; p++)
-        for (int k = 0; k < fit->ocp->phase[p].observed.n; k++) {
+    for (int p = 0; p < fit->ocp->phases; p++) {
+        const struct part *part = &fit->part[p];
+        const struct observed *o = &part->phase->observed;
+        double sum = 0;
+        for (int k = 0; k < o->n; k++) {
             look(fit, p, k, in, false);
-            for (int j = 0; j < fit->part[p].map->n_out; j++)
-                out[0] += loss_of(&fit->part[p], k, j, &slope, &curvature);
+            for (int j = 0; j < o->ny; j++) {
+                double slope, curvature;
+                sum += loss_of(part, k, j, &slope, &curvature);
+                if (part->event[k * o->ny + j] >= 0)
+                    out[part->event[k * o->ny + j]] = part->out[j] - o->value[k * o->ny + j];
+            }
         }
+        out[0] += o->events_only ? 0 : sum;
+        if (part->sum >= 0)
+            out[part->sum] = sum;
+    }
 }
 
 static void jacobian(void *self, const double *in, double *values)
@@ -115,8 +128,14 @@ static void jacobian(void *self, const double *in, double *values)
             memset(part->gradient, 0, (size_t)part->map->n_in * sizeof *part->gradient);
             for (int e = 0; e < part->map->jac.nnz; e++)
                 part->gradient[part->map->jac.col[e]] += part->weight[part->map->jac.row[e]] * part->jac[e];
-            for (int i = 0; i < part->inputs; i++)
+            for (int i = 0; i < part->inputs && !part->phase->observed.events_only; i++)
                 values[*at++] += part->gradient[part->input[i]];
+            for (int i = 0; i < part->inputs && part->sum >= 0; i++)
+                values[*at++] += part->gradient[part->input[i]];
+            for (int e = 0; e < part->map->jac.nnz; e++)
+                if (part->event[k * part->map->n_out + part->map->jac.row[e]] >= 0 &&
+                    part->map->jac.col[e] < part->map->n_in - 1)
+                    values[*at++] += part->jac[e];
         }
     }
 }
@@ -132,9 +151,9 @@ static void hessian(void *self, const double *in, const double *weight, double *
         const int n = moray_fit_width(part) + fit->ocp->ns;
         for (int k = 0; k < fit->ocp->phase[p].observed.n; k++) {
             look(fit, p, k, in, true);
-            bend_at(fit, part, k, !fit->gauss_newton);
+            bend_at(fit, part, k, moray_fit_weight(part, weight), weight, !fit->gauss_newton);
             for (int e = 0; e < part->pairs; e++)
-                values[*at++] += weight[0] * part->bend[part->a[e] * n + part->b[e]];
+                values[*at++] += part->bend[part->a[e] * n + part->b[e]];
         }
     }
 }
@@ -148,7 +167,7 @@ int moray_fit_information(const struct fit_map *fit, const double *end_in, int *
         for (int k = 0; k < fit->ocp->phase[p].observed.n; k++) {
             if (values) {
                 look(fit, p, k, end_in, true);
-                bend_at(fit, part, k, false);
+                bend_at(fit, part, k, part->phase->observed.events_only ? 0 : 1, NULL, false);
             }
             for (int e = 0; e < part->pairs; e++, entries++) {
                 if (row) {
@@ -167,7 +186,7 @@ int moray_fit_information(const struct fit_map *fit, const double *end_in, int *
 
 static moray_status check_controls(const struct part *part, const moray_ocp *ocp, const struct layout *layout, int p)
 {
-    for (int i = 0; i < part->inputs; i++)
+    for (int i = 0; i < part->inputs && !moray_data_move(part->phase); i++)
         for (int k = 0; k < part->phase->observed.n; k++) {
             const int u = part->input[i] - part->phase->nx;
             if (u >= 0 && u < part->phase->nu && !moray_observed_node(layout, ocp, p, k)->collocated)
@@ -193,7 +212,8 @@ static moray_status make(struct fit_map *fit, const struct layout *layout)
     if (!fit->part)
         return moray_error(MORAY_MEMORY, "no memory for the observations");
     for (int p = 0; p < ocp->phases; p++) {
-        MORAY_TRY(moray_fit_part_new(&fit->part[p], ocp, p, fit->map.n_in));
+        MORAY_TRY(moray_fit_part_new(&fit->part[p], ocp, p, fit->map.n_in, fit->map.n_out));
+        fit->map.n_out += moray_observed_events(&ocp->phase[p].observed);
         fit->map.n_in += ocp->phase[p].observed.n * (ocp->phase[p].nx + ocp->phase[p].nu);
         MORAY_TRY(check_controls(&fit->part[p], ocp, layout, p));
     }
@@ -229,6 +249,7 @@ void moray_fit_map_free(struct fit_map *fit)
         free(fit->part[p].input);
         free(fit->part[p].a);
         free(fit->part[p].b);
+        free(fit->part[p].event);
         free(fit->part[p].in);
     }
     free(fit->part);

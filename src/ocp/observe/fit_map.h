@@ -14,7 +14,7 @@ struct transcription;
 moray_status moray_fit_map_new(struct fit_map **fit, const moray_ocp *ocp, const struct layout *layout);
 void moray_fit_map_free(struct fit_map *fit);
 
-// in = [those of the endpoint, then x, u of each observed time], out = [J, e]
+// in = [those of the endpoint, then x, u of each observed time], out = [J, e, events of the observations]
 const moray_map *moray_fit_map(const struct fit_map *fit);
 
 // in[x, u, s, t] of the k-th time of phase p, from inputs of the map.

@@ -30,9 +30,9 @@ static moray_status check_function(const struct phase *phase, const moray_observ
 static moray_status check_data(const struct phase *phase, const moray_observations *given)
 {
     for (int k = 0; k < given->n; k++)
-        if (!(given->time[k] >= phase->t0.lower && given->time[k] <= phase->tf.lower))
+        if (!(given->time[k] >= phase->t0.lower && given->time[k] <= phase->tf.upper))
             return moray_error(MORAY_INPUT, "observations of phase %s: time[%d] = %g is not within [%g, %g]",
-                               phase->name, k, given->time[k], phase->t0.lower, phase->tf.lower);
+                               phase->name, k, given->time[k], phase->t0.lower, phase->tf.upper);
     for (int k = 0; k < given->n * given->ny; k++)
         if (isinf(given->value[k]))
             return moray_error(MORAY_INPUT, "observations of phase %s: value[%d][%d] is infinite", phase->name,
@@ -49,13 +49,46 @@ moray_status moray_check_observations(const struct phase *phase, const moray_obs
     if (given->n < 0 || given->ny < 1 || !given->time || !given->value)
         return moray_error(MORAY_INPUT, "observations of phase %s: n %d, ny %d; need times, values and a channel",
                            phase->name, given->n, given->ny);
-    if (!moray_bounds_are_fixed(phase->t0) || !moray_bounds_are_fixed(phase->tf))
-        return moray_error(MORAY_INPUT,
-                           "observations of phase %s: its times must be fixed; where one is free, cut the phase at the "
-                           "first or last observation and link the parts by events",
-                           phase->name);
     MORAY_TRY(check_function(phase, given));
     return check_data(phase, given);
+}
+
+void moray_hold_observations(struct phase *phase, const moray_observations *given)
+{
+    for (int k = 0; k < given->n; k++) {
+        phase->t0.upper = fmin(phase->t0.upper, given->time[k]);
+        phase->tf.lower = fmax(phase->tf.lower, given->time[k]);
+    }
+}
+
+bool moray_data_move(const struct phase *phase)
+{
+    return phase->observed.n > 0 && !(moray_bounds_are_fixed(phase->t0) && moray_bounds_are_fixed(phase->tf));
+}
+
+// ---- Events ----
+
+bool moray_has_residual_event(const struct observed *o, int k, int j)
+{
+    return o->residual && !isnan(o->value[k * o->ny + j]);
+}
+
+int moray_observed_events(const struct observed *o)
+{
+    int n = o->has_sum;
+    for (int k = 0; k < o->n; k++)
+        for (int j = 0; j < o->ny; j++)
+            n += moray_has_residual_event(o, k, j);
+    return n;
+}
+
+moray_bounds moray_observed_event(const struct observed *o, int i, int *k, int *j)
+{
+    for (*k = 0; *k < o->n; ++*k)
+        for (*j = 0; *j < o->ny; ++*j)
+            if (moray_has_residual_event(o, *k, *j) && i-- == 0)
+                return o->residual[*j];
+    return o->sum;
 }
 
 // ---- Places on a mesh ----
@@ -67,7 +100,7 @@ static double tau_of(const struct phase *phase, int k)
 
 bool moray_is_observed_at(const struct phase *phase, double tau)
 {
-    for (int k = 0; k < phase->observed.n; k++)
+    for (int k = 0; k < phase->observed.n && !moray_data_move(phase); k++)
         if (fabs(tau_of(phase, k) - tau) <= same)
             return true;
     return false;
@@ -124,12 +157,13 @@ static void cut_at(struct mesh *mesh, const struct phase *phase, double tau)
 
 moray_status moray_cut_at_observations(struct mesh *mesh, const struct phase *phase)
 {
-    if (phase->observed.n == 0)
+    if (phase->observed.n == 0 || moray_data_move(phase))
         return moray_ok();
     struct mesh room;
     const size_t n = (size_t)mesh->intervals;
     MORAY_TRY(moray_mesh_new(&room, mesh->intervals + phase->observed.n));
     room.intervals = mesh->intervals;
+    room.method = mesh->method;
     memcpy(room.edge, mesh->edge, (n + 1) * sizeof *mesh->edge);
     memcpy(room.raised_from, mesh->raised_from, n * sizeof *mesh->raised_from);
     memcpy(room.stages, mesh->stages, n * sizeof *mesh->stages);

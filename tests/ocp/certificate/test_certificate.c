@@ -7,6 +7,7 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "ocp/certificate/differences.h"
 #include "ocp/solution.h"
 #include "rk4.h"
 #include "symmetric_line.h"
@@ -363,8 +364,81 @@ static void test_saddle(void)
     moray_ocp_free(ocp);
 }
 
+// ---- A wrong Hessian on so many nodes that each has next to nothing of a direction through all of them: least
+// integral
+//      of u^2 - k x^2 from rest to rest, where a Hessian without its x^2 makes a minimum of the maximum by x ----
+
+static void sag_value(void *self, const double *in, double *out)
+{
+    (void)self;
+    out[0] = in[1];
+    out[1] = in[1] * in[1] - 4 * in[0] * in[0];
+}
+
+static void sag_jacobian(void *self, const double *in, double *values)
+{
+    (void)self;
+    values[0] = 1;
+    values[1] = 2 * in[1];
+    values[2] = -8 * in[0];
+}
+
+static void sag_hessian(void *self, const double *in, const double *weight, double *values)
+{
+    (void)in;
+    values[0] = 2 * weight[1];
+    values[1] = *(const bool *)self ? -8 * weight[1] : 8 * weight[1];
+}
+
+static moray_certificate sag(bool right_hessian, double *along_all)
+{
+    static int row[] = {0, 1, 1}, col[] = {1, 1, 0}, both[] = {1, 0};
+    const moray_map map = {.n_in = 3,
+                           .n_out = 2,
+                           .jac = {.nnz = 3, .row = row, .col = col},
+                           .hess = {.nnz = 2, .row = both, .col = both},
+                           .value = sag_value,
+                           .jacobian = sag_jacobian,
+                           .hessian = sag_hessian,
+                           .self = &right_hessian};
+    const moray_phase_spec phase = {.name = "chord",
+                                    .nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .map = &map,
+                                    .tf = moray_fixed(2),
+                                    .x = MORAY_BOUNDS(moray_between(-5, 5)),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(0))};
+    moray_ocp *ocp;
+    moray_solution *solution;
+    moray_settings settings = moray_settings_default();
+    settings.scheme = "trapezoid";
+    settings.intervals = 4000;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = total}), "a chord");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    const moray_certificate c = certify(solution);
+    CHECK_OK(moray_difference_solution(solution, along_all), "directions through all nodes");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    return c;
+}
+
+static void test_hessian_of_many_nodes(void)
+{
+    double along_all;
+    moray_certificate c = sag(false, &along_all);
+    CHECK(c.curvature == 0 && c.kkt <= MORAY_LIMIT_KKT && along_all < MORAY_LIMIT_DIRECTIONS,
+          "a Hessian that makes a minimum of a saddle; along all nodes: %.1e", along_all);
+    CHECK(!c.pass && c.directions > MORAY_LIMIT_DIRECTIONS && strstr(c.why, "a second derivative in phase chord"),
+          "which is told: %s", c.why);
+    c = sag(true, &along_all);
+    CHECK(c.curvature == 0 && c.directions < MORAY_LIMIT_DIRECTIONS, "the right one leads away: %.1e", c.directions);
+}
+
 int main(void)
 {
+    test_hessian_of_many_nodes();
     test_right_solution();
     test_wrong_derivatives();
     test_wrong_meshes();
