@@ -65,9 +65,13 @@ static moray_status work(steer_job *job)
 static moray_status certified(const steer_job *job)
 {
     for (int model = 0; model <= (int)job->snake.model; model += job->snake.model == MORAY_FIRST_PRINCIPLES ? 1 : 2)
-        if (!job->certificate[model].pass)
-            return moray_error(MORAY_NOT_SOLVED, "certificate of the plan on the %s model failed: %.200s",
-                               moray_model_name((moray_model)model), job->certificate[model].why);
+        if (!job->certificate[model].pass) {
+            char text[300] = "";
+            if (job->program->doubt)
+                job->program->doubt(job, (moray_model)model, text, sizeof text);
+            return moray_error(MORAY_NOT_SOLVED, "certificate of the plan on the %s model failed: %.140s%s",
+                               moray_model_name((moray_model)model), job->certificate[model].why, text);
+        }
     return moray_ok();
 }
 

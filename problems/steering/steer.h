@@ -109,10 +109,11 @@ typedef struct steer_program {
     void (*headline)(const steer_job *job, FILE *file);
     void (*conclude)(const steer_job *job, char *text, size_t size); // how optimised steering does against the rest
     void (*explain)(const steer_job *job, char *text, size_t size);  // what keeps the robot from doing better
-    void (*notes)(const steer_job *job, FILE *file);                 // or NULL
-    double (*swum)(const steer_job *job, const steer_trial *trial);  // on plans of a receding horizon [s]; or NULL
-    bool tells_name, tells_preview;                                  // of a trial, in JSON
-    const char *duration;                                            // before a plan's, beside its solver; or NULL
+    void (*doubt)(const steer_job *job, moray_model model, char *text, size_t size); // of a certificate failed, or NULL
+    void (*notes)(const steer_job *job, FILE *file);                                 // or NULL
+    double (*swum)(const steer_job *job, const steer_trial *trial); // on plans of a receding horizon [s]; or NULL
+    bool tells_name, tells_preview;                                 // of a trial, in JSON
+    const char *duration;                                           // before a plan's, beside its solver; or NULL
     void (*json_head)(const steer_job *job, moray_json *json);
     void (*json_plan)(const steer_job *job, moray_json *json, moray_model model);
     void (*json_tail)(const steer_job *job, moray_json *json); // or NULL

@@ -28,6 +28,9 @@ ends 1 'which makes good courses within 4[0-9.]* deg of 90 deg alone' path_follo
 ends 1 '0.3 m/s against it' path_following $flow --path "0,0 6,0" --current=-0.3,0
 ends 1 'only courses within 3[0-9.]* deg of 0 deg can be made good, and the end lies at 153.4 deg' min_time_turn \
     --angle 90 --set end_m=-4,2 --current 0.4,0
+# A certificate that no plan of the path can pass says what of the path it is.
+ends 3 'inside of the corner behind leg 1, of radius_m = 0.05: the nearest point of the path jumps there' path_following \
+    $flow --path "0,0 5,0 5,5" --set radius_m=0.05
 # The time given ends every program, and it says so.
 ends 1 'in the time given' heading_tracking --time 1 --horizon 200
 ends 1 'in the time given' path_following --time 1

@@ -33,7 +33,6 @@ try() {
     code=$?
     seconds=$(($(date +%s) - from))
     reason=$(tail -n 1 "$work/err")
-    [ $code -eq 3 ] && reason=$(grep -A 1 'Certificate: FAIL' "$work/out" | tail -n 1)
     verdict=ends
     case $code in
     0) ;;

@@ -34,6 +34,9 @@ void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, 
 // What keeps the robot from following more closely, in one paragraph.
 void path_explain(const steer_job *job, char *text, size_t size);
 
+// What of the path its certificate fails by, where it does, to be added to the reason.
+void path_doubt(const steer_job *job, moray_model model, char *text, size_t size);
+
 extern const steer_program path_steering;
 
 #endif

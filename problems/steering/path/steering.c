@@ -296,6 +296,7 @@ const steer_program path_steering = {
     .headline = headline,
     .conclude = conclude,
     .explain = path_explain,
+    .doubt = path_doubt,
     .swum = swum,
     .tells_name = true,
     .json_head = json_head,
