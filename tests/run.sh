@@ -18,7 +18,8 @@ suite() {
         return
     fi
     say "Testing $build"
-    meson test -C "$build" --no-rebuild --print-errorlogs --timeout-multiplier 4
+    # One more than there are cores, for some tests wait.
+    meson test -C "$build" --no-rebuild --num-processes $(($(nproc) + 1)) --print-errorlogs --timeout-multiplier 4
     counts=$(awk -f "$root/tests/count.awk" "$build/meson-logs/testlog.json") || counts="0 1"
     passed=$((passed + ${counts% *}))
     failed=$((failed + ${counts#* }))
@@ -27,7 +28,7 @@ suite() {
 if install_packages; then
     suite "$root/build-ci" -Dwerror=true -Ddebug=false # a third of the compiler's time goes into what a debugger reads
     export MORAY_TESTS_BRIEF=yes
-    suite "$root/build-san" -Db_sanitize=address,undefined
+    suite "$root/build-san" -Db_sanitize=address,undefined -Doptimization=1 -Ddebug=false -Dc_args=-g1 # lines are enough
 else
     failed=1
 fi

@@ -15,12 +15,12 @@ check "swum blindly on its own model the plan comes to its heading" near "$final
 check "the offset keeps its limit" eval \
     'awk -F , "NR > 1 && (\$7 > 0.0797 || \$7 < -0.0797) { bad = 1 } END { exit bad }" results/trajectory.csv'
 
+if thorough; then
 run --quiet --model control --current 0,0 --angle -30 --set starts=1 --set evaluations=1
 check "the other way round: $(cat err)" [ $code -eq 0 ]
 check "it says what limits the turn" grep -q 'limit of the offset decides\|rate of the offset decides\|decide together' out
 check "and how the undulation counts" grep -q 'heading swings with every stroke' out
 
-if thorough; then
 run --quiet --model control --current 0,0 --angle 45 --set end_m=4,1.5 --set starts=1 --set evaluations=1
 check "from pose to pose: $(cat err)" [ $code -eq 0 ]
 check "near the end position" grep -q 'control-oriented plan comes within\|plan + feedback comes within' out

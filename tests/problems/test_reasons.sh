@@ -22,6 +22,7 @@ run --links 2 --quiet
 check "but they can be simulated" [ $code -eq 0 ]
 
 program=$programs/max_speed
+if thorough; then
 run --links 3 --quiet --over none
 check "a baseline that makes no way is compared with nothing" eval '[ $code -eq 0 ] && ! nonsense'
 run --quiet --over none --set omega_deg_s=30:60
@@ -43,7 +44,6 @@ check "five links in a cross current that the paper's gait cannot hold: $code $(
     eval '[ $code -eq 0 ] && [ "$(number certificate pass)" = true ] && grep -q "cannot hold the course" out'
 
 # Both optima along delta are tried, and every start tells what it cost.
-if thorough; then
 run --json --quiet --over none --links 20
 check "twenty links end in the better of two optima: $(number predicted course_speed_m_s)" \
     eval 'near "$(number predicted course_speed_m_s)" 0.51772 1e-4'
