@@ -9,16 +9,16 @@
 #include "moray/app/run.h"
 
 static struct world {
-    double gate, raise, undefined, crooked;
+    double gate, raise, signal, undefined, crooked;
     int calls;
-} the_world = {.gate = 1};
+} the_world = {.gate = 1, .signal = SIGINT};
 
 static void move(const moray_node *at, moray_rates *out, const void *data)
 {
     const struct world *world = data;
     if (the_world.raise > 0 && ++the_world.calls > 2500) { // in the solver
         the_world.raise--;
-        raise(SIGINT);
+        raise((int)the_world.signal);
     }
     out->f[0] = at->x[1];
     out->f[1] = world->crooked > 0 ? creal(at->u[0]) : at->u[0]; // no derivative
@@ -68,7 +68,8 @@ int main(int argc, char **argv)
                                  .data = &the_world};
     const moray_app_constant constants[] = {
         {.key = "gate", .value = &the_world.gate, .unit = "m", .help = "where the phases meet"},
-        {.key = "raise", .value = &the_world.raise, .help = "how many times SIGINT comes"},
+        {.key = "raise", .value = &the_world.raise, .help = "how many times a signal comes"},
+        {.key = "signal", .value = &the_world.signal, .help = "its number"},
         {.key = "crooked", .value = &the_world.crooked, .help = "whether a derivative is wrong"},
         {.key = "undefined", .value = &the_world.undefined, .help = "whether the effort is undefined at u = 0"}};
     const char *const units[] = {"m", "m/s"}, *const force[] = {"N"}, *const effort[] = {"N^2 s"};

@@ -149,6 +149,9 @@ check "SIGINT: what there is is written" eval 'cmp out interrupted/summary.json 
 check "SIGINT: the best iterate is written, and how to go on is told" eval 'says "to go on: --continue interrupted/run_demo.iterate" &&
     [ -s interrupted/run_demo.iterate ] && [ -z "$(find . -name "*.part")" ]'
 stopped=$(number iterations)
+run --json --set raise=1 --set signal=15 --out terminated
+check "SIGTERM is answered likewise: $(cat err)" eval '[ $code -eq 130 ] && says "--continue terminated/run_demo.iterate" &&
+    grep -q "\"status\":.\"interrupted\"" terminated/summary.json && [ -s terminated/run_demo.iterate ]'
 run --json --continue interrupted/run_demo.iterate
 check "--continue goes on to the optimum, on the mesh of the file: $(number iterations) iterations after $stopped" \
     eval '[ $code -eq 0 ] && has objective 3 1e-6 && grep -q "\"scheme\":.\"continued\"" out && has intervals 0 0 && has nodes 82 0'
@@ -167,6 +170,8 @@ sed "1s/run_demo/brachistochrone/" run_demo.iterate >other
 refuse "is of problem brachistochrone, not of run_demo" --continue other
 run --set raise=2 --out twice
 check "SIGINT twice: ends at once, nothing is left" eval '[ $code -eq 130 ] && [ ! -s out ] && [ ! -e twice ]'
+run --set raise=2 --set signal=15 --out twice
+check "SIGTERM twice, too" eval '[ $code -eq 143 ] && [ ! -s out ] && [ ! -e twice ]'
 run --set undefined=1
 check "functions not finite at the guess: exit 1: $(cat err)" eval '[ $code -eq 1 ] && says "not finite"'
 for wrong in --links=3 --robot=x --current=1,1; do

@@ -65,8 +65,8 @@ MORAY_API void moray_certificate_line(const moray_certificate *certificate, char
 
 // ---- Interruption --------------------------------------------------------------------------------------------------
 
-// From now on the first SIGINT only makes moray_interrupted true; the second one acts as it did before. Nothing changes
-// where SIGINT is ignored. The end brings back the earlier handler.
+// From now on the first SIGINT or SIGTERM only makes moray_interrupted true; the next one acts as it did before. Nothing
+// changes for one that is ignored. The end brings back the earlier handlers.
 MORAY_API void moray_interrupt_begin(void);
 MORAY_API void moray_interrupt_end(void);
 MORAY_API bool moray_interrupted(void);
