@@ -22,7 +22,7 @@ moray=${MORAY-sh "$root/problems/run.sh"}
 library=${LIBMORAY-$root/build/libmoray.so}
 links=10 swims=20 trials='--set duration_s=80 --seeds 3 --set training=2'
 if [ -n "$brief" ]; then
-    links=5 swims=12 trials='--set duration_s=20 --seeds 1 --set training=1'
+    links=7 trials='--set duration_s=15 --seeds 1 --set training=1'
 fi
 story=$(mktemp) || exit 1
 trap 'rm -f "$story"' EXIT

@@ -131,6 +131,16 @@ static void tell_starts(const identify *run, struct shown *s)
         }
 }
 
+static void tell_held(const identify *run, struct shown *s)
+{
+    for (int k = 0; k < run->n; k++)
+        if (run->info.held[k])
+            moray_text_add(s->text, TEXT,
+                           "\n%s is at its bound: the intervals of the others hold only where that is right. Widen it "
+                           "(--bounds), or let longer logs tell.",
+                           moray_unknown_name(run->unknown[k]));
+}
+
 static void tell_outliers(const identify *run, struct shown *s)
 {
     for (int k = 0; k < run->fit.channels; k++) {
@@ -156,6 +166,7 @@ static void describe(const identify *run, struct shown *s)
     moray_information_open(&run->info, run->unknown, open, sizeof open);
     if (open[0])
         moray_text_add(s->text, TEXT, "\nThe data do not determine:\n%s.", open);
+    tell_held(run, s);
     tell_outliers(run, s);
     if (run->inflation > 1)
         moray_text_add(s->text, TEXT, "\nIntervals are %.3g times as wide as noise alone would make them.",

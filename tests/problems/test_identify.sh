@@ -57,6 +57,9 @@ check "names and units as told: exit $code, $(cat err)" eval '[ $code -eq 0 ] &&
 run --links 5 --logs one.csv,two.csv --starts 1 --json --set drag=quadratic
 check "another drag is told by its residuals: exit $code" eval '[ $code -eq 3 ] && grep -q "too simple" out && one_line && grep -q "residuals fail" err'
 
+run --links 5 --logs one.csv --starts 1 --set c_t=0.9 --bounds c_t=0.8:2
+check "a coefficient at its bound is told: exit $code" grep -q '^c_t is at its bound: the intervals of the others hold only where that is right' out
+
 # ---- Bad logs
 spoil() {
     awk "$1" FS=, OFS=, one.csv >bad.csv
