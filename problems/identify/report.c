@@ -133,22 +133,31 @@ static void tell_starts(const identify *run, struct shown *s)
 
 static void tell_held(const identify *run, struct shown *s)
 {
+    char names[300] = "";
+    int held = 0;
     for (int k = 0; k < run->n; k++)
         if (run->info.held[k])
-            moray_text_add(s->text, TEXT,
-                           "\n%s is at its bound: the intervals of the others hold only where that is right. Widen it "
-                           "(--bounds), or let longer logs tell.",
-                           moray_unknown_name(run->unknown[k]));
+            moray_text_add(names, sizeof names, "%s%s", held++ ? ", " : "", moray_unknown_name(run->unknown[k]));
+    if (held)
+        moray_text_add(
+            s->text, TEXT,
+            "\nAt a bound: %s. The intervals of the others hold only where that is right: widen it (--bounds), "
+            "or let longer logs tell.",
+            names);
 }
 
 static void tell_outliers(const identify *run, struct shown *s)
 {
     for (int k = 0; k < run->fit.channels; k++) {
         const moray_channel_fit *c = &run->fit.channel[k];
-        if (c->outliers > 0)
-            moray_text_add(
-                s->text, TEXT, "\n%s: %d readings of %s are more than 5 standard deviations off, the worst in line %d.",
-                run->log[c->run].name, c->outliers, moray_channel_name(c->kind), run->log[c->run].line[c->worst]);
+        char what[24];
+        if (c->outliers == 0)
+            continue;
+        snprintf(what, sizeof what, c->kind == MORAY_CHANNEL_TORQUE ? "%s %d" : "%s", moray_channel_name(c->kind),
+                 c->joint + 1);
+        moray_text_add(s->text, TEXT,
+                       "\n%s: %d readings of %s are more than 5 standard deviations off, the worst in line %d.",
+                       run->log[c->run].name, c->outliers, what, run->log[c->run].line[c->worst]);
     }
 }
 

@@ -222,7 +222,7 @@ static void say_missing(const steer_job *job, char *text, size_t size)
 moray_status steer_report(steer_job *job)
 {
     steer_tables tables = {0};
-    char text[STEER_TEXT], why[STEER_TEXT], certificates[3 * STEER_TEXT] = "", asked[300];
+    char text[STEER_TEXT], why[STEER_TEXT], certificates[3 * STEER_TEXT] = "", asked[800];
     moray_swim_scene scene = {0};
     job->program->tables(job, &tables);
     job->program->conclude(job, text, sizeof text);

@@ -58,7 +58,7 @@ run --links 5 --logs one.csv,two.csv --starts 1 --json --set drag=quadratic
 check "another drag is told by its residuals: exit $code" eval '[ $code -eq 3 ] && grep -q "too simple" out && one_line && grep -q "residuals fail" err'
 
 run --links 5 --logs one.csv --starts 1 --set c_t=0.9 --bounds c_t=0.8:2
-check "a coefficient at its bound is told: exit $code" grep -q '^c_t is at its bound: the intervals of the others hold only where that is right' out
+check "a coefficient at its bound is told: exit $code" grep -q '^At a bound: c_t. The intervals of the others hold only where that is right' out
 
 # ---- Bad logs
 spoil() {
@@ -72,6 +72,13 @@ spoil 'NR > 1 { $5 *= 57.3 } { print }'
 refuse 'is it in deg? Say --units phi=deg' --links 5 --logs bad.csv
 spoil 'NR > 1 { $2 *= 1000; $3 *= 1000 } { print }'
 refuse 'is it in mm or cm?' --links 5 --logs bad.csv
+spoil 'NR > 1 { $1 *= 1000 } { print }'
+refuse 'rows are 100 s apart, more than 2: is it in ms? Say --units t=ms' --links 5 --logs bad.csv
+spoil 'NR > 1 { $4 = "" } { print }'
+refuse 'log bad.csv: heading: 0 values are too few for a spline; leave the column out' --links 5 --logs bad.csv
+spoil 'NR > 1 { $6 = 0.1 } { print }'
+run --links 5 --logs bad.csv --starts 1
+check "a joint that does not move is told: exit $code" grep -q 'joint 2 is at 5.73 deg in every row: does it move?' out
 spoil 'NR < 12 { print }'
 refuse '10 rows; needs 20 at least' --links 5 --logs bad.csv
 spoil 'NR == 40 { $0 = $0 ",1" } { print }'

@@ -57,8 +57,9 @@ MORAY_API moray_status moray_snake_turning(const moray_snake_options *options);
 // that the control-oriented model swims in its place.
 MORAY_API void moray_snake_to_json(moray_json *json, const moray_snake_options *options);
 
-// "10 links"; of unequal ones with the equal robot that the control-oriented model swims. Returns text.
-enum { MORAY_LINKS_TEXT = 200 };
+// "10 links"; of unequal ones with the equal robot that the control-oriented model swims, and whether there are motors,
+// which that model has not. Returns text.
+enum { MORAY_LINKS_TEXT = 320 };
 MORAY_API const char *moray_snake_links_text(const moray_robot *robot, char text[MORAY_LINKS_TEXT]);
 
 MORAY_END

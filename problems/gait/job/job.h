@@ -250,7 +250,7 @@ void gait_job_say_stage(const gait_job *job, const stage *at, char *text);
 // MORAY_MEMORY. Free the scene.
 typedef struct gait_job_page {
     bool pass; // every certificate
-    char judged[200], asked[300], text[(GAIT_STAGES + 1) * GAIT_TEXT], certificates[GAIT_STAGES * GAIT_TEXT];
+    char judged[200], asked[700], text[(GAIT_STAGES + 1) * GAIT_TEXT], certificates[GAIT_STAGES * GAIT_TEXT];
     char names[GAIT_STAGES][60], limits[16];
     moray_table_row rows[5];
     moray_table table;

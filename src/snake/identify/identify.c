@@ -68,7 +68,8 @@ static moray_status take_scatter(const moray_identify *v, struct run *run, moray
         }
         moray_smooth_free(&s);
         if (moray_failed(status))
-            return moray_error(status.code, "log %s: %s: %.180s", log->name, moray_channel_name(kind), status.text);
+            return moray_error(status.code, "log %s: %s: %.150s; leave the column out", log->name,
+                               moray_channel_name(kind), status.text);
     }
     run->sigma[kind] = v->spec.sigma[kind];
     if (isnan(v->spec.sigma[kind])) {

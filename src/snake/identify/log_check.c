@@ -11,7 +11,7 @@
 #include "snake/identify/log.h"
 
 enum { LEAST_ROWS = 20 };
-static const double most_angle = 2 * M_PI, most_speed = 5, least_angle = 0.02, wide_gap = 5;
+static const double most_angle = 2 * M_PI, most_speed = 5, most_step = 2, least_angle = 0.02, wide_gap = 5;
 
 static void note(moray_swim_log *log, const char *format, ...) MORAY_PRINTF(2, 3);
 static void note(moray_swim_log *log, const char *format, ...)
@@ -42,7 +42,19 @@ static moray_status check_order(const struct log_reader *r, const moray_swim_log
     return moray_ok();
 }
 
-static moray_status note_gaps(moray_swim_log *log)
+// Rows further apart than any stroke is short.
+static moray_status check_step(const struct log_reader *r, double usual)
+{
+    if (r->said[LOG_TIME] || usual <= most_step)
+        return moray_ok();
+    return moray_csv_error(&r->csv, -1,
+                           moray_error(MORAY_INPUT,
+                                       "%.60s: rows are %.4g s apart, more than %g: is it in ms? Say --units t=ms (or "
+                                       "t=s if it is right)",
+                                       r->csv.name[r->column[LOG_TIME]], usual, most_step));
+}
+
+static moray_status note_gaps(const struct log_reader *r, moray_swim_log *log)
 {
     double *step = malloc((size_t)log->n * sizeof *step), widest = 0;
     int gaps = 0, at = 0;
@@ -52,6 +64,7 @@ static moray_status note_gaps(moray_swim_log *log)
         step[k - 1] = log->t[k] - log->t[k - 1];
     const double usual = moray_quantile(step, log->n - 1, 0.5);
     free(step);
+    MORAY_TRY(check_step(r, usual));
     for (int k = 1; k < log->n; k++) {
         const double width = log->t[k] - log->t[k - 1];
         gaps += width > wide_gap * usual;
@@ -98,6 +111,17 @@ static void note_small_joints(moray_swim_log *log)
         most = fmax(most, fabs(log->phi[k]));
     if (most < least_angle)
         note(log, "%s: no joint angle is beyond %.3g deg: is the unit right?", log->name, most * 180 / M_PI);
+}
+
+static void note_still_joints(moray_swim_log *log)
+{
+    for (int i = 0; i < log->joints; i++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int k = 0; k < log->n; k++) // which pass over NAN
+            low = fmin(low, log->phi[k * log->joints + i]), high = fmax(high, log->phi[k * log->joints + i]);
+        if (low == high)
+            note(log, "%s: joint %d is at %.4g deg in every row: does it move?", log->name, i + 1, low * 180 / M_PI);
+    }
 }
 
 // Half of the steps of the path are faster than any such robot swims.
@@ -164,10 +188,11 @@ moray_status moray_swim_log_check(const struct log_reader *r, moray_swim_log *lo
     MORAY_TRY(check_channels(r, log));
     MORAY_TRY(check_angles(r, log, joints, log->phi, log->joints));
     MORAY_TRY(check_angles(r, log, LOG_HEADING, log->heading, 1));
+    MORAY_TRY(note_gaps(r, log));
     MORAY_TRY(check_speed(r, log));
-    MORAY_TRY(note_gaps(log));
     unwrap(log->heading, log->n);
     note_small_joints(log);
+    note_still_joints(log);
     note_missing(log, "p_x", log->p_x, log->n);
     note_missing(log, "p_y", log->p_y, log->n);
     note_missing(log, "heading", log->heading, log->n);

@@ -128,14 +128,17 @@ moray_status moray_links_make(const moray_link_lists *lists, const moray_link_ge
 
 const char *moray_snake_links_text(const moray_robot *robot, char text[MORAY_LINKS_TEXT])
 {
-    if (!robot->link)
-        snprintf(text, MORAY_LINKS_TEXT, "%d links", robot->links);
-    else
-        snprintf(
-            text, MORAY_LINKS_TEXT,
-            "%d unequal links (the control-oriented model swims the nearest equal robot: as long, as heavy, with as "
-            "much drag and added mass in all, links of %.4g m and %.4g kg)",
-            robot->links, 2 * robot->l, robot->m);
+    text[0] = 0;
+    moray_text_add(text, MORAY_LINKS_TEXT, robot->link ? "%d unequal links" : "%d links", robot->links);
+    if (robot->link)
+        moray_text_add(text, MORAY_LINKS_TEXT,
+                       " (the control-oriented model swims the nearest equal robot: as long, as heavy, with as much "
+                       "drag and added "
+                       "mass in all, links of %.4g m and %.4g kg)",
+                       2 * robot->l, robot->m);
+    if (robot->motor.fitted)
+        moray_text_add(text, MORAY_LINKS_TEXT,
+                       " with motors (the control-oriented model, whose joints are not rotary, has none)");
     return text;
 }
 

@@ -139,9 +139,10 @@ static void test_recovery(void)
                     "first-principles");
     s.hydro = moray_hydrodynamics_consistent();
     check_recovered(&s, "c_t,c_n,mu_n,m,current_x,current_y,heading_bias,position_delay,heading_delay", "consistent");
-    s.unequal = true;
-    check_recovered(&s, "c_t,c_n,mu_n,m,current_x,current_y,heading_bias,position_delay,heading_delay",
-                    "unequal links");
+    s.unequal = tap_thorough();
+    if (s.unequal)
+        check_recovered(&s, "c_t,c_n,mu_n,m,current_x,current_y,heading_bias,position_delay,heading_delay",
+                        "unequal links");
     s.unequal = false;
     s.model = MORAY_CONTROL_ORIENTED;
     s.offset = 0.005;
@@ -152,7 +153,7 @@ static void test_recovery(void)
 // A coefficient that is nothing: there is no robot on its other side for a difference.
 static void test_zero(void)
 {
-    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 8, .step = 0.1, .no_lambda_3 = true};
+    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 4, .step = 0.1, .no_lambda_3 = true};
     moray_swim_log log[MOST_LOGS];
     wanted w;
     moray_identify *identify;
@@ -161,11 +162,11 @@ static void test_zero(void)
     memcpy(s.sigma, known, sizeof known);
     swim_logs(&s, log);
     moray_identify_spec spec = spec_of(&s, "c_t,c_n,lambda_3", &w);
-    w.lower[2] = -1e-4, w.upper[2] = 1e-4; // below 0, so that it is not held there
+    w.lower[2] = -1e-3, w.upper[2] = 1e-3; // below 0, so that it is not held there
     CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "zero");
     moray_identify_start(identify, 0, &at);
     for (int k = 0; k < 2; k++) {
-        at.value[2] = k * 1e-8;
+        at.value[2] = k * 1e-7;
         CHECK_OK(moray_identify_information(identify, &at, &info[k]), "information at a coefficient of 0");
     }
     for (int k = 0; k < w.n; k++)
@@ -187,7 +188,7 @@ static void test_zero(void)
 // Logs of currents have the motors' friction in them, those of torques at the joints have not.
 static void test_motors(void)
 {
-    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 8, .step = 0.1};
+    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 4, .step = 0.1};
     moray_swim_log log[MOST_LOGS];
     wanted w;
     moray_identify *identify;
@@ -493,8 +494,11 @@ static void test_design(void)
     moray_gait same;
     moray_information with;
     robust.huber = 1.5;
+    moray_design_spec few = design;
+    few.evaluations = 6;
     CHECK_OK(moray_identify_new(&other, &robust, f.log, 1), "Huber's loss");
-    CHECK_OK(moray_identify_design(other, &f.at, &f.info, &design, &same, &with), "design");
+    CHECK_OK(moray_identify_design(f.identify, &f.at, &f.info, &few, &gait, &after), "design");
+    CHECK_OK(moray_identify_design(other, &f.at, &f.info, &few, &same, &with), "design");
     CHECK(same.amplitude == gait.amplitude && with.error[0] == after.error[0],
           "the same with Huber's loss: c_t +- %.3g, %.3g", with.error[0], after.error[0]);
     moray_identify_free(other);
