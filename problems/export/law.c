@@ -48,7 +48,7 @@ static bool suits(const export_found *found, const listed *laws, int k)
         return false;
     if (laws->trials) // the exported gait is not the paper's, which some trials swim on
         return says(found, laws->list, k, "law", words[found->law]) && !says(found, laws->list, k, "gait", "paper");
-    return found->law != EXPORT_PLAN &&
+    return found->law != EXPORT_PLAN && says(found, laws->list, k, "told", "nothing") && // the others have plans
            isnan(number_of(found, laws->list, k, "lookahead_m")) == (found->law == EXPORT_HEADING);
 }
 

@@ -153,6 +153,16 @@ check "the second law is chosen" near "$(number gain_m_rad)" 0.02 1e-12
 run --from path_following --set gain_m_rad=0.11 --json
 check "what is given comes first" eval 'near "$(number gain_m_rad)" 0.11 1e-12 && near "$(number lookahead_m)" 0.7 1e-12'
 
+# Of trials at sea the law that costs least is one with a plan, whose gain is nothing without it.
+cp -r path_following trials
+cat >trials/summary.json <<END
+{"problem": "sea_trials", $steering, "laws": [
+ {"name": "ILOS", "told": "nothing", "gain_m_rad": 0.07, "lookahead_m": 0.6, "ahead_m": 0.3, "integral_m_s": 0.01, "training_cost": 3},
+ {"name": "plan and feedback", "told": "beliefs", "gain_m_rad": 0.5, "lookahead_m": 1.5, "training_cost": 1}]}
+END
+run --from trials --law path --json
+check "the law without a plan: $(cat err)" eval '[ $code -eq 0 ] && near "$(number gain_m_rad)" 0.07 1e-12 && near "$(number lookahead_m)" 0.6 1e-12'
+
 # ---- Bad input -----------------------------------------------------------------------------------------------------
 refuse 'nowhere/run.ini: cannot be opened' --from nowhere
 mkdir empty && cp series/run.ini empty

@@ -53,7 +53,7 @@ static const sea_law heading_laws[] = {
     {"receding, told", "all", 0, {0}, NO_SUBSET, false, SEA_TOLD},
     {"receding, believing", "beliefs", 0, {0}, NO_SUBSET, false, SEA_BELIEVING},
     {"receding, estimating", "beliefs", 0, {0}, NO_SUBSET, false, SEA_ESTIMATING},
-    {"plan and feedback", "beliefs", 1 << GAIN, {0.12}, NO_SUBSET, false, SEA_BEFOREHAND},
+    {"plan and feedback", "beliefs", 1 << GAIN | 1 << LEAD, {0.12, 0, 0.2}, NO_SUBSET, false, SEA_BEFOREHAND},
     {"robust plan", "training", 0, {0.12}, NO_SUBSET, false, SEA_OVER_ALL}};
 
 static const sea_law path_laws[] = {
@@ -74,9 +74,9 @@ int sea_laws(const sea_job *job, const sea_law **laws)
 
 typedef struct steersman {
     moray_plan plan;
-    moray_robust_plan robust; // owned
-    int unplanned;            // plans that failed, with another in their place
-    double early;             // by which what a plan feeds forward is to be asked for, for what is late behind it [s]
+    moray_robust_plan robust;     // owned
+    int unplanned;                // plans that failed, with another in their place
+    double early, ahead;          // of a plan: what is fed forward, and all of it, for what is late behind it [s]
     const moray_reading *reading; // the newest: a plan's heading is that of when it was taken
     moray_feedback feedback;
     moray_heading_law law;
@@ -95,7 +95,7 @@ static double planned_heading(const moray_swim_sample *sample, void *self)
     double t0, t1, x[MORAY_STEERING_STATES];
     (void)sample;
     moray_solution_times(h->plan.solution, 0, &t0, &t1);
-    moray_solution_at(h->plan.solution, 0, fmin(h->reading->t, t1), x, NULL);
+    moray_solution_at(h->plan.solution, 0, fmin(h->reading->t + h->ahead, t1), x, NULL);
     return x[MORAY_STATE_THETA];
 }
 
@@ -103,13 +103,14 @@ static double planned_offset(const moray_swim_sample *sample, double t, void *se
 {
     const steersman *h = self;
     (void)sample;
-    return moray_plan_offset(&h->plan, t + h->early).value;
+    return moray_plan_offset(&h->plan, t + h->early + h->ahead).value;
 }
 
-static void follow_plan(steersman *h, const sea_job *job, const sea_draw *draw)
+static void follow_plan(steersman *h, const sea_job *job, const sea_draw *draw, double ahead)
 {
     h->plan = (moray_plan){draw->plan.solution, job->scale};
     h->early = job->actuators.dead_time;
+    h->ahead = ahead;
     h->feedback.target = planned_heading;
     h->feedback.feed = planned_offset;
     h->feedback.self = h;
@@ -119,14 +120,14 @@ static double robust_heading(const moray_swim_sample *sample, void *self)
 {
     const steersman *h = self;
     (void)sample;
-    return moray_robust_plan_heading(&h->robust, h->reading->t);
+    return moray_robust_plan_heading(&h->robust, h->reading->t + h->ahead);
 }
 
 static double robust_offset(const moray_swim_sample *sample, double t, void *self)
 {
     const steersman *h = self;
     (void)sample;
-    return h->plan.scale * moray_robust_plan_wanted(&h->robust, t + h->early);
+    return h->plan.scale * moray_robust_plan_wanted(&h->robust, t + h->early + h->ahead);
 }
 
 static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw, bool planned, const double *number)
@@ -137,7 +138,7 @@ static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw,
                                    .offset_rate = job->offset_rate * fabs(job->scale),
                                    .period = look_every};
     if (job->task == SEA_HEADING && planned) {
-        follow_plan(h, job, draw);
+        follow_plan(h, job, draw, number[LEAD]);
     } else if (job->task == SEA_HEADING) {
         h->law = (moray_heading_law){
             .gains = {number[GAIN], number[FORWARD], number[LEAD], number[INTEGRAL], number[DERIVATIVE]},
@@ -163,10 +164,14 @@ static void set_feedback(steersman *h, const sea_job *job, const sea_draw *draw,
     h->controller = moray_feedback_controller(&h->feedback);
 }
 
-// Without a plan over all robots, that of the robot believed.
+// As far ahead of time as the plan with feedback is tuned to be. Without a plan over all robots, that one.
 static moray_status set_robust(steersman *h, const sea_job *job, const sea_draw *draw, const sea_law *law)
 {
-    set_feedback(h, job, draw, true, law->start);
+    const sea_law *laws;
+    const int n = sea_laws(job, &laws);
+    for (int k = 0; k < n; k++)
+        if (laws[k].knows == SEA_BEFOREHAND)
+            set_feedback(h, job, draw, true, job->number[k]);
     const moray_status status = sea_robust_plan(job, draw, law->start, &h->robust);
     h->unplanned = status.code == MORAY_NOT_SOLVED;
     if (h->unplanned)
