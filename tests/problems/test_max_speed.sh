@@ -30,7 +30,12 @@ check "the first line of trajectory.csv names and has units" \
 # ---- The whole pipeline: control-oriented optimum, first-principles optimum, the gait optimised for several models, proof
 run --json --jobs 2
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
-thorough && check "two processes find what one does" same_by_jobs
+if thorough; then
+check "two processes find what one does" same_by_jobs
+check "and from random starts" same_by_jobs --model control --over none --set random_starts=9
+check "$(grep -c . by_2) lines, $(tr -d '\n\t ' <by_2 | grep -o 'iterations_of_starts[^]]*')" \
+    [ "$(tr -d '\n\t ' <by_2 | grep -o 'iterations_of_starts[^]]*' | head -n 1 | tr ',' '\n' | grep -c '[0-9]$')" -eq 10 ]
+fi
 check "first-principles optimum gains at least 3.9 % at equal power: $(number first_principles_optimum speed_percent_at_equal_power)" \
     awk -v g="$(number first_principles_optimum speed_percent_at_equal_power)" 'BEGIN { exit !(g >= 3.9) }'
 check "simulation confirms its speed" near "$(number predicted speed_m_s)" "$(number validated speed_m_s)" 1e-5

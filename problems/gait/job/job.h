@@ -166,9 +166,6 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
 // Makes room for what is told of n starts. Error: MORAY_MEMORY.
 moray_status gait_job_begin_starts(stage *at, int n);
 
-// Notes a start that could not be begun.
-void gait_job_lost_start(stage *at);
-
 // Keeps the better of a solution, which it takes over, and of what the stage has; counts how many agree.
 void gait_job_keep_best(stage *at, moray_solution *solution);
 
@@ -180,6 +177,15 @@ moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *proble
 // that the stage's power lets expect, and keeps the better of that and what the stage has. Error: those of
 // gait_job_problem and gait_job_solve.
 moray_status gait_job_continue(gait_job *job, stage *at, const stage *from);
+
+// Solves a stage in some way from a gait; the caller owns the solution.
+typedef moray_status gait_job_attempt(gait_job *job, stage *at, void *self, const moray_gait *gait,
+                                      moray_solution **solution);
+
+// Attempts it from each known gait, then from random ones, these by several processes, and keeps the best, until
+// interrupted. Error: the first where no start could be begun, MORAY_MEMORY.
+moray_status gait_job_try_starts(gait_job *job, stage *at, const gait_starts *known, int random,
+                                 gait_job_attempt *attempt, void *self);
 
 moray_gait gait_job_random(const gait_job *job, const stage *at); // by drand48, within the limits of the gait
 

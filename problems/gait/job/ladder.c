@@ -165,12 +165,12 @@ static moray_status make_scenario(gait_job *job, scenario_set *set, int k)
 }
 
 // From the orbits of a gait, on each model at the baseline's power.
-static moray_status solve_from(gait_job *job, scenario_set *set, const moray_gait *from, stage *at)
+static moray_status solve_from(gait_job *job, stage *at, void *self, const moray_gait *from, moray_solution **solution)
 {
+    scenario_set *set = self;
     const moray_settings settings = gait_job_settings(job);
     moray_gait gait[MORAY_SCENARIOS];
     moray_swim_track orbit[MORAY_SCENARIOS] = {0};
-    moray_solution *solution = NULL;
     moray_status status = moray_ok();
     for (int k = 0; k < set->over->n && !moray_failed(status); k++) {
         moray_orbit_result found;
@@ -182,31 +182,19 @@ static moray_status solve_from(gait_job *job, scenario_set *set, const moray_gai
             gait[k] = found.gait;
     }
     if (!moray_failed(status))
-        status = moray_gait_over_solve(at->over, &settings, gait, orbit, &solution);
+        status = moray_gait_over_solve(at->over, &settings, gait, orbit, solution);
     for (int k = 0; k < set->over->n; k++)
         moray_swim_track_free(&orbit[k]);
-    if (!moray_failed(status))
-        gait_job_keep_best(at, solution);
     return status;
 }
 
 static moray_status solve_all(gait_job *job, scenario_set *set, const gait_starts *known, stage *at)
 {
-    moray_status first_failure = moray_ok();
-    srand48(1);
     MORAY_TRY(gait_job_begin_starts(at, known->n + job->random_starts));
-    for (int k = 0; k < at->starts && !moray_interrupted(); k++) {
-        const moray_gait gait = k < known->n ? known->gait[k] : gait_job_random(job, at);
-        const moray_status status = solve_from(job, set, &gait, at);
-        if (moray_failed(status))
-            gait_job_lost_start(at);
-        if (moray_failed(status) && !moray_failed(first_failure))
-            first_failure = status;
-    }
+    const moray_status status = gait_job_try_starts(job, at, known, job->random_starts, solve_from, set);
     if (moray_interrupted())
         return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");
-    if (!at->solution)
-        return first_failure;
+    MORAY_TRY(status);
     if (moray_solution_info(at->solution)->outcome != MORAY_NLP_SOLVED)
         return moray_solution_failure(at->solution);
     return moray_ok();

@@ -133,21 +133,6 @@ moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_pro
     return solve_in(job, at, job->snake.current, problem, gait, solution);
 }
 
-static double uniform(double low, double high)
-{
-    return low + (high - low) * drand48();
-}
-
-moray_gait gait_job_random(const gait_job *job, const stage *at)
-{
-    const double theta_max = uniform(job->theta_max[0], job->theta_max[1]);
-    moray_gait gait = {.omega = uniform(job->omega[0], job->omega[1]), .delta = uniform(job->delta[0], job->delta[1])};
-    gait.amplitude = moray_amplitude_from_theta_max(&job->snake.robot, at->model, theta_max, gait.delta);
-    if (at->taper[0] < at->taper[1])
-        gait.taper = uniform(at->taper[0], at->taper[1]);
-    return gait;
-}
-
 // The gait with a taper that is allowed, its largest joint amplitude as before.
 static moray_gait tapered(const stage *at, moray_gait gait)
 {
@@ -160,46 +145,6 @@ static moray_gait tapered(const stage *at, moray_gait gait)
 static bool solved(const moray_solution *solution)
 {
     return moray_solution_info(solution)->outcome == MORAY_NLP_SOLVED;
-}
-
-// Whether `one` is a better end than `other`: solved, then by objective.
-static bool better(const moray_solution *one, const moray_solution *other)
-{
-    if (!other || solved(one) != solved(other))
-        return !other || solved(one);
-    return moray_solution_objective(one) < moray_solution_objective(other);
-}
-
-moray_status gait_job_begin_starts(stage *at, int n)
-{
-    at->starts = n;
-    at->tried = 0;
-    at->iterations = calloc((size_t)n + 1, sizeof *at->iterations);
-    return at->iterations ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for %d starts", n);
-}
-
-static void note_start(stage *at, double iterations)
-{
-    if (at->iterations && at->tried < at->starts)
-        at->iterations[at->tried++] = iterations;
-}
-
-void gait_job_lost_start(stage *at)
-{
-    note_start(at, NAN);
-}
-
-void gait_job_keep_best(stage *at, moray_solution *solution)
-{
-    note_start(at, moray_solution_info(solution)->iterations);
-    const double same = 1e-6;
-    const bool level = at->solution && solved(solution) && solved(at->solution) &&
-                       fabs(moray_solution_objective(solution) - moray_solution_objective(at->solution)) < same;
-    const bool takes_over = better(solution, at->solution);
-    at->agreeing = level ? at->agreeing + 1 : takes_over ? 1 : at->agreeing;
-    moray_solution_free(takes_over ? at->solution : solution);
-    if (takes_over)
-        at->solution = solution;
 }
 
 // At constant shape the power grows with about the square of omega, a little faster.
@@ -238,28 +183,23 @@ static moray_status solve_continued(gait_job *job, stage *at)
     return moray_ok();
 }
 
+static moray_status solve_tapered(gait_job *job, stage *at, void *self, const moray_gait *gait,
+                                  moray_solution **solution)
+{
+    (void)self;
+    const moray_gait allowed = tapered(at, *gait);
+    return gait_job_solve(job, at, at->problem, &allowed, solution);
+}
+
 // From --continue or the known gaits, then, on the model asked for, from random ones.
 static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known)
 {
+    const gait_starts none = {0}, *from = at->from ? &none : known;
     const int random = at->model == job->snake.model ? job->random_starts : 0;
-    const int first = at->from ? known->n : 0;
-    moray_status first_failure = moray_ok();
-    srand48(1);
     MORAY_TRY(gait_job_begin_starts(at, (at->from ? 1 : known->n) + random));
     if (at->from)
         MORAY_TRY(solve_continued(job, at));
-    for (int k = first; k < known->n + random && !moray_interrupted(); k++) {
-        const moray_gait gait = tapered(at, k < known->n ? known->gait[k] : gait_job_random(job, at));
-        moray_solution *solution = NULL;
-        moray_status status = gait_job_solve(job, at, at->problem, &gait, &solution);
-        if (!moray_failed(status))
-            gait_job_keep_best(at, solution);
-        else
-            gait_job_lost_start(at);
-        if (moray_failed(status) && !moray_failed(first_failure))
-            first_failure = status;
-    }
-    return at->solution ? moray_ok() : first_failure;
+    return gait_job_try_starts(job, at, from, random, solve_tapered, NULL);
 }
 
 // ---- Explaining ----------------------------------------------------------------------------------------------------
