@@ -383,6 +383,18 @@ typedef struct moray_mesh_record {
     int dependences; // 0; of the functions on their inputs, found at this solution and new: solved again with them
 } moray_mesh_record;
 
+// What the solver told of its iterations, of all meshes that were tried one after another, each counted from 0; [*n],
+// owned by the solution, none where it was read from a file. Of one solve the first MORAY_KEPT_ITERATIONS are kept.
+enum { MORAY_KEPT_ITERATIONS = 10000 };
+MORAY_API const moray_progress *moray_solution_iterations(const moray_solution *solution, int *n);
+
+// Intervals of a phase's mesh: how many, and their ends in time, edge[count + 1] unless NULL.
+MORAY_API int moray_solution_intervals(const moray_solution *solution, int phase, double *edge);
+
+// Their errors, of each the larger of mesh_error and between_nodes / 100 (see moray_certificate):
+// error[moray_solution_intervals]. Error: MORAY_MEMORY.
+MORAY_API moray_status moray_solution_interval_errors(const moray_solution *solution, int phase, double *error);
+
 // The meshes that were tried, first to last; [*meshes], owned by the solution.
 MORAY_API const moray_mesh_record *moray_solution_history(const moray_solution *solution, int *meshes);
 

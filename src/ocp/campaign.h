@@ -26,7 +26,8 @@ struct campaign {
     bool left[MORAY_GAUSS + 1]; // families that showed themselves wrong for the problem
     struct left_family before;  // the last of them
     struct mesh *meshes;
-    moray_mesh_record *history; // becomes the solution's
+    moray_mesh_record *history; // becomes the solution's, as does
+    struct iterations *iterations;
     int tried, widenings, escapes, moves;
     double spent;         // of the processor, in the solver
     moray_solution *best; // of the solved ones that of the least error; often the last
@@ -41,7 +42,7 @@ moray_status moray_campaign_solve(struct campaign *c, const moray_guess *guess, 
 // Notes a mesh with its error in the history, which the solution shows and the campaign owns.
 void moray_campaign_record(struct campaign *c, moray_solution *solution, double error, int dependences);
 
-// Frees a solution but for the history.
+// Frees a solution but for the history and the iterations.
 void moray_campaign_drop(moray_solution *solution);
 
 // The first mesh of phase p: what the phase asks for itself, or of equal intervals. Error: MORAY_MEMORY.

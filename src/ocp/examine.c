@@ -131,3 +131,10 @@ double moray_examiner_interval(struct examiner *e, const struct interval *interv
         worst = fmax(worst, isnan(e->error[i]) ? INFINITY : e->error[i]);
     return worst;
 }
+
+double moray_examiner_error(struct examiner *e, const struct interval *interval)
+{
+    double outside = 0;
+    const double error = moray_examiner_interval(e, interval, &outside);
+    return fmax(error, outside / violation_slack);
+}

@@ -41,4 +41,7 @@ void moray_examiner_evaluate(struct examiner *e, const struct interval *interval
 // relative to size + |bound|.
 double moray_examiner_interval(struct examiner *e, const struct interval *interval, double *outside);
 
+// The larger of the two, violations by their slack: what the certificate will ask of an interval.
+double moray_examiner_error(struct examiner *e, const struct interval *interval);
+
 #endif

@@ -227,9 +227,7 @@ static moray_status measure(struct refinement *r, double objective, double *wors
     const struct phase_layout *layout = &r->e.solution->transcription->layout.phase[r->e.p];
     double unseen = 0, largest = 0;
     for (int k = 0; k < layout->mesh.intervals; k++) {
-        double outside = 0;
-        const double error = moray_examiner_interval(&r->e, &layout->interval[k], &outside);
-        r->error[k] = fmax(error, outside / violation_slack);
+        r->error[k] = moray_examiner_error(&r->e, &layout->interval[k]);
         r->where[k] = NAN;
         largest = fmax(largest, r->error[k]);
     }
@@ -278,6 +276,22 @@ moray_status moray_refine(const moray_solution *solution, double tolerance, stru
     moray_status status = moray_ok();
     for (int p = 0; p < solution->transcription->ocp->phases && !moray_failed(status); p++)
         status = refine_phase(&w, p, tolerance, meshes ? &meshes[p] : NULL, worst);
+    moray_witness_free(&w);
+    return status;
+}
+
+moray_status moray_solution_interval_errors(const moray_solution *solution, int phase, double *error)
+{
+    const struct phase_layout *layout = &solution->transcription->layout.phase[phase];
+    struct witness w;
+    struct examiner e;
+    MORAY_TRY(moray_witness_of_sizes(&w, solution));
+    const moray_status status = moray_examiner_new(&e, &w, phase);
+    if (!moray_failed(status)) {
+        for (int k = 0; k < layout->mesh.intervals; k++)
+            error[k] = moray_examiner_error(&e, &layout->interval[k]);
+        moray_examiner_free(&e);
+    }
     moray_witness_free(&w);
     return status;
 }

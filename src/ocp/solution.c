@@ -49,6 +49,16 @@ const moray_mesh_record *moray_solution_history(const moray_solution *solution, 
     return solution->history;
 }
 
+int moray_solution_intervals(const moray_solution *solution, int phase, double *edge)
+{
+    const struct mesh *mesh = &solution->transcription->layout.phase[phase].mesh;
+    double t0, tf;
+    moray_solution_times(solution, phase, &t0, &tf);
+    for (int k = 0; edge && k <= mesh->intervals; k++)
+        edge[k] = t0 + (tf - t0) * mesh->edge[k];
+    return mesh->intervals;
+}
+
 const char *moray_solution_diagnosis(const moray_solution *solution)
 {
     return solution->diagnosis;

@@ -8,6 +8,14 @@
 
 enum { diagnosis_size = 4000 };
 
+// What the solver tells of its iterations, kept and handed on to the user.
+struct iterations {
+    moray_progress *at; // [room], owned
+    int n, room;
+    moray_progress_fn *progress; // the user's, or NULL
+    void *observer;
+};
+
 struct moray_solution {
     struct transcription *transcription;
     moray_settings settings;
@@ -16,8 +24,14 @@ struct moray_solution {
     double *guess;              // [columns] where the solver started
     moray_mesh_record *history; // [meshes], owned
     int meshes;
+    struct iterations *iterations; // owned where the history is; NULL: none
     char diagnosis[diagnosis_size];
 };
+
+// Makes room for the iterations of one more solve. Error: MORAY_MEMORY.
+moray_status moray_iterations_room(struct iterations *iterations, int max_iterations);
+bool moray_iterations_keep(void *iterations, const moray_progress *progress); // a moray_progress_fn
+void moray_iterations_free(struct iterations *iterations);                    // NULL is allowed
 
 // Fills x[columns] from the guess; integrals are those of the guess itself. Error: MORAY_INPUT, MORAY_NUMERIC,
 // MORAY_MEMORY.

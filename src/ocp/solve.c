@@ -212,14 +212,18 @@ static void keep_best(struct campaign *c, moray_solution **solution)
     }
     (*solution)->history = c->history;
     (*solution)->meshes = c->tried;
+    (*solution)->iterations = c->iterations;
 }
 
 static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
 {
     const int room = c->settings->max_refinements + 1 + most_widenings + most_escapes + most_moves;
     c->history = calloc((size_t)room, sizeof *c->history);
-    if (!c->history)
+    c->iterations = calloc(1, sizeof *c->iterations);
+    if (!c->history || !c->iterations)
         return moray_error(MORAY_MEMORY, "no memory for a history of %d meshes", room);
+    c->iterations->progress = c->settings->progress;
+    c->iterations->observer = c->settings->observer;
     MORAY_TRY(moray_campaign_solve(c, guess, solution));
     const moray_status status = refine_until_good(c, solution);
     keep_best(c, solution);
@@ -245,6 +249,7 @@ moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, c
         if (*solution)
             moray_campaign_drop(*solution);
         free(c.history);
+        moray_iterations_free(c.iterations);
         *solution = NULL;
     }
     return status;

@@ -29,8 +29,9 @@ moray_status moray_allocate_iterate(moray_solution *solution)
     return moray_ok();
 }
 
-static moray_nlp_settings solver_settings(const moray_settings *settings, bool warm)
+static moray_nlp_settings solver_settings(const moray_solution *solution, bool warm)
 {
+    const moray_settings *settings = &solution->settings;
     return (moray_nlp_settings){.tolerance = settings->tolerance,
                                 .max_iterations = settings->max_iterations,
                                 .max_cpu_seconds = settings->max_cpu_seconds,
@@ -41,8 +42,8 @@ static moray_nlp_settings solver_settings(const moray_settings *settings, bool w
                                 .timing = settings->timing,
                                 .ipopt = settings->ipopt,
                                 .n_ipopt = settings->n_ipopt,
-                                .progress = settings->progress,
-                                .observer = settings->observer};
+                                .progress = moray_iterations_keep,
+                                .observer = solution->iterations};
 }
 
 bool moray_is_solved(const moray_solution *solution)
@@ -95,8 +96,9 @@ static bool is_out_of_scale(const moray_solution *solution)
 static moray_status solve_in_scale(moray_solution *solution)
 {
     struct transcription *t = solution->transcription;
-    const moray_nlp_settings settings = solver_settings(&solution->settings, true);
+    const moray_nlp_settings settings = solver_settings(solution, true);
     const moray_nlp_info first = solution->info;
+    MORAY_TRY(moray_iterations_room(solution->iterations, settings.max_iterations));
     MORAY_TRY(moray_choose_scales(t, solution->iterate.x, true));
     MORAY_TRY(moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info));
     solution->info.iterations += first.iterations;
@@ -108,7 +110,8 @@ static moray_status solve_in_scale(moray_solution *solution)
 static moray_status run_solver(moray_solution *solution, const moray_guess *guess, bool warm)
 {
     struct transcription *t = solution->transcription;
-    moray_nlp_settings settings = solver_settings(&solution->settings, warm);
+    moray_nlp_settings settings = solver_settings(solution, warm);
+    MORAY_TRY(moray_iterations_room(solution->iterations, settings.max_iterations));
     if (warm && guess->along_time) // the start has moved
         settings.barrier = solution->settings.barrier;
     MORAY_TRY(moray_fill_guess(t, guess, solution->iterate.x));
@@ -171,6 +174,7 @@ static moray_status solve_once(struct campaign *c, const moray_guess *guess, mor
     if (!solution)
         return moray_error(MORAY_MEMORY, "no memory for a solution");
     solution->settings = *c->settings;
+    solution->iterations = c->iterations;
     if (c->settings->max_cpu_seconds > 0)
         solution->settings.max_cpu_seconds = fmax(c->settings->max_cpu_seconds - c->spent, least_seconds);
     moray_status status = transcribe_at_guess(c, guess, solution);
@@ -178,7 +182,7 @@ static moray_status solve_once(struct campaign *c, const moray_guess *guess, mor
         status = run(solution, guess);
     c->spent += solution->info.cpu_seconds;
     if (moray_failed(status))
-        moray_solution_free(solution);
+        moray_campaign_drop(solution);
     else
         *result = solution;
     return status;
@@ -212,6 +216,7 @@ void moray_campaign_record(struct campaign *c, moray_solution *solution, double 
 void moray_campaign_drop(moray_solution *solution)
 {
     solution->history = NULL;
+    solution->iterations = NULL;
     moray_solution_free(solution);
 }
 
@@ -297,5 +302,6 @@ void moray_solution_free(moray_solution *solution)
     moray_transcription_free(solution->transcription);
     free(solution->iterate.x);
     free(solution->history);
+    moray_iterations_free(solution->iterations);
     free(solution);
 }

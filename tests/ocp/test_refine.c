@@ -407,6 +407,53 @@ static void test_limits(void)
     moray_ocp_free(ocp);
 }
 
+static bool count_iterations(void *observer, const moray_progress *progress)
+{
+    (void)progress;
+    ++*(int *)observer;
+    return true;
+}
+
+// What is told of iterations and intervals: of every mesh, and as the user was told; the worst error is that of the
+// record.
+static void test_what_is_told(void)
+{
+    moray_ocp *ocp = hypersensitive(50, &two);
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution = NULL;
+    int told = 0, n, meshes, begun = 0, intervals = 0;
+    settings.max_refinements = 5;
+    settings.progress = count_iterations;
+    settings.observer = &told;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solve");
+    const moray_progress *at = moray_solution_iterations(solution, &n);
+    const moray_mesh_record *history = moray_solution_history(solution, &meshes);
+    for (int k = 0; k < n; k++)
+        begun += at[k].iteration == 0;
+    CHECK(n == told && n > 0, "%d iterations are kept, %d were told", n, told);
+    CHECK(begun >= meshes && meshes > 1, "of %d meshes in %d solves", meshes, begun);
+    CHECK(at[n - 1].iteration == history[meshes - 1].iterations, "to the last of the last");
+    double worst = 0;
+    for (int p = 0; p < 2; p++) {
+        const int count = moray_solution_intervals(solution, p, NULL);
+        double *edge = calloc((size_t)(2 * count) + 1, sizeof *edge), *error = edge + count + 1, t0, tf;
+        moray_solution_times(solution, p, &t0, &tf);
+        CHECK(moray_solution_intervals(solution, p, edge) == count && edge[0] == t0 && edge[count] == tf,
+              "phase %d has %d intervals from end to end", p, count);
+        CHECK_OK(moray_solution_interval_errors(solution, p, error), "errors");
+        for (int k = 0; k < count; k++) {
+            worst = fmax(worst, error[k]);
+            CHECK(edge[k] < edge[k + 1], "interval %d has a length", k);
+        }
+        intervals += count;
+        free(edge);
+    }
+    CHECK(intervals == history[meshes - 1].intervals, "all %d", intervals);
+    CHECK(worst == history[meshes - 1].error, "worst error %g, on record %g", worst, history[meshes - 1].error);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     const char *schemes[] = {"trapezoid", "hermite-simpson", "radau3", "gauss2"};
@@ -425,5 +472,6 @@ int main(void)
     test_path_constraint_between_nodes();
     test_interrupted();
     test_limits();
+    test_what_is_told();
     return tap_done();
 }
