@@ -52,6 +52,11 @@ number() {
         seen && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
 }
 
+# robots FOLDER: how many swim on its page.
+robots() {
+    grep -o '"colour":[0-9]' "$1/report.html" | wc -l
+}
+
 # rung MODEL: its gain in the first ladder of the JSON; BLOCK MODEL: in the first after BLOCK opens.
 rung() {
     [ $# -eq 1 ] && set -- . "$1"

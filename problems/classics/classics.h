@@ -6,8 +6,9 @@
 
 #include "moray/ocp.h"
 
-// The textbook's start: x and u of a phase at tau in [0, 1] of its guessed duration. Returns the time. Asked phase after
-// phase at tau = 0, 1 / CLASSIC_PARTS, ..., 1; x arrives as it was left the time before, so that it can be simulated.
+// The textbook's start: x and u of a phase at tau in [0, 1] of its guessed duration. Returns the time. Asked phase
+// after phase at tau = 0, 1 / CLASSIC_PARTS, ..., 1; x arrives as it was left the time before, so that it can be
+// simulated.
 enum { CLASSIC_PARTS = 128 };
 typedef double classic_start_fn(int phase, double tau, double *x, double *u, const void *data);
 
@@ -70,10 +71,21 @@ moray_status classic_first_solution(const struct classic *classic, const moray_s
 // Recommended settings: the ones to start from.
 moray_settings classic_settings(const struct classic *classic);
 
+// Who is shown a solution that is solved before it is freed; an error ends classic_solve with it.
+typedef struct classic_viewer {
+    moray_status (*view)(const struct classic *classic, const moray_ocp *ocp, const moray_solution *solution,
+                         void *self);
+    void *self;
+} classic_viewer;
+
 // Solves one from its own start; max_refinements below CLASSIC_MOST_MESHES. diagnosis, unless NULL, receives up to
 // `size` characters of why it did not converge. Errors: those of moray_solve and moray_certify.
 moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
                            const moray_integrator *integrator, struct classic_result *result, char *diagnosis,
                            int size);
+// The same with a viewer, or NULL.
+moray_status classic_solve_viewed(const struct classic *classic, const moray_settings *settings,
+                                  const moray_integrator *integrator, const classic_viewer *viewer,
+                                  struct classic_result *result, char *diagnosis, int size);
 
 #endif

@@ -175,6 +175,13 @@ static void read_solution(const struct classic *classic, const moray_solution *s
 moray_status classic_solve(const struct classic *classic, const moray_settings *settings,
                            const moray_integrator *integrator, struct classic_result *result, char *diagnosis, int size)
 {
+    return classic_solve_viewed(classic, settings, integrator, NULL, result, diagnosis, size);
+}
+
+moray_status classic_solve_viewed(const struct classic *classic, const moray_settings *settings,
+                                  const moray_integrator *integrator, const classic_viewer *viewer,
+                                  struct classic_result *result, char *diagnosis, int size)
+{
     const double start = moray_processor_clock();
     *result = (struct classic_result){0};
     moray_ocp *ocp;
@@ -194,6 +201,8 @@ moray_status classic_solve(const struct classic *classic, const moray_settings *
         result->better =
             result->certificate.pass && (classic->maximised ? result->difference > 0 : result->difference < 0);
     }
+    if (!moray_failed(status) && viewer && result->outcome == MORAY_NLP_SOLVED)
+        status = viewer->view(classic, ocp, solution, viewer->self);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
     return status;

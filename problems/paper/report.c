@@ -42,11 +42,46 @@ void paper_json_end(moray_json *json, moray_status status)
         moray_json_text(json, "why", status.text);
 }
 
+// The paper's gait on both of its models. What cannot be swum, as with some misprints, is not shown.
+static moray_status make_scene(const paper *p, moray_swim_scene *scene)
+{
+    static const char *const names[] = {"control-oriented model", "first-principles model"};
+    const double apart = 8 * p->robot->l;
+    moray_gait_trial trial;
+    scene->scene.title = "The gait on both models";
+    scene->scene.text = "The same gait from rest on the same water, simulated, side by side.";
+    if (moray_failed(moray_gait_trial_run(&p->rig, &p->gait[MORAY_CONTROL_ORIENTED], MORAY_CONTROL_ORIENTED, &trial)))
+        return moray_ok();
+    for (int model = 1; model >= 0; model--) {
+        const moray_swim_look look = {.name = names[model],
+                                      .colour = model ? MORAY_COLOUR_BEST : MORAY_COLOUR_BASELINE,
+                                      .width = 2 * p->settings->snake.geometry.a_e,
+                                      .aside = {0, model ? 0 : -apart}};
+        const moray_status status = moray_swim_scene_gait(scene, &look, &p->rig, &trial, (moray_model)model, 15);
+        if (status.code == MORAY_MEMORY)
+            return status;
+    }
+    for (int k = 0; k < scene->scene.n_bodies; k++)
+        scene->body[k].effort = NULL; // newton on one, newton metres on the other
+    return moray_ok();
+}
+
+static void judge(const paper_chapter *chapters, int n, moray_report *report, char *text, size_t size)
+{
+    int done = 0;
+    for (int i = 0; i < n; i++)
+        done += !moray_failed(chapters[i].status);
+    snprintf(text, size, "%d of %d studies done", done, n);
+    report->judged = text;
+    report->judgement = done == n ? MORAY_JUDGED_PASS : MORAY_JUDGED_FAIL;
+}
+
 moray_status paper_report(const paper *p, const paper_chapter *chapters, int n)
 {
     const moray_snake_options *snake = &p->settings->snake;
     moray_section section[PAPER_STUDIES];
-    char title[PAPER_STUDIES][80], failed[PAPER_STUDIES][400], text[200];
+    char title[PAPER_STUDIES][80], failed[PAPER_STUDIES][400], text[200], judged[60];
+    moray_swim_scene scene = {0};
     for (int i = 0; i < n; i++) {
         const paper_chapter *chapter = &chapters[i];
         snprintf(title[i], sizeof title[i], "%s: %s", chapter->study->name, chapter->study->summary);
@@ -60,9 +95,16 @@ moray_status paper_report(const paper *p, const paper_chapter *chapters, int n)
     snprintf(text, sizeof text, "%d links, current (%g, %g) m/s, theta_max %g deg, omega %g deg/s, delta %g deg",
              snake->robot.links, snake->current[0], snake->current[1], p->settings->theta_max / DEG,
              p->settings->omega / DEG, p->settings->delta / DEG);
-    const moray_report report = {.title = "A control-oriented model of underwater snake robots exposed to currents",
-                                 .text = text,
-                                 .sections = section,
-                                 .n_sections = n};
-    return moray_app_show(&p->settings->common, &(moray_results){.name = "paper", .json = p->json, .report = &report});
+    moray_report report = {.title = "A control-oriented model of underwater snake robots exposed to currents",
+                           .text = text,
+                           .scene = &scene.scene,
+                           .sections = section,
+                           .n_sections = n};
+    judge(chapters, n, &report, judged, sizeof judged);
+    moray_status status = p->settings->common.output ? make_scene(p, &scene) : moray_ok();
+    if (!moray_failed(status))
+        status =
+            moray_app_show(&p->settings->common, &(moray_results){.name = "paper", .json = p->json, .report = &report});
+    moray_swim_scene_free(&scene);
+    return status;
 }

@@ -219,9 +219,11 @@ moray_status simulate_report(const simulate_results *results)
     fill_run(run, results, &t);
     describe(run, results, text, sizeof text);
     if (run->common.output)
-        MORAY_TRY(moray_swim_scene_add(&scene, is_control(run) ? "control-oriented model" : "first-principles model",
-                                       &results->track, results->swimmer, 2 * run->snake.geometry.a_e,
-                                       (double[]){0, 0}));
+        MORAY_TRY(moray_swim_scene_add(
+            &scene,
+            &(moray_swim_look){.name = is_control(run) ? "control-oriented model" : "first-principles model",
+                               .width = 2 * run->snake.geometry.a_e},
+            &results->track, results->swimmer));
     scene.scene.title = "The robot swimming";
     const moray_report report = {
         .title = "simulate", .text = text, .scene = &scene.scene, .tables = t.table, .n_tables = 2};

@@ -8,6 +8,14 @@ moray_status steer_draw_figure(const steer_job *job, const moray_figure *figure)
     return moray_app_drawn(&job->common, job->name, moray_output_figure(job->common.output, figure));
 }
 
+// The plan, its plainest rival, and what lies between them.
+static moray_colour colour_of(const steer_trial *trial)
+{
+    static const moray_colour colours[] = {MORAY_COLOUR_BASELINE, MORAY_COLOUR_SECOND, MORAY_COLOUR_BEST};
+    _Static_assert(sizeof colours / sizeof *colours == STEER_CURVES, "one of each");
+    return colours[trial->law->curve - 1];
+}
+
 // ---- Over time -----------------------------------------------------------------------------------------------------
 
 static moray_status draw_offsets(const steer_job *job, const moray_curve *curves, int n)
@@ -38,12 +46,15 @@ static moray_status draw_over_time(const steer_job *job, const steer_trial *cons
         job->program->values(job, trials[i], track, value);
         for (int k = 0; k < track->n; k++)
             phi[k] = closed_loops[i].offset[k] / DEG;
-        values[i] = (moray_curve){.label = trials[i]->name, .x = track->t, .y = value, .n = track->n};
-        offset[i] = (moray_curve){.label = trials[i]->name, .x = track->t, .y = phi, .n = track->n};
+        values[i] = (moray_curve){
+            .label = trials[i]->name, .x = track->t, .y = value, .n = track->n, .colour = colour_of(trials[i])};
+        offset[i] = values[i];
+        offset[i].y = phi;
     }
     double *reference = data + 2 * n * most;
     const moray_swim_track *track = &closed_loops->track;
-    values[n] = (moray_curve){.label = "reference", .x = track->t, .y = reference, .n = track->n};
+    values[n] =
+        (moray_curve){.label = "reference", .x = track->t, .y = reference, .n = track->n, .colour = MORAY_COLOUR_LIMIT};
     figure.x_label = "time [s]";
     figure.over_time = true;
     figure.curves = values;
@@ -61,14 +72,18 @@ static moray_status draw_path(const steer_job *job, const steer_trial *const *tr
                               const moray_swim_closed_loop *closed_loops, int n)
 {
     const char *labels[STEER_CURVES];
+    moray_colour colours[STEER_CURVES];
     double x[STEER_POINTS], y[STEER_POINTS];
-    const moray_curve path = {.label = "path", .x = x, .y = y, .n = STEER_POINTS};
-    for (int k = 0; k < n; k++)
+    const moray_curve path = {
+        .label = "path asked for", .x = x, .y = y, .n = STEER_POINTS, .colour = MORAY_COLOUR_LIMIT};
+    for (int k = 0; k < n; k++) {
         labels[k] = trials[k]->name;
+        colours[k] = colour_of(trials[k]);
+    }
     if (job->program->path)
         job->program->path(job, x, y);
     return moray_app_drawn(&job->common, job->name,
-                           moray_swim_closed_loop_draw_path(job->common.output, closed_loops, labels, n,
+                           moray_swim_closed_loop_draw_path(job->common.output, closed_loops, labels, colours, n,
                                                             job->snake.current, job->program->path ? &path : NULL));
 }
 
@@ -76,12 +91,14 @@ static moray_status draw_path(const steer_job *job, const steer_trial *const *tr
 static moray_status make_scene(const steer_job *job, const steer_trial *const *trials,
                                const moray_swim_closed_loop *closed_loops, int n)
 {
-    const double width = 2 * job->snake.geometry.a_e, here[2] = {0, 0};
     double x[STEER_POINTS], y[STEER_POINTS];
     moray_status status = moray_ok();
     for (int k = n - 1; k >= 0 && !moray_failed(status); k--)
-        status = moray_swim_scene_add(job->scene, trials[k]->name, &closed_loops[k].track, closed_loops[k].swimmer,
-                                      width, here);
+        status = moray_swim_scene_add(job->scene,
+                                      &(moray_swim_look){.name = trials[k]->name,
+                                                         .colour = colour_of(trials[k]),
+                                                         .width = 2 * job->snake.geometry.a_e},
+                                      &closed_loops[k].track, closed_loops[k].swimmer);
     if (!moray_failed(status) && job->program->path) {
         job->program->path(job, x, y);
         status = moray_swim_scene_ask(job->scene, x, y, STEER_POINTS);

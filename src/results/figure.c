@@ -15,7 +15,17 @@ static const struct {
     {"#000000", "(14,5,3,5)", 6},  {"#CC79A7", "(7,4)", 4},  {"#E69F00", "(14,4,3,4,3,4)", 8},
     {"#56B4E9", "(20,4,7,4)", 11},
 };
-enum { N_LOOKS = sizeof looks / sizeof *looks };
+enum { N_LOOKS = sizeof looks / sizeof *looks, LIMIT_LOOK = 3 };
+
+static int look_of(const moray_curve *curve, int number)
+{
+    static const int named[] = {[MORAY_COLOUR_BEST] = 0,
+                                [MORAY_COLOUR_BASELINE] = 1,
+                                [MORAY_COLOUR_SECOND] = 2,
+                                [MORAY_COLOUR_THIRD] = 4,
+                                [MORAY_COLOUR_LIMIT] = LIMIT_LOOK};
+    return curve->colour == MORAY_COLOUR_BY_NUMBER ? number % N_LOOKS : named[curve->colour];
+}
 
 // A text in gnuplot's single quotes, where only the quote itself and a line's end mean something; quotes are appended
 // in double ones, for gnuplot cannot read two of them doubled.
@@ -53,16 +63,46 @@ static void write_data(FILE *script, const moray_curve *curve, int number)
     fputs("EOD\n", script);
 }
 
+static double half_cell(const double *at, int n)
+{
+    return (at[n - 1] - at[0]) / (n - 1) / 2;
+}
+
+// The field as rectangles of a light palette, on which curves show, and its lines of equal height.
+static void write_field(FILE *script, const moray_field *field)
+{
+    char x[32], y[32], z[32];
+    fputs("$field << EOD\n", script);
+    for (int i = 0; i < field->n_y; i++) {
+        for (int k = 0; k < field->n_x; k++) {
+            const double value = field->z[(size_t)i * (size_t)field->n_x + (size_t)k];
+            fprintf(script, "%s %s %s\n", moray_number_text(field->x[k], x), moray_number_text(field->y[i], y),
+                    isfinite(value) ? moray_number_text(value, z) : "NaN");
+        }
+        fputc('\n', script);
+    }
+    fputs("EOD\nset table $heights\nset contour base\nset cntrparam levels auto 10\nunset surface\n"
+          "splot $field using 1:2:3\nunset table\nunset contour\nset surface\n"
+          "set palette defined (0 '#ffffff', 1 '#cfe3f1', 2 '#86b9dc')\n",
+          script);
+    set_text(script, "cblabel", field->label);
+    fprintf(script, "set xrange [%.17g:%.17g]\nset yrange [%.17g:%.17g]\n",
+            field->x[0] - half_cell(field->x, field->n_x), field->x[field->n_x - 1] + half_cell(field->x, field->n_x),
+            field->y[0] - half_cell(field->y, field->n_y), field->y[field->n_y - 1] + half_cell(field->y, field->n_y));
+}
+
 static void write_curve(FILE *script, const moray_curve *curve, int number)
 {
-    const int look = number % N_LOOKS, every = curve->n > 15 ? curve->n / 15 : 1;
-    fprintf(script, "%s$curve%d using 1:2 ", number ? ", " : "plot ", number);
+    const int look = look_of(curve, number), every = curve->n > 15 ? curve->n / 15 : 1;
+    const double width = curve->colour == MORAY_COLOUR_LIMIT ? 1.2 : 2;
+    const char *dash = curve->dotted ? "(2,4)" : looks[look].dash;
+    fprintf(script, "$curve%d using 1:2 ", number);
     switch (curve->style) {
     case MORAY_CURVE_LINE:
-        fprintf(script, "with lines lw 2 dt %s", looks[look].dash);
+        fprintf(script, "with lines lw %g dt %s", width, dash);
         break;
     case MORAY_CURVE_MARKED:
-        fprintf(script, "with linespoints lw 2 ps 0.7 dt %s pt %d pi -%d", looks[look].dash, looks[look].marker, every);
+        fprintf(script, "with linespoints lw %g ps 0.7 dt %s pt %d pi -%d", width, dash, looks[look].marker, every);
         break;
     case MORAY_CURVE_POINTS:
         fprintf(script, "with points ps 0.7 pt %d", looks[look].marker);
@@ -71,7 +111,12 @@ static void write_curve(FILE *script, const moray_curve *curve, int number)
         fputs("with lines lw 6", script);
         break;
     }
-    fprintf(script, " lc rgb '%s' title ", looks[look].colour);
+    fprintf(script, " lc rgb '%s' ", looks[look].colour);
+    if (!curve->label) {
+        fputs("notitle", script);
+        return;
+    }
+    fputs("title ", script);
     quote(script, curve->label);
 }
 
@@ -120,7 +165,7 @@ static void write_log_axis(FILE *script, const moray_figure *figure, int axis)
     const char name = axis ? 'y' : 'x';
     double range[2];
     range_along(figure, axis, range);
-    fprintf(script, "set logscale %c\n", name);
+    fprintf(script, "set logscale %c\nset format %c '%% g'\n", name, name);
     if (!(range[0] > 0 && isfinite(range[1])))
         return;
     fprintf(script, "set %crange [%.17g:%.17g]\n", name, range[0] / margin, range[1] * margin);
@@ -144,12 +189,12 @@ static const struct {
 static int height_of(const moray_figure *figure)
 {
     const int usual = 4; // curves in the key
-    return 440 + (figure->n_curves > usual ? 18 * (figure->n_curves - usual) : 0);
+    return 458 + (figure->n_curves > usual ? 18 * (figure->n_curves - usual) : 0);
 }
 
 static double bottom_of(const moray_figure *figure)
 {
-    const double line = 18, axis = 70; // of the key; for the axis and its label
+    const double line = 18, axis = 88; // of the key; for the axis and its label
     return (axis + line * figure->n_curves) / height_of(figure);
 }
 
@@ -206,8 +251,17 @@ static void write_script(FILE *script, const moray_figure *figure)
     set_text(script, "ylabel", figure->y_label);
     for (int i = 0; i < figure->n_curves; i++)
         write_data(script, &figure->curves[i], i);
-    for (int i = 0; i < figure->n_curves; i++)
+    if (figure->field)
+        write_field(script, figure->field);
+    fputs("plot ", script);
+    if (figure->field)
+        fputs("$field using 1:2:3 with image pixels notitle, $heights using 1:2 with lines lw 0.7 lc rgb '#5a6b78' "
+              "notitle, ",
+              script);
+    for (int i = 0; i < figure->n_curves; i++) {
+        fputs(i ? ", " : "", script);
         write_curve(script, &figure->curves[i], i);
+    }
     fputc('\n', script);
     moray_c_locale_end(before);
 }

@@ -123,18 +123,32 @@ static void write_with_own_ids(FILE *page, const char *line, int number)
     }
 }
 
+// The element around a picture, named as the picture is.
+static void begin_figure(FILE *page, const char *svg)
+{
+    static const char mark[] = "aria-label=\"";
+    const char *name = strstr(svg, mark), *end = name ? strchr(name + sizeof mark - 1, '"') : NULL;
+    fputs("<figure class=\"scroll picture\" tabindex=\"0\"", page);
+    if (end)
+        fprintf(page, " %.*s\"", (int)(end - name), name);
+    fputs(">\n", page);
+}
+
 void moray_html_figure(FILE *page, FILE *picture, int number)
 {
     char *line = NULL;
     size_t room = 0;
     bool begun = false;
-    fputs("<figure class=\"scroll picture\" tabindex=\"0\">\n", page);
     rewind(picture);
     while (getline(&line, &room, picture) >= 0) { // a page has no room for an XML declaration
-        begun = begun || strncmp(line, "<svg", 4) == 0;
+        const bool begins = !begun && strncmp(line, "<svg", 4) == 0;
+        if (begins)
+            begin_figure(page, line);
+        begun = begun || begins;
         if (begun)
             write_with_own_ids(page, line, number);
     }
-    fputs("</figure>\n", page);
+    if (begun)
+        fputs("</figure>\n", page);
     free(line);
 }

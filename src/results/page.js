@@ -51,7 +51,7 @@
   if (scene.asked) line(scene.asked, { class: "asked", "vector-effect": "non-scaling-stroke", "stroke-width": 2 }, asked);
 
   const bodies = scene.bodies.map((body, k) => {
-    const group = make("g", { class: "body" + k }, robots), links = [], joints = [], forces = [];
+    const group = make("g", { class: "body" + body.colour }, robots), links = [], joints = [], forces = [];
     const trace = make("polyline", { class: "trace", "vector-effect": "non-scaling-stroke", "stroke-width": 1.5 }, group);
     for (let i = 0; i < body.at[0].length / 3; i++)
       links.push(make("line", { "stroke-width": body.width, "stroke-linecap": "round" }, group));
@@ -230,7 +230,8 @@
   follow.addEventListener("change", () => show(time));
   scrub.addEventListener("input", () => { run(false); show(Number(scrub.value)); });
   addEventListener("resize", () => show(time));
-  document.addEventListener("keydown", event => {
+  // Only where the scene has the focus: elsewhere the page is scrolled by the same keys.
+  document.getElementById("scene").addEventListener("keydown", event => {
     const own = event.target.closest && event.target.closest("input, select, button, a, summary, .scroll");
     if (own || event.ctrlKey || event.altKey || event.metaKey) return;
     const keys = { " ": () => run(!running), k: () => run(!running), ArrowRight: () => step(1), ArrowLeft: () => step(-1),

@@ -119,14 +119,30 @@ static void write_figures(FILE *page, const moray_output *output, const moray_re
 static void write_section(FILE *page, const moray_output *output, const moray_report *report,
                           const moray_section *section)
 {
-    fputs("<section>\n", page);
-    moray_html_element(page, "h2", section->title);
-    fputc('\n', page);
+    const int number = (int)(section - report->sections) + 1;
+    fprintf(page, "<section aria-labelledby=\"part%d\">\n<h2 id=\"part%d\">", number, number);
+    moray_html_text(page, section->title);
+    fputs("</h2>\n", page);
     moray_html_paragraphs(page, section->text);
     for (int i = 0; i < section->n_tables; i++)
         moray_html_table(page, &section->tables[i]);
     write_figures(page, output, report, section);
     fputs("</section>\n", page);
+}
+
+// Where there are many parts, the way to each.
+static void write_contents(FILE *page, const moray_report *report)
+{
+    const int few = 4;
+    if (report->n_sections < few)
+        return;
+    fputs("<nav aria-label=\"Contents\">\n<ul class=\"contents\">\n", page);
+    for (int i = 0; i < report->n_sections; i++) {
+        fprintf(page, "<li><a href=\"#part%d\">", i + 1);
+        moray_html_text(page, report->sections[i].title);
+        fputs("</a></li>\n", page);
+    }
+    fputs("</ul>\n</nav>\n", page);
 }
 
 static void write_judgement(FILE *page, const moray_report *report)
@@ -137,6 +153,26 @@ static void write_judgement(FILE *page, const moray_report *report)
     fprintf(page, "<p class=\"judged%s\">", report->judgement ? classes[report->judgement] : "");
     moray_html_text(page, report->judged);
     fputs("</p>\n", page);
+}
+
+static bool has_figures(const moray_output *output, const moray_report *report)
+{
+    for (int i = 0; moray_output_name(output, i); i++)
+        if (strstr(moray_output_name(output, i), ".svg") && !section_of(report, moray_output_name(output, i)))
+            return true;
+    return false;
+}
+
+// What belongs to no part.
+static void write_results(FILE *page, const moray_output *output, const moray_report *report)
+{
+    if (report->n_tables == 0 && !has_figures(output, report))
+        return;
+    fputs("<section aria-labelledby=\"results\">\n<h2 id=\"results\">Results</h2>\n", page);
+    for (int i = 0; i < report->n_tables; i++)
+        moray_html_table(page, &report->tables[i]);
+    write_figures(page, output, report, NULL);
+    fputs("</section>\n", page);
 }
 
 // ---- The page ------------------------------------------------------------------------------------------------------
@@ -167,11 +203,8 @@ static void write_page(FILE *page, const moray_output *output, const moray_repor
     fputs("</div>\n", page);
     if (report->scene && report->scene->frames > 1)
         moray_html_scene(page, report->scene);
-    fputs("<section aria-label=\"Results\">\n", page);
-    for (int i = 0; i < report->n_tables; i++)
-        moray_html_table(page, &report->tables[i]);
-    write_figures(page, output, report, NULL);
-    fputs("</section>\n", page);
+    write_contents(page, report);
+    write_results(page, output, report);
     for (int i = 0; i < report->n_sections; i++)
         write_section(page, output, report, &report->sections[i]);
     write_asked(page, output, report);

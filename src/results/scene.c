@@ -38,11 +38,18 @@ static void write_rows(FILE *page, const char *name, const double *values, int r
     fputc(']', page);
 }
 
-static void write_body(FILE *page, const moray_scene *scene, const moray_scene_body *body)
+// Of the page's style sheet: .body0, .body1, ...
+static int colour_of(const moray_scene *scene, int k)
+{
+    const moray_colour colour = scene->bodies[k].colour;
+    return colour == MORAY_COLOUR_BY_NUMBER ? k : (int)colour - (int)MORAY_COLOUR_BEST;
+}
+
+static void write_body(FILE *page, const moray_scene *scene, const moray_scene_body *body, int colour)
 {
     fputs("{\"name\":", page);
     write_string(page, body->name);
-    fprintf(page, ",\"length\":%.4f,\"width\":%.4f", body->length, body->width);
+    fprintf(page, ",\"colour\":%d,\"length\":%.4f,\"width\":%.4f", colour, body->length, body->width);
     if (body->lengths) {
         fputs(",\"lengths\":", page);
         write_numbers(page, body->lengths, body->links, 4);
@@ -94,7 +101,7 @@ static void write_data(FILE *page, const moray_scene *scene)
     fputs(",\"bodies\":[", page);
     for (int k = 0; k < scene->n_bodies; k++) {
         fputs(k ? "," : "", page);
-        write_body(page, scene, &scene->bodies[k]);
+        write_body(page, scene, &scene->bodies[k], colour_of(scene, k));
     }
     fputs("]}\n</script>\n", page);
 }
@@ -107,7 +114,7 @@ static void write_key(FILE *page, const moray_scene *scene)
         fprintf(page,
                 "<li><svg viewBox=\"0 0 20 8\" aria-hidden=\"true\"><line class=\"body%d\" x1=\"4\" y1=\"4\" x2=\"16\" "
                 "y2=\"4\" stroke-width=\"6\" stroke-linecap=\"round\"/></svg>",
-                k);
+                colour_of(scene, k));
         moray_html_text(page, scene->bodies[k].name);
         fputs("</li>\n", page);
         effort = effort || scene->bodies[k].effort;
@@ -145,9 +152,10 @@ void moray_html_scene(FILE *page, const moray_scene *scene)
           "<p id=\"scene-told\" aria-live=\"off\"></p>\n",
           page);
     write_key(page, scene);
-    fputs("<p class=\"hint\">Keys: space plays and pauses, left and right step, + and - change the speed, Home and "
-          "End, f "
-          "follows. To scale; the grid is fixed to the ground.</p>\n</section>\n",
-          page);
+    fputs(
+        "<p class=\"hint\">Keys, once the picture is clicked or reached by Tab: space plays and pauses, left and right "
+        "step, + and - change the speed, Home and End, f follows. To scale; the grid is fixed to the "
+        "ground.</p>\n</section>\n",
+        page);
     write_data(page, scene);
 }

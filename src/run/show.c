@@ -251,6 +251,12 @@ static moray_status write(const void *found, moray_output *output)
     return moray_run_write_multipliers(run);
 }
 
+static moray_status draw(const void *found, moray_output *output)
+{
+    const app_run *run = found;
+    return moray_solution_draw(run->solution, run->mesh_tol, run->app->time_unit, output);
+}
+
 static void print(const void *found, const moray_report *report)
 {
     (void)found;
@@ -269,10 +275,13 @@ moray_status moray_run_show(app_run *run)
                                  .text = moray_solution_diagnosis(run->solution),
                                  .tables = tables.table,
                                  .n_tables = tables.n};
-    const moray_status status = moray_app_show(
-        &run->common,
-        &(moray_results){
-            .name = run->name, .found = run, .summary = summarise, .print = print, .write = write, .report = &report});
+    const moray_status status = moray_app_show(&run->common, &(moray_results){.name = run->name,
+                                                                              .found = run,
+                                                                              .summary = summarise,
+                                                                              .print = print,
+                                                                              .write = write,
+                                                                              .draw = draw,
+                                                                              .report = &report});
     moray_run_tables_free(&tables);
     return status;
 }

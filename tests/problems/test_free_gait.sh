@@ -21,6 +21,7 @@ check "in words: $(grep '^In speed at the power' out)" grep -q "^In speed at the
 for file in summary.json trajectory.csv motion.csv series.csv report.html joints.svg link_angles.svg; do
     check "--out has $file" [ -s results/$file ]
 done
+check "its page shows the robots: $(robots results)" [ "$(robots results)" -eq 3 ]
 check "the gait (25) within the limits, without harmonics and with each more, all as fast as the one before" \
     eval '[ "$(rows 1 | wc -l)" = $((harmonics + 2)) ] && rows 1 | no_worse'
 check "and so on the first-principles model by simulation" eval 'rows 3 | no_worse'

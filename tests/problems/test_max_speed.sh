@@ -19,10 +19,12 @@ check "paper's gait, first-principles, $(number baseline validated)" \
           near "$(sed -n "s/.*\"power_W\":[ \t]*\([0-9.e-]*\).*/\1/p" block)" 0.2646 1e-4'
 check "a loss on the first-principles model is a negative gain" \
     awk -v g="$(number gain speed_percent_at_equal_power)" 'BEGIN { exit !(g < -1 && g > -20) }'
-for file in summary.json trajectory.csv start.svg report.html solution.moray; do
+for file in summary.json trajectory.csv start.svg ladder.svg shapes.svg joints.svg speed.svg power.svg torque.svg \
+    portrait.svg mesh.svg convergence.svg report.html solution.moray; do
     check "--out has $file" [ -s results/$file ]
 done
-check "nothing else" [ "$(ls -A results | wc -l)" -eq 13 ]
+check "its page shows the robots: $(robots results)" [ "$(robots results)" -eq 2 ]
+check "nothing else" [ "$(ls -A results | wc -l)" -eq 15 ]
 check "summary.json is what --json prints" cmp -s out results/summary.json
 check "the first line of trajectory.csv names and has units" \
     eval 'head -n 1 results/trajectory.csv | grep -q "^t \[s\],theta \[rad\],p_x \[m\]"'

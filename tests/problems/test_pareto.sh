@@ -23,6 +23,7 @@ check "and the fronts in words" [ "$(grep -c 'gaits win on all models; gains fro
 for file in summary.json report.html front.svg omega.svg delta.svg theta_max.svg taper.svg; do
     check "--out has $file" [ -s results/$file ]
 done
+check "its page shows the robots: $(robots results)" [ "$(robots results)" -eq 4 ]
 for model in control fp; do
     for kind in lateral eel free; do
         csv=results/${model}_$kind.csv

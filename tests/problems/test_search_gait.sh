@@ -26,10 +26,11 @@ check "the power is that of the paper's gait" near "$(optimum 1 power_W)" 0.2646
 check "its gain is 4.03 %" near "$(number gain speed_percent_at_equal_power)" 4.03 0.01
 check "both are stable" [ "$(grep -c '"stable":[[:space:]]*true' out)" = 2 ]
 check "the global search ends at the best" [ "$(optimum 1 global_ends_here)" = true ]
-for file in summary.json trajectory.csv ridge.svg report.html; do
+for file in summary.json trajectory.csv ridge.svg map.svg shapes.svg thrust.svg report.html; do
     check "--out has $file" [ -s results/$file ]
 done
-check "nothing else" [ "$(ls -A results | wc -l)" -eq 5 ]
+check "its page shows the robots: $(robots results)" [ "$(robots results)" -ge 2 ]
+check "nothing else" [ "$(ls -A results | wc -l)" -eq 13 ]
 check "summary.json is what --json prints" cmp -s out results/summary.json
 
 check "two processes find what one does" same_by_jobs --set random_starts=3 --set global=none

@@ -20,9 +20,10 @@ alike() {
 run --json --out results
 check "the gait's ladder: $(number verdict)" eval 'number verdict | grep -q "wins on all 15"'
 check "solved, certified, confirmed by solving again: $(cat err)" [ $code -eq 0 ]
-for file in summary.json trajectory.csv report.html; do
+for file in summary.json trajectory.csv shapes.svg mesh.svg convergence.svg report.html; do
     check "--out has $file" [ -s results/$file ]
 done
+check "its page shows the robots: $(robots results)" [ "$(robots results)" -eq 3 ]
 check "summary.json is what --json prints" cmp -s out results/summary.json
 for parameter in c_t c_n mu_n m_kg length_m power_W 'theta_max_deg, upper'; do
     for quantity in speed omega delta; do

@@ -269,6 +269,39 @@ static void test_log_axes(void)
     free(svg);
 }
 
+static bool has_stroke(const char *svg, const char *rgb)
+{
+    char stroke[40];
+    snprintf(stroke, sizeof stroke, "rgb(%s)", rgb);
+    return strstr(svg, stroke);
+}
+
+// One thing has one colour, whatever its place; a curve without a label is not in the key; a field has its lines of
+// equal height and no cell where it is not a number.
+static void test_colours_and_field(void)
+{
+    const double at[] = {0, 1, 2}, z[] = {0, 1, 2, 1, NAN, 3, 2, 3, 4};
+    const moray_curve some[] = {{.label = "limit", .x = at, .y = at, .n = 3, .colour = MORAY_COLOUR_LIMIT},
+                                {.x = at, .y = at + 1, .n = 2, .colour = MORAY_COLOUR_THIRD},
+                                {.label = "best", .x = at, .y = at, .n = 2, .colour = MORAY_COLOUR_BEST}};
+    const moray_field field = {.label = "height [m]", .x = at, .y = at, .z = z, .n_x = 3, .n_y = 3};
+    const moray_figure drawn = {.name = "colours", .title = "t", .curves = some, .n_curves = 3},
+                       map = {.name = "map", .title = "m", .curves = some, .n_curves = 3, .field = &field};
+    moray_output *output = open_in("colours");
+    CHECK_OK(moray_output_figure(output, &drawn), "drawn");
+    CHECK_OK(moray_output_figure(output, &map), "a field under it");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *svg = content("colours/colours.svg"), *other = content("colours/map.svg");
+    CHECK(has_stroke(svg, "  0,   0,   0") && has_stroke(svg, "204, 121, 167") && has_stroke(svg, "  0, 114, 178") &&
+              !has_stroke(svg, "213,  94,   0"),
+          "colours by meaning, not by place");
+    CHECK(!strstr(svg, "(null)") && !strstr(svg, "curve1"), "no label, no line in the key");
+    CHECK(strstr(other, "height [m]") && has_stroke(other, " 90, 107, 120"), "the field has its scale and its lines");
+    free(svg);
+    free(other);
+}
+
 static void test_failed_figure(void)
 {
     moray_output *output = open_in("without");
@@ -374,11 +407,11 @@ static void test_report_sections(void)
     char *page = content("sections/report.html"), *at = page;
     static const char *const order[] = {"<h1>Sea</h1>",
                                         ">other<",
-                                        "<h2>Wind &amp; weather</h2>",
+                                        ">Wind &amp; weather</h2>",
                                         "<p>One.</p>\n<p>Two &lt; three.</p>",
                                         "<caption>Forces</caption>",
                                         ">wind_speed<",
-                                        "<h2>Waves</h2>",
+                                        ">Waves</h2>",
                                         ">wave<",
                                         "What was asked</h2>"};
     for (unsigned i = 0; i < sizeof order / sizeof *order; i++) {
@@ -387,6 +420,24 @@ static void test_report_sections(void)
         at = found;
     }
     free(page);
+}
+
+// Of many parts the page has a list with the way to each; of few it has none.
+static void test_contents(void)
+{
+    const moray_section sections[] = {{.title = "A"}, {.title = "B"}, {.title = "C"}, {.title = "D < E"}};
+    for (int n = 3; n <= 4; n++) {
+        moray_output *output = open_in(n == 3 ? "few" : "many");
+        CHECK_OK(moray_output_report(output, &(moray_report){.title = "T", .sections = sections, .n_sections = n}),
+                 "report");
+        CHECK_OK(moray_output_commit(output), "commit");
+        moray_output_free(output);
+    }
+    char *few = content("few/report.html"), *many = content("many/report.html");
+    CHECK(!strstr(few, "<nav"), "three parts need no list");
+    CHECK(strstr(many, "<a href=\"#part4\">D &lt; E</a>") && strstr(many, "id=\"part4\""), "four have one");
+    free(few);
+    free(many);
 }
 
 int main(void)
@@ -402,10 +453,12 @@ int main(void)
     test_unwritable();
     test_figure();
     test_log_axes();
+    test_colours_and_field();
     test_failed_figure();
     test_bad_gnuplot();
     test_report();
     test_report_sections();
+    test_contents();
     snprintf(remove, sizeof remove, "rm -r %s", root);
     CHECK(system(remove) == 0, "clean up");
     return tap_done();

@@ -37,7 +37,7 @@ const light = rgb => 0.2126 * channel(rgb[0]) + 0.7152 * channel(rgb[1]) + 0.072
 const parts = text => (text.match(/[\d.]+/g) || []).map(Number);
 const examine = () => {
   const view = phone.contentWindow, page = phone.contentDocument, said = [];
-  const stage = page.getElementById("stage"), key = k => page.body.dispatchEvent(new view.KeyboardEvent("keydown", { key: k, bubbles: true, cancelable: true }));
+  const stage = page.getElementById("stage"), key = (k, on = stage) => on.dispatchEvent(new view.KeyboardEvent("keydown", { key: k, bubbles: true, cancelable: true }));
   const time = () => Number(stage.dataset.time), head = () => stage.querySelector("line").getAttribute("x1");
   said.push("plays=" + (time() > 0));
   said.push("overflow=" + (page.documentElement.scrollWidth - 390));
@@ -46,6 +46,9 @@ const examine = () => {
   key("ArrowRight"); said.push("steps=" + (time() > paused && head() !== there));
   const stepped = time(); key("ArrowLeft"); said.push("back=" + (time() < stepped));
   key("End"); said.push("end=" + time()); key("Home"); said.push("home=" + time());
+  key("End", page.body); key(" ", page.body); said.push("elsewhere_scrolls=" + (time() === 0 && page.getElementById("scene-play").textContent === "Play"));
+  const headed = [...page.querySelectorAll("table,svg[role=img]")].every(e => e.closest("#scene") || e.closest("section").querySelector("h2"));
+  said.push("headed=" + headed, "named=" + [...page.querySelectorAll("[tabindex]")].every(e => e.getAttribute("aria-label")));
   const cursor = page.querySelector("svg[data-time] .cursor"); said.push("cursor=" + (cursor !== null));
   let least = 99, where = "";
   for (const element of page.querySelectorAll("h1,h2,p,th,td,a,caption,dt,dd,pre,button,label,li,summary")) {
@@ -77,7 +80,7 @@ for ground in light dark; do
     fi
     browse examine.html 900
     check "$ground: the console is clean: $(head -1 console)" [ ! -s console ]
-    for what in plays pauses steps back cursor; do
+    for what in plays pauses steps back cursor elsewhere_scrolls headed named; do
         check "$ground: $what" [ "$(said $what)" = true ]
     done
     check "$ground: Home and End: $(said home), $(said end)" eval '[ "$(said home)" = 0 ] && [ "$(said end)" = 5 ]'

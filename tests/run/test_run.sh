@@ -29,7 +29,7 @@ done
 check "certificate passes" grep -q '"pass":.true' out
 check "summary.json is what --json prints" cmp out results/summary.json
 check "every figure by phase and unit, and nothing else" [ "$(ls -A results | tr '\n' ' ')" = \
-    "controls_1_to-the-gate.svg controls_2_beyond.svg costates.csv multipliers.csv report.html run.ini solution.moray states_1_to-the-gate.svg \
+    "controls_1_to-the-gate.svg controls_2_beyond.svg convergence.svg costates.csv mesh.svg multipliers.csv report.html run.ini solution.moray states_1_to-the-gate.svg \
 states_1_to-the-gate_2.svg states_2_beyond.svg states_2_beyond_2.svg summary.json trajectory.csv " ]
 check "columns with names and units, phases of the same names share them" \
     [ "$(head -n 1 results/trajectory.csv)" = 'phase,t [s],x [m],v [m/s],u [N]' ]

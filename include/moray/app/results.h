@@ -129,13 +129,34 @@ typedef enum {
     MORAY_CURVE_BODY
 } moray_curve_style; // body: a robot
 
-// Points (x[i * stride], y[i * stride]), i < n; a NaN interrupts the curve. stride 0 stands for 1.
+// One thing has one colour in all figures and in the scene of a report. BY_NUMBER: that of the curve's or the body's
+// place among the others.
+typedef enum {
+    MORAY_COLOUR_BY_NUMBER,
+    MORAY_COLOUR_BEST,     // blue: what is recommended, or came of it all
+    MORAY_COLOUR_BASELINE, // orange: what it is compared with
+    MORAY_COLOUR_SECOND,   // green and
+    MORAY_COLOUR_THIRD,    // purple: others
+    MORAY_COLOUR_LIMIT     // black, thin, dashed: limits, and what was asked for
+} moray_colour;
+
+// Points (x[i * stride], y[i * stride]), i < n; a NaN interrupts the curve. stride 0 stands for 1. A curve without a
+// label has no line in the key.
 typedef struct moray_curve {
     const char *label;
     const double *x, *y;
     int n, stride;
     moray_curve_style style;
+    moray_colour colour;
+    bool dotted; // in the place of the dashes of its colour
 } moray_curve;
+
+// Numbers z[n_y][n_x] over a grid, shown by colour and by lines of equal height below the curves; NaN: left blank.
+typedef struct moray_field {
+    const char *label; // what z is, with its unit
+    const double *x, *y, *z;
+    int n_x, n_y;
+} moray_field;
 
 // Curves differ in colour (Okabe and Ito's palette) and in dashes or markers, so that they survive a grey print.
 typedef struct moray_figure {
@@ -148,6 +169,7 @@ typedef struct moray_figure {
     int n_y_names;
     const moray_curve *curves;
     int n_curves;
+    const moray_field *field; // NULL: none
 } moray_figure;
 
 // Draws NAME.svg with gnuplot. Where gnuplot is missing or fails the output is as before the call and can be used on.
@@ -157,6 +179,7 @@ MORAY_API moray_status moray_output_figure(moray_output *output, const moray_fig
 // Bodies of rigid links moving in the plane, for the report to show: SI units, angles in rad. Everything is borrowed.
 typedef struct moray_scene_body {
     const char *name;
+    moray_colour colour; // not that of a limit
     int links;
     double length, width;  // of a link
     const double *lengths; // [links], where these differ; NULL: they do not

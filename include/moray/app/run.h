@@ -63,6 +63,12 @@ MORAY_API void moray_solver_line(const moray_solution *solution, const char *sch
                                  size_t size);
 MORAY_API void moray_certificate_line(const moray_certificate *certificate, char *text, size_t size);
 
+// Figures mesh.svg, the error of every interval beside the tolerance, of a solution that is solved, and
+// convergence.svg, what the solver told of its iterations. time_unit may be NULL. Error: MORAY_MEMORY, those of
+// moray_output_figure.
+MORAY_API moray_status moray_solution_draw(const moray_solution *solution, double tolerance, const char *time_unit,
+                                           moray_output *output);
+
 // ---- Interruption --------------------------------------------------------------------------------------------------
 
 // From now on the first SIGINT or SIGTERM only makes moray_interrupted true; the next one acts as it did before. Nothing

@@ -60,13 +60,13 @@ typedef struct moray_path_score {
 MORAY_API moray_path_score moray_swim_closed_loop_path_score(const moray_swim_closed_loop *closed_loop,
                                                              const moray_path *path, double reach);
 
-// Figures of n closed loops: path.svg, their paths over ground with the robot along the last, the current as an arrow,
-// and a path to be followed (NULL: none); joints.svg, joints at the tail, in the middle and at the head while the robot
-// steers most. Error: as moray_output_figure.
+// Figures of n closed loops: path.svg, their paths over ground in colours[n] with the robot along the last, the current
+// as an arrow, and a path to be followed (NULL: none); joints.svg, joints at the tail, in the middle and at the head
+// while the robot steers most. Error: as moray_output_figure.
 MORAY_API moray_status moray_swim_closed_loop_draw_path(moray_output *output,
                                                         const moray_swim_closed_loop *closed_loops,
-                                                        const char *const *labels, int n, const double current[2],
-                                                        const moray_curve *path);
+                                                        const char *const *labels, const moray_colour *colours, int n,
+                                                        const double current[2], const moray_curve *path);
 MORAY_API moray_status moray_swim_closed_loop_draw_joints(moray_output *output,
                                                           const moray_swim_closed_loop *closed_loop);
 

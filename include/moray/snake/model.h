@@ -217,6 +217,12 @@ MORAY_API void moray_swimmer_with_joints(const moray_swimmer *swimmer, const dou
 // dynamics are singular or not finite.
 MORAY_API bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *ubar, double *dx, double *u);
 
+// What the water does to the links of the first-principles model, along[N] and across[N] each [N]; with ubar NULL
+// without what their accelerations take (the added mass). False for the control-oriented model, which knows no such
+// forces of single links, and where the dynamics are singular or not finite.
+MORAY_API bool moray_swimmer_water_forces(moray_swimmer *swimmer, const double *x, const double *ubar, double *along,
+                                          double *across);
+
 // Power of the joints at efforts u and rates v_phi: at the terminals of its motors where the model has them, else sum
 // u_i v_phi,i [W].
 MORAY_API double moray_swimmer_power(const moray_swimmer *swimmer, const double *u, const double *v_phi);

@@ -22,17 +22,23 @@ typedef struct moray_swim_scene {
     int n_kept;
 } moray_swim_scene;
 
-// Adds the robot of a track, moved aside by so much [m]; the first one sets the times. With linear drag and equal links
-// the first-principles model shows it on the links: (2) without the added mass, in the current of the track, whose mean
-// is the scene's. `width` of a link [m]. What has no room
-// is left out. Error: MORAY_MEMORY.
-MORAY_API moray_status moray_swim_scene_add(moray_swim_scene *scene, const char *name, const moray_swim_track *track,
-                                            moray_swimmer *swimmer, double width, const double aside[2]);
+// How a robot is shown: its name and colour, the width of a link [m], and how far it is moved aside [m].
+typedef struct moray_swim_look {
+    const char *name;
+    moray_colour colour;
+    double width, aside[2];
+} moray_swim_look;
+
+// Adds the robot of a track; the first one sets the times. The first-principles model shows on its links what the water
+// does to them without their accelerations, drag above all, in the current of the track, whose mean is the scene's.
+// What has no room is left out. Error: MORAY_MEMORY.
+MORAY_API moray_status moray_swim_scene_add(moray_swim_scene *scene, const moray_swim_look *look,
+                                            const moray_swim_track *track, moray_swimmer *swimmer);
 
 // The same of a trial's gait on a model, from rest over the duration [s]. Error: those of moray_swim_run.
-MORAY_API moray_status moray_swim_scene_gait(moray_swim_scene *scene, const char *name, const moray_test_rig *rig,
-                                             const moray_gait_trial *trial, moray_model model, double duration,
-                                             double width, const double aside[2]);
+MORAY_API moray_status moray_swim_scene_gait(moray_swim_scene *scene, const moray_swim_look *look,
+                                             const moray_test_rig *rig, const moray_gait_trial *trial,
+                                             moray_model model, double duration);
 
 // Adds a number over time, values[track->n] at the times of the track. Error: MORAY_MEMORY.
 MORAY_API moray_status moray_swim_scene_tell(moray_swim_scene *scene, const char *name, const char *unit,

@@ -209,24 +209,57 @@ static void print(const void *found, const moray_report *report)
     }
 }
 
+static moray_status make_scene(const free_gait *run, moray_swim_scene *scene)
+{
+    const gait_job *job = &run->job;
+    char baseline[64];
+    scene->scene.title = "The freest motion swimming";
+    scene->scene.text = "All from rest on the same water, simulated, side by side.";
+    MORAY_TRY(gait_job_scene_add(job, scene, freest(run)->name, MORAY_COLOUR_BEST, &freest(run)->at.trial, 2));
+    MORAY_TRY(gait_job_scene_add(job, scene, "best gait (25)", MORAY_COLOUR_SECOND, &last_stage(job)->trial, 1));
+    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0);
+}
+
+static moray_judgement judge(const free_gait *run, char *text)
+{
+    int passed = 0;
+    for (int k = 0; k < run->n; k++)
+        passed += run->motion[k].at.certificate.pass;
+    return gait_job_judge(passed, run->n, text);
+}
+
+static moray_status show(const free_gait *run, const struct waves *waves, const moray_swim_scene *scene)
+{
+    char text[TEXT] = "", judged[80];
+    moray_table_row rows[ROWS], gains[MORAY_RUNGS];
+    find_words(run, text);
+    const moray_table tables[] = {motions_table(run, rows), ladder_table(run, gains), waves->table};
+    const moray_report report = {.title = "free_gait: what the sinusoid leaves on the table",
+                                 .judgement = judge(run, judged),
+                                 .judged = judged,
+                                 .text = text,
+                                 .scene = &scene->scene,
+                                 .tables = tables,
+                                 .n_tables = waves->table.n_columns > 0 ? 3 : 2};
+    return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
+                                                             .found = run,
+                                                             .summary = free_gait_summary,
+                                                             .print = print,
+                                                             .write = free_gait_write,
+                                                             .draw = free_gait_draw,
+                                                             .report = &report});
+}
+
 moray_status free_gait_report(gait_job *job)
 {
     const free_gait *run = (const free_gait *)job;
-    char text[TEXT] = "";
-    moray_table_row rows[ROWS], gains[MORAY_RUNGS];
     struct waves waves;
+    moray_swim_scene scene = {0};
     MORAY_TRY(make_waves(run, &waves));
-    find_words(run, text);
-    const moray_table tables[] = {motions_table(run, rows), ladder_table(run, gains), waves.table};
-    const moray_report report = {
-        .title = job->name, .text = text, .tables = tables, .n_tables = waves.table.n_columns > 0 ? 3 : 2};
-    const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
-                                                                              .found = run,
-                                                                              .summary = free_gait_summary,
-                                                                              .print = print,
-                                                                              .write = free_gait_write,
-                                                                              .draw = free_gait_draw,
-                                                                              .report = &report});
+    moray_status status = job->common.output ? make_scene(run, &scene) : moray_ok();
+    if (!moray_failed(status))
+        status = show(run, &waves, &scene);
+    moray_swim_scene_free(&scene);
     free(waves.rows);
     return status;
 }

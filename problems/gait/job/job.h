@@ -138,6 +138,8 @@ moray_status gait_job_demand(const gait_job *job, moray_model model, stage *at);
 void gait_job_stage_free(stage *at);
 void gait_job_free(gait_job *job);
 
+#define GAIT_MESH_TOLERANCE 1e-6
+
 // Known gaits of a model to start from.
 typedef struct gait_starts {
     moray_gait gait[3];
@@ -252,6 +254,9 @@ void gait_job_headline(const gait_job *job, char *text);
 const char *gait_job_kind(const gait_job *job, const stage *at);
 void gait_job_say_stage(const gait_job *job, const stage *at, char *text);
 
+// The line above a page, "Solved and certified: 3 of 3 gaits pass", into text[80].
+moray_judgement gait_job_judge(int passed, int n, char *text);
+
 // The words of report.html and its scene, the recommended gait beside the paper's; with --out alone. Error:
 // MORAY_MEMORY. Free the scene.
 typedef struct gait_job_page {
@@ -265,8 +270,21 @@ typedef struct gait_job_page {
 } gait_job_page;
 moray_status gait_job_page_new(gait_job *job, gait_job_page *page);
 
-// Figures of the recommended gait over a period, and of the ladder. Error: MORAY_MEMORY, those of moray_output_figure.
-moray_status gait_job_draw_gait(const gait_job *job, moray_output *output);
+// What a stage has for a colour, in figures and in the scene; the paper's gait is the baseline.
+moray_colour gait_job_colour(const gait_job *job, const stage *at);
+
+// Figures of a gait, `what` ("Optimum 1"), over a period: the body, joints, speed, power and efforts with their limits,
+// thrust along the body. Error: MORAY_MEMORY, those of moray_output_figure.
+moray_status gait_job_draw_gait(const gait_job *job, const char *what, const moray_gait_trial *trial,
+                                moray_output *output);
+
+// All figures of a job, as moray_results wants them. Error: the same.
+moray_status gait_job_draw(const void *job, moray_output *output);
+
+// Adds a gait to the scene of a page: the robot from rest on the job's model, `place` lengths of it aside across the
+// course. What cannot be swum or simulated is left out. Error: MORAY_MEMORY.
+moray_status gait_job_scene_add(const gait_job *job, moray_swim_scene *scene, const char *name, moray_colour colour,
+                                const moray_gait_trial *trial, int place);
 
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);

@@ -64,33 +64,36 @@ static void certify(const gait_job *job, gait_job_page *page)
         moray_text_add(page->certificates, sizeof page->certificates, "The %s. %s\n", gait_job_kind(job, at[k]), text);
     }
     page->pass = recommended(job)->certificate.pass;
-    if (failed)
-        snprintf(page->judged, sizeof page->judged, "Certificate failed for %d of %d gaits", failed, n);
-    else
-        snprintf(page->judged, sizeof page->judged, "Solved and certified: %d of %d gaits pass", n, n);
+    gait_job_judge(n - failed, n, page->judged);
     page->section[0] =
         (moray_section){.title = "Certificate", .text = page->certificates, .tables = &page->table, .n_tables = 1};
 }
 
-// A length of the robot apart, across the course, the one that is recommended in front.
-static moray_status make_scene(gait_job *job, gait_job_page *page)
+moray_status gait_job_scene_add(const gait_job *job, moray_swim_scene *scene, const char *name, moray_colour colour,
+                                const moray_gait_trial *trial, int place)
 {
     const moray_model model = job->snake.model;
+    const double duration = 15, apart = 6 * place * job->snake.robot.l, course = job->snake.course;
+    if (isnan(trial->steady[model].speed))
+        return moray_ok();
+    const moray_swim_look look = {.name = name,
+                                  .colour = colour,
+                                  .width = 2 * job->snake.geometry.a_e,
+                                  .aside = {-apart * sin(course), apart * cos(course)}};
+    const moray_status status = moray_swim_scene_gait(scene, &look, &job->rig, trial, model, duration);
+    return status.code == MORAY_MEMORY ? status : moray_ok();
+}
+
+// The one that is recommended in front.
+static moray_status make_scene(gait_job *job, gait_job_page *page)
+{
     const stage *at = recommended(job);
-    const double duration = 15, width = 2 * job->snake.geometry.a_e;
-    const double apart = 6 * job->snake.robot.l, course = job->snake.course;
-    char name[80], baseline[64];
+    char baseline[64];
     moray_swim_scene *scene = &page->scene;
     scene->scene.title = "The robot swimming";
     scene->scene.text = "Both from rest on the same water, simulated, side by side.";
-    snprintf(name, sizeof name, "%s", gait_job_kind(job, at));
-    if (!isnan(at->trial.steady[model].speed))
-        MORAY_TRY(moray_swim_scene_gait(scene, name, &job->rig, &at->trial, model, duration, width,
-                                        (double[]){-apart * sin(course), apart * cos(course)}));
-    if (!isnan(job->paper.steady[model].speed))
-        MORAY_TRY(moray_swim_scene_gait(scene, gait_job_baseline(job, baseline), &job->rig, &job->paper, model,
-                                        duration, width, (double[]){0, 0}));
-    return moray_ok();
+    MORAY_TRY(gait_job_scene_add(job, scene, gait_job_kind(job, at), gait_job_colour(job, at), &at->trial, 1));
+    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0);
 }
 
 moray_status gait_job_page_new(gait_job *job, gait_job_page *page)
@@ -102,8 +105,7 @@ moray_status gait_job_page_new(gait_job *job, gait_job_page *page)
     if (!job->common.output)
         return moray_ok();
     const moray_status status = make_scene(job, page);
-    if (!moray_failed(status) || status.code != MORAY_MEMORY)
-        return moray_ok(); // a gait that cannot be simulated is not shown
-    moray_swim_scene_free(&page->scene);
+    if (moray_failed(status))
+        moray_swim_scene_free(&page->scene);
     return status;
 }

@@ -65,7 +65,7 @@ moray_settings gait_job_settings(gait_job *job)
                             .linear_solver = job->common.linear_solver,
                             .ipopt = job->common.ipopt.at,
                             .n_ipopt = job->common.ipopt.n,
-                            .mesh_tolerance = 1e-6,
+                            .mesh_tolerance = GAIT_MESH_TOLERANCE,
                             .max_refinements = job->refinements,
                             .max_iterations = 1000,
                             .barrier = 1e-4, // the guess is an orbit, feasible but for the limits

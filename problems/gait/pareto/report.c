@@ -197,17 +197,41 @@ static void print(const void *found, const moray_report *report)
     for (int f = 0; f < run->fronts; f++)
         if (!repeats(&run->front[f]))
             moray_tables_print(&report->sections->tables[2 * f], 2, stdout);
-    printf("%s", report->sections->text);
+    printf("%s", report->text);
 }
 
-moray_status pareto_report(gait_job *job)
+// Of the last model: the fastest gaits of each kind, the thriftiest lateral one, the paper's.
+static moray_status make_scene(const pareto *run, moray_swim_scene *scene)
 {
-    const pareto *run = (const pareto *)job;
-    char text[text_size] = "";
+    const pareto_front *lateral = &run->front[run->fronts - run->fronts / (1 + (int)run->job.snake.model)];
+    const pareto_front *eel = lateral + 1;
+    const gait_job *job = &run->job;
+    char baseline[64];
+    scene->scene.title = "Ends of the fronts, swimming";
+    scene->scene.text = "All from rest on the same water, simulated, side by side.";
+    if (lateral->n > 0)
+        MORAY_TRY(gait_job_scene_add(job, scene, "fastest lateral gait", MORAY_COLOUR_BEST, &lateral->at[0].trial, 3));
+    if (eel->n > 0)
+        MORAY_TRY(gait_job_scene_add(job, scene, "fastest eel-like gait", MORAY_COLOUR_SECOND, &eel->at[0].trial, 2));
+    if (lateral->n > 1)
+        MORAY_TRY(gait_job_scene_add(job, scene, "lateral gait of the least power", MORAY_COLOUR_THIRD,
+                                     &last(lateral)->trial, 1));
+    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0);
+}
+
+static moray_judgement judge(const pareto *run, char *text)
+{
+    int n = 0, passed = 0;
+    for (int f = 0; f < run->fronts; f++)
+        for (int k = 0; k < run->front[f].n; k++, n++)
+            passed += run->front[f].at[k].certificate.pass;
+    return gait_job_judge(passed, n, text);
+}
+
+static moray_status show(const pareto *run, struct sheet *sheets, const moray_swim_scene *scene)
+{
+    char text[text_size] = "", judged[80];
     moray_table tables[2 * PARETO_FRONTS];
-    struct sheet *sheets = calloc(2 * PARETO_FRONTS, sizeof *sheets);
-    if (!sheets)
-        return moray_error(MORAY_MEMORY, "no memory for a report");
     find_words(run, text);
     for (int f = 0; f < run->fronts; f++) {
         fill_sheet(run, &run->front[f], &sheets[2 * f]);
@@ -215,16 +239,34 @@ moray_status pareto_report(gait_job *job)
         tables[2 * f] = sheets[2 * f].table;
         tables[2 * f + 1] = sheets[2 * f + 1].table;
     }
-    const moray_section section = {
-        .title = "Fronts", .text = text, .figures = "", .tables = tables, .n_tables = 2 * run->fronts};
-    const moray_report report = {.title = job->name, .sections = &section, .n_sections = 1};
-    const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
-                                                                              .found = run,
-                                                                              .summary = pareto_summary,
-                                                                              .print = print,
-                                                                              .write = pareto_write,
-                                                                              .draw = pareto_draw,
-                                                                              .report = &report});
+    const moray_section section = {.title = "Fronts", .figures = "", .tables = tables, .n_tables = 2 * run->fronts};
+    const moray_report report = {.title = "pareto: speed against power",
+                                 .judgement = judge(run, judged),
+                                 .judged = judged,
+                                 .text = text,
+                                 .scene = &scene->scene,
+                                 .sections = &section,
+                                 .n_sections = 1};
+    return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
+                                                             .found = run,
+                                                             .summary = pareto_summary,
+                                                             .print = print,
+                                                             .write = pareto_write,
+                                                             .draw = pareto_draw,
+                                                             .report = &report});
+}
+
+moray_status pareto_report(gait_job *job)
+{
+    const pareto *run = (const pareto *)job;
+    moray_swim_scene scene = {0};
+    struct sheet *sheets = calloc(2 * PARETO_FRONTS, sizeof *sheets);
+    moray_status status = sheets ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a report");
+    if (!moray_failed(status) && job->common.output)
+        status = make_scene(run, &scene);
+    if (!moray_failed(status))
+        status = show(run, sheets, &scene);
+    moray_swim_scene_free(&scene);
     free(sheets);
     return status;
 }

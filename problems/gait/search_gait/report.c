@@ -224,17 +224,24 @@ static void summarise(const void *found, moray_json *json)
 
 // ---- Files ---------------------------------------------------------------------------------------------------------
 
-static moray_status draw_ridge(const void *found, moray_output *output)
+static moray_status draw_ridge(const search_gait *run, moray_output *output)
 {
-    const search_gait *run = found;
     double at[SEARCH_GAIT_SHOWN], best[SEARCH_GAIT_SHOWN];
     for (int k = 0; k < run->shown; k++) {
         at[k] = run->optimum[k].gait.delta / DEG;
         best[k] = value_of(run, &run->optimum[k]);
     }
-    const moray_curve curves[] = {
-        {.label = "best gait of each phase shift", .x = run->ridge[0], .y = run->ridge[1], .n = SEARCH_GAIT_RIDGE},
-        {.label = "optima", .x = at, .y = best, .n = run->shown, .style = MORAY_CURVE_POINTS}};
+    const moray_curve curves[] = {{.label = "best gait of each phase shift",
+                                   .x = run->ridge[0],
+                                   .y = run->ridge[1],
+                                   .n = SEARCH_GAIT_RIDGE,
+                                   .colour = MORAY_COLOUR_LIMIT},
+                                  {.label = "optima",
+                                   .x = at,
+                                   .y = best,
+                                   .n = run->shown,
+                                   .style = MORAY_CURVE_POINTS,
+                                   .colour = MORAY_COLOUR_BEST}};
     const moray_figure figure = {.name = "ridge",
                                  .title = "The ridge: best gait within the limits for each phase shift",
                                  .x_label = "phase shift delta [deg]",
@@ -245,30 +252,77 @@ static moray_status draw_ridge(const void *found, moray_output *output)
     return moray_output_figure(output, &figure);
 }
 
+static moray_status draw(const void *found, moray_output *output)
+{
+    const search_gait *run = found;
+    MORAY_TRY(search_gait_draw_map(run, output));
+    MORAY_TRY(draw_ridge(run, output));
+    return gait_job_draw_gait(&run->job, "Optimum 1", &run->optimum[0].at.trial, output);
+}
+
+// The optima beside one another, and the paper's gait.
+static moray_status make_scene(const search_gait *run, moray_swim_scene *scene)
+{
+    static const moray_colour colours[] = {MORAY_COLOUR_BEST, MORAY_COLOUR_SECOND, MORAY_COLOUR_THIRD};
+    enum { most = sizeof colours / sizeof *colours };
+    const int n = run->shown < most ? run->shown : most;
+    char name[32], baseline[64];
+    scene->scene.title = "The optima swimming";
+    scene->scene.text = "All from rest on the same water, simulated, side by side.";
+    for (int k = 0; k < n; k++) {
+        snprintf(name, sizeof name, "optimum %d", k + 1);
+        MORAY_TRY(gait_job_scene_add(&run->job, scene, name, colours[k], &run->optimum[k].at.trial, n - k));
+    }
+    return gait_job_scene_add(&run->job, scene, gait_job_baseline(&run->job, baseline), MORAY_COLOUR_BASELINE,
+                              &run->job.paper, 0);
+}
+
 static moray_status write(const void *found, moray_output *output)
 {
     const search_gait *run = found;
     return gait_job_trajectory(&run->job, &run->optimum[0].at, output);
 }
 
-moray_status search_gait_report(search_gait *run)
+static moray_status show(search_gait *run, moray_swim_scene *scene)
 {
     struct tables t;
-    char text[TEXT] = "";
-    if (run->job.common.output)
-        MORAY_TRY(search_gait_ridge(run));
-    moray_ticker_end(&run->job.ticker);
+    char text[TEXT] = "", judged[80];
+    int passed = 0;
     make_tables(run, &t);
     say_found(run, text);
-    moray_text_add(text, TEXT, " ");
+    moray_text_add(text, TEXT, "\n");
     say_ladders(run, text);
     say_certificates(run, text);
-    const moray_report report = {.title = "search_gait", .text = text, .tables = t.table, .n_tables = TABLES};
+    for (int k = 0; k < run->shown; k++)
+        passed += run->optimum[k].at.certificate.pass;
+    const moray_report report = {.title = "search_gait: all optima within the limits",
+                                 .judgement = gait_job_judge(passed, run->shown, judged),
+                                 .judged = judged,
+                                 .text = text,
+                                 .scene = &scene->scene,
+                                 .tables = t.table,
+                                 .n_tables = TABLES};
     return moray_app_show(&run->job.common, &(moray_results){.name = "search_gait",
                                                              .found = run,
                                                              .summary = summarise,
                                                              .print = print,
                                                              .write = write,
-                                                             .draw = draw_ridge,
+                                                             .draw = draw,
                                                              .report = &report});
+}
+
+moray_status search_gait_report(search_gait *run)
+{
+    moray_swim_scene scene = {0};
+    moray_status status = moray_ok();
+    if (run->job.common.output) {
+        MORAY_TRY(search_gait_ridge(run));
+        MORAY_TRY(search_gait_map_new(run));
+        status = make_scene(run, &scene);
+    }
+    moray_ticker_end(&run->job.ticker);
+    if (!moray_failed(status))
+        status = show(run, &scene);
+    moray_swim_scene_free(&scene);
+    return status;
 }

@@ -15,7 +15,7 @@ static const moray_search_method global_methods[] = {MORAY_SEARCH_SLSQP, MORAY_S
 
 static const double KEPT = 1e-6; // violation of a limit, relative to it, that an optimum may have
 
-static double theta_max_of(const search_gait *run, const moray_gait *gait)
+double search_gait_theta_max(const search_gait *run, const moray_gait *gait)
 {
     return moray_theta_max_from_amplitude(&run->spec.robot, run->spec.model, gait->amplitude, gait->delta);
 }
@@ -92,8 +92,8 @@ static void search_locally(search_gait *run, descent *d)
 static bool same_gait(const search_gait *run, const moray_gait *a, const moray_gait *b)
 {
     const double angle = 0.5 * DEG;
-    return fabs(theta_max_of(run, a) - theta_max_of(run, b)) < angle && fabs(a->delta - b->delta) < angle &&
-           fabs(a->omega / b->omega - 1) < 0.01;
+    return fabs(search_gait_theta_max(run, a) - search_gait_theta_max(run, b)) < angle &&
+           fabs(a->delta - b->delta) < angle && fabs(a->omega / b->omega - 1) < 0.01;
 }
 
 // The optimum where this end belongs, a new one if it is none of those known; NULL when there are too many.
@@ -219,7 +219,7 @@ static moray_bounds around(moray_bounds limits, double value, double reach)
 static moray_gait_problem_spec nearby(const search_gait *run, const moray_gait *gait)
 {
     moray_gait_problem_spec spec = run->spec;
-    spec.limits.theta_max = around(spec.limits.theta_max, theta_max_of(run, gait), 2 * DEG);
+    spec.limits.theta_max = around(spec.limits.theta_max, search_gait_theta_max(run, gait), 2 * DEG);
     spec.limits.delta = around(spec.limits.delta, gait->delta, 4 * DEG);
     spec.limits.omega = around(spec.limits.omega, gait->omega, 0.1 * gait->omega);
     return spec;
@@ -297,7 +297,7 @@ static double best_at(search_gait *run, double delta, moray_gait *gait)
     moray_search_info info = {.violation = INFINITY};
     const moray_search_settings settings = local_settings(run);
     moray_gait_search *search;
-    const double theta_max = theta_max_of(run, gait);
+    const double theta_max = search_gait_theta_max(run, gait);
     spec.limits.delta = moray_fixed(delta);
     if (moray_failed(moray_gait_search_new(&search, &spec, run->job.common.scheme, run->job.common.intervals)))
         return NAN;

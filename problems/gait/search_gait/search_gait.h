@@ -10,6 +10,15 @@
 enum { SEARCH_GAIT_OPTIMA = 32, SEARCH_GAIT_SHOWN = 5 }; // kept; polished and shown
 enum { SEARCH_GAIT_RIDGE = 46 };                         // gaits of the figure
 
+enum { SEARCH_GAIT_COLUMNS = 25, SEARCH_GAIT_ROWS = 15 }; // of the map
+
+// Speed along the course at equal power [m/s], NaN where no omega within its limits has it, over phase shift and
+// link-angle amplitude [deg].
+typedef struct search_gait_map {
+    double delta[SEARCH_GAIT_COLUMNS], theta_max[SEARCH_GAIT_ROWS];
+    double speed[SEARCH_GAIT_ROWS][SEARCH_GAIT_COLUMNS];
+} search_gait_map;
+
 typedef struct optimum {
     moray_gait gait;          // the best of the ends here
     moray_orbit_result orbit; // its orbit
@@ -35,6 +44,7 @@ typedef struct search_gait {
     moray_search_info global;
     double seconds;                     // of the local searches
     double ridge[2][SEARCH_GAIT_RIDGE]; // phase shifts over their range [deg], the best value for each or NaN
+    search_gait_map map;
     // while searching
     const char *activity;
 } search_gait;
@@ -58,6 +68,12 @@ moray_status search_gait_run(search_gait *run);
 
 // Finds run->ridge. Error: MORAY_INTERRUPTED.
 moray_status search_gait_ridge(search_gait *run);
+
+// Finds run->map. Error: that of moray_parallel, MORAY_INTERRUPTED.
+moray_status search_gait_map_new(search_gait *run);
+moray_status search_gait_draw_map(const search_gait *run, moray_output *output); // error: as moray_output_figure
+
+double search_gait_theta_max(const search_gait *run, const moray_gait *gait); // [rad]
 
 // Table or JSON on standard output, and the files of --out. Error: MORAY_IO, MORAY_MEMORY.
 moray_status search_gait_report(search_gait *run);

@@ -226,29 +226,73 @@ static void print(const void *found, const moray_report *report)
     printf("\n\n");
     moray_tables_print(section->tables, section->n_tables, stdout);
     gait_job_headline(&run->job, text);
-    printf("%s%s\n", section->text, text);
+    printf("%s%s\n", report->text, text);
     moray_certificate_line(&last_stage(&run->job)->certificate, text, sizeof text);
     printf("%s\n", text);
+}
+
+// In the current that the gait is predicted for, or where there is no prediction in the job's own.
+static moray_status make_scene(const sensitivity *run, moray_swim_scene *scene)
+{
+    const sensitivity_forecast *forecast = &run->forecast;
+    gait_job there = run->job; // borrows all
+    char baseline[64];
+    scene->scene.text = "From rest on the same water, simulated, side by side.";
+    if (!forecast->asked || moray_failed(forecast->why)) {
+        scene->scene.title = "The fastest gait swimming";
+        MORAY_TRY(gait_job_scene_add(&there, scene, gait_job_kind(&run->job, last_stage(&run->job)), MORAY_COLOUR_BEST,
+                                     &last_stage(&run->job)->trial, 1));
+        return gait_job_scene_add(&there, scene, gait_job_baseline(&there, baseline), MORAY_COLOUR_BASELINE,
+                                  &there.paper, 0);
+    }
+    scene->scene.title = "In another current: the gait kept, predicted, solved again";
+    memcpy(there.rig.current, forecast->current, sizeof there.rig.current);
+    MORAY_TRY(gait_job_scene_add(&there, scene, "solved again", MORAY_COLOUR_SECOND, &forecast->trial[2], 2));
+    MORAY_TRY(gait_job_scene_add(&there, scene, "predicted", MORAY_COLOUR_BEST, &forecast->trial[1], 1));
+    return gait_job_scene_add(&there, scene, "kept", MORAY_COLOUR_BASELINE, &forecast->trial[0], 0);
+}
+
+static moray_status draw(const void *found, moray_output *output)
+{
+    const sensitivity *run = found;
+    MORAY_TRY(gait_job_draw_gait(&run->job, "The fastest gait", &last_stage(&run->job)->trial, output));
+    return moray_solution_draw(last_stage(&run->job)->solution, GAIT_MESH_TOLERANCE, "s", output);
+}
+
+static moray_status show(const sensitivity *run, sensitivity_findings *found, const moray_swim_scene *scene)
+{
+    char judged[80];
+    sensitivity_tables(run, found);
+    find_words(run, found);
+    const moray_section section = {
+        .title = "Sensitivities", .figures = "", .tables = found->table, .n_tables = found->tables};
+    const moray_report report = {.title = "sensitivity: how the fastest gait moves",
+                                 .judgement = gait_job_judge(last_stage(&run->job)->certificate.pass, 1, judged),
+                                 .judged = judged,
+                                 .text = found->text,
+                                 .scene = &scene->scene,
+                                 .sections = &section,
+                                 .n_sections = 1};
+    return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
+                                                             .found = run,
+                                                             .summary = summarise,
+                                                             .print = print,
+                                                             .write = write,
+                                                             .draw = draw,
+                                                             .report = &report});
 }
 
 moray_status sensitivity_report(gait_job *job)
 {
     const sensitivity *run = (const sensitivity *)job;
+    moray_swim_scene scene = {0};
     sensitivity_findings *found = calloc(1, sizeof *found);
-    if (!found)
-        return moray_error(MORAY_MEMORY, "no memory for a report");
-    sensitivity_tables(run, found);
-    find_words(run, found);
-    const moray_section section = {.title = "Sensitivities",
-                                   .text = found->text,
-                                   .figures = "",
-                                   .tables = found->table,
-                                   .n_tables = found->tables};
-    const moray_report report = {.title = job->name, .sections = &section, .n_sections = 1};
-    const moray_status status = moray_app_show(
-        &job->common,
-        &(moray_results){
-            .name = job->name, .found = run, .summary = summarise, .print = print, .write = write, .report = &report});
+    moray_status status = found ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a report");
+    if (!moray_failed(status) && job->common.output)
+        status = make_scene(run, &scene);
+    if (!moray_failed(status))
+        status = show(run, found, &scene);
+    moray_swim_scene_free(&scene);
     free(found);
     return status;
 }

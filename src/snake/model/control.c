@@ -121,4 +121,4 @@ static void links(const moray_robot *robot, const double *x, double *x_i, double
     }
 }
 
-const snake_model moray_control_model = {scratch_bytes, NULL, rest, joints, body, assemble, rates, pose, links};
+const snake_model moray_control_model = {scratch_bytes, NULL, rest, joints, body, assemble, rates, NULL, pose, links};

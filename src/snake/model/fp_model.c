@@ -96,6 +96,30 @@ static bool rates(const moray_robot *robot, const double current[2], const doubl
     return regular;
 }
 
+// (2): the forces but for what the accelerations take, and that.
+static bool water(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *along,
+                  double *across, void *memory)
+{
+    const int N = robot->links, half = N + 2;
+    fp_scratch *scratch = memory;
+    double *ddtheta = across, ddp[2];
+    for (int i = 0; i < N - 1; i++)
+        along[i] = ubar ? ubar[i] : 0;
+    const fp_motion_d motion = {
+        .theta = x, .dtheta = x + half, .v_x = x[half + N], .v_y = x[half + N + 1], .ubar = along};
+    if (!moray_fp_accelerations_d(&scratch->robot, current, &motion, scratch->link, ddtheta, ddp))
+        return false;
+    const fp_part alike = fp_part_alike(&scratch->robot);
+    for (int i = 0; i < N; i++) {
+        const fp_part *part = fp_part_of(&scratch->robot, i, scratch->robot.alike ? &alike : NULL);
+        const fp_link_d *link = &scratch->link[i];
+        const double taken = part->mu_n * (link->c * link->a.y - link->s * link->a.x) + part->mu_1 * ddtheta[i];
+        along[i] = link->f_t;
+        across[i] = link->f_n - (ubar ? taken : 0);
+    }
+    return true;
+}
+
 static moray_pose pose(const moray_robot *robot, const double *x)
 {
     const int N = robot->links;
@@ -134,4 +158,4 @@ static void links(const moray_robot *robot, const double *x, double *x_i, double
     }
 }
 
-const snake_model moray_fp_model = {scratch_bytes, prepare, rest, joints, body, assemble, rates, pose, links};
+const snake_model moray_fp_model = {scratch_bytes, prepare, rest, joints, body, assemble, rates, water, pose, links};

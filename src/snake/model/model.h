@@ -17,6 +17,9 @@ typedef struct snake_model {
     void (*assemble)(int N, const double *phi, const double *v_phi, const double body[MORAY_BODY_STATES], double *x);
     bool (*rates)(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *dx,
                   double *u, void *scratch);
+    // Forces of the water on the links; NULL: it knows none.
+    bool (*water)(const moray_robot *robot, const double current[2], const double *x, const double *ubar, double *along,
+                  double *across, void *scratch);
     moray_pose (*pose)(const moray_robot *robot, const double *x);
     void (*links)(const moray_robot *robot, const double *x, double *x_i, double *y_i, double *angle_i);
 } snake_model;

@@ -188,6 +188,15 @@ bool moray_swimmer_rates(moray_swimmer *swimmer, const double *x, const double *
            (u == NULL || all_finite(u, swimmer->robot.links - 1));
 }
 
+bool moray_swimmer_water_forces(moray_swimmer *swimmer, const double *x, const double *ubar, double *along,
+                                double *across)
+{
+    const snake_model *model = swimmer->model;
+    const int N = swimmer->robot.links;
+    return model->water && model->water(&swimmer->robot, swimmer->current, x, ubar, along, across, swimmer->scratch) &&
+           all_finite(along, N) && all_finite(across, N);
+}
+
 double moray_swimmer_power(const moray_swimmer *swimmer, const double *u, const double *v_phi)
 {
     const moray_motor *motor = &swimmer->robot.motor;

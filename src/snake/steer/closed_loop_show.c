@@ -42,8 +42,8 @@ static void make_arrow(const double current[2], const moray_curve *curves, int n
 }
 
 moray_status moray_swim_closed_loop_draw_path(moray_output *output, const moray_swim_closed_loop *closed_loops,
-                                              const char *const *labels, int n, const double current[2],
-                                              const moray_curve *path)
+                                              const char *const *labels, const moray_colour *colours, int n,
+                                              const double current[2], const moray_curve *path)
 {
     const moray_swim_closed_loop *last = &closed_loops[n - 1];
     double *x, *y, arrow_x[arrow_points], arrow_y[arrow_points];
@@ -64,13 +64,19 @@ moray_status moray_swim_closed_loop_draw_path(moray_output *output, const moray_
                                     .x = &closed_loops[k].track.pose->p_x,
                                     .y = &closed_loops[k].track.pose->p_y,
                                     .n = closed_loops[k].track.n,
-                                    .stride = sizeof(moray_pose) / sizeof(double)};
-    all[used++] = (moray_curve){
-        .label = "the robot on the last of these", .x = x, .y = y, .n = points, .style = MORAY_CURVE_BODY};
+                                    .stride = sizeof(moray_pose) / sizeof(double),
+                                    .colour = colours[k]};
+    all[used++] = (moray_curve){.label = "the robot on the last of these",
+                                .x = x,
+                                .y = y,
+                                .n = points,
+                                .style = MORAY_CURVE_BODY,
+                                .colour = colours[n - 1]};
     if (current[0] != 0 || current[1] != 0) {
         make_arrow(current, all, used, arrow_x, arrow_y);
         snprintf(label, sizeof label, "current, %.3g m/s", hypot(current[0], current[1]));
-        all[used++] = (moray_curve){.label = label, .x = arrow_x, .y = arrow_y, .n = arrow_points};
+        all[used++] =
+            (moray_curve){.label = label, .x = arrow_x, .y = arrow_y, .n = arrow_points, .colour = MORAY_COLOUR_THIRD};
     }
     status = moray_output_figure(output, &(moray_figure){.name = "path",
                                                          .title = "Path over ground",

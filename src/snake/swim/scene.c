@@ -60,45 +60,34 @@ static void mix(const double *table, int columns, int k, double part, double *to
         to[i] = (1 - part) * row[i] + part * row[i + columns];
 }
 
-// Linear drag of (2) on the links in a state of the first-principles model: the centres move as the state's velocities
-// tell, by differences of the links' places, in the current V. scratch[2 (2N+4) + 6N].
-static void drag(const moray_swimmer *swimmer, const double *x, const double V[2], const double *places,
-                 double *scratch, double *force)
+// What the water does to the links without their accelerations, in the plane, in the current V. scratch[2 N].
+static void drag(moray_swimmer *swimmer, const double *x, const double V[2], const double *places, double *scratch,
+                 double *force)
 {
-    const moray_robot *robot = moray_swimmer_robot(swimmer);
-    const int N = robot->links, half = N + 2;
-    const double h = 1e-6;
-    double *moved = scratch, *links = scratch + 2 * half;
-    memcpy(moved, x, (size_t)(2 * half) * sizeof *x);
-    for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < half; i++)
-            moved[i] = x[i] + (side ? h : -h) * x[half + i];
-        double *at = links + 3 * N * side;
-        moray_swimmer_links(swimmer, moved, at, at + N, at + 2 * N);
-    }
+    const int N = moray_swimmer_robot(swimmer)->links;
+    double *along = scratch, *across = scratch + N, kept[2];
+    moray_swimmer_current(swimmer, kept);
+    moray_swimmer_set_current(swimmer, V[0], V[1]);
+    const bool known = moray_swimmer_water_forces(swimmer, x, NULL, along, across);
     for (int i = 0; i < N; i++) {
-        const double v_x = (links[3 * N + i] - links[i]) / (2 * h) - V[0];
-        const double v_y = (links[4 * N + i] - links[N + i]) / (2 * h) - V[1];
         const double c = cos(places[3 * i + 2]), s = sin(places[3 * i + 2]);
-        const double along = -robot->c_t * (c * v_x + s * v_y), across = -robot->c_n * (c * v_y - s * v_x);
-        force[2 * i] = c * along - s * across;
-        force[2 * i + 1] = s * along + c * across;
+        force[2 * i] = known ? c * along[i] - s * across[i] : 0;
+        force[2 * i + 1] = known ? s * along[i] + c * across[i] : 0;
     }
+    moray_swimmer_set_current(swimmer, kept[0], kept[1]);
 }
 
 static bool shows_drag(const moray_swimmer *swimmer)
 {
-    const moray_hydrodynamics *hydro = &moray_swimmer_robot(swimmer)->hydro;
-    return moray_swimmer_model(swimmer) == MORAY_FIRST_PRINCIPLES && hydro->drag == MORAY_DRAG_LINEAR &&
-           hydro->rotation == MORAY_ROTATION_PAPER && !moray_swimmer_robot(swimmer)->link;
+    return moray_swimmer_model(swimmer) == MORAY_FIRST_PRINCIPLES;
 }
 
 struct frames {
     double *at, *effort, *force, *scratch, *lengths; // force NULL: none
 };
 
-static void fill(const moray_scene *scene, const moray_swim_track *track, const moray_swimmer *swimmer,
-                 const double aside[2], const struct frames *to)
+static void fill(const moray_scene *scene, const moray_swim_track *track, moray_swimmer *swimmer, const double aside[2],
+                 const struct frames *to)
 {
     const int N = moray_swimmer_robot(swimmer)->links;
     double *x = to->scratch, *links = x + track->n_states, *rest = links + 3 * N, V[2], part;
@@ -142,8 +131,8 @@ static void say_effort(moray_swim_scene *made, const moray_swimmer *swimmer, con
                  control ? "N" : "N m");
 }
 
-moray_status moray_swim_scene_add(moray_swim_scene *made, const char *name, const moray_swim_track *track,
-                                  moray_swimmer *swimmer, double width, const double aside[2])
+moray_status moray_swim_scene_add(moray_swim_scene *made, const moray_swim_look *look, const moray_swim_track *track,
+                                  moray_swimmer *swimmer)
 {
     const moray_robot *robot = moray_swimmer_robot(swimmer);
     const int N = robot->links, body = made->scene.n_bodies;
@@ -156,20 +145,21 @@ moray_status moray_swim_scene_add(moray_swim_scene *made, const char *name, cons
                               .effort = keep(made, frames * (links - 1)),
                               .force = shows_drag(swimmer) ? keep(made, frames * 2 * links) : NULL,
                               .lengths = keep(made, links),
-                              .scratch = keep(made, 3 * (size_t)track->n_states + 9 * links)};
+                              .scratch = keep(made, (size_t)track->n_states + 5 * links)};
     if (!to.at || !to.effort || !to.scratch || !to.lengths || (shows_drag(swimmer) && !to.force))
         return no_memory();
-    fill(&made->scene, track, swimmer, aside, &to);
+    fill(&made->scene, track, swimmer, look->aside, &to);
     for (int i = 0; i < N; i++)
         to.lengths[i] = 2 * moray_swimmer_half_length(swimmer, i);
     const size_t settled = frames / 2; // the first push from rest is left out of the scale
     say_effort(made, swimmer, to.effort + settled * (links - 1), (frames - settled) * (links - 1));
-    snprintf(made->name[body], sizeof *made->name, "%s", name);
+    snprintf(made->name[body], sizeof *made->name, "%s", look->name);
     made->body[body] = (moray_scene_body){.name = made->name[body],
+                                          .colour = look->colour,
                                           .links = N,
                                           .length = 2 * robot->l,
                                           .lengths = robot->link ? to.lengths : NULL,
-                                          .width = fmin(width, 1.6 * robot->l),
+                                          .width = fmin(look->width, 1.6 * robot->l),
                                           .at = to.at,
                                           .effort = to.effort,
                                           .force = to.force};
@@ -178,9 +168,8 @@ moray_status moray_swim_scene_add(moray_swim_scene *made, const char *name, cons
     return moray_ok();
 }
 
-moray_status moray_swim_scene_gait(moray_swim_scene *made, const char *name, const moray_test_rig *rig,
-                                   const moray_gait_trial *trial, moray_model model, double duration, double width,
-                                   const double aside[2])
+moray_status moray_swim_scene_gait(moray_swim_scene *made, const moray_swim_look *look, const moray_test_rig *rig,
+                                   const moray_gait_trial *trial, moray_model model, double duration)
 {
     moray_swimmer *swimmer = rig->swimmer[model];
     const moray_gait_change change = {0, trial->gait[model]};
@@ -204,7 +193,7 @@ moray_status moray_swim_scene_gait(moray_swim_scene *made, const char *name, con
         status = moray_swim_run(swimmer, &rig->settings.sim, &plan, x, NULL);
     }
     if (!moray_failed(status))
-        status = moray_swim_scene_add(made, name, &track, swimmer, width, aside);
+        status = moray_swim_scene_add(made, look, &track, swimmer);
     free(times);
     moray_swim_track_free(&track);
     return status;

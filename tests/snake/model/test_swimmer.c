@@ -230,6 +230,34 @@ static void check_on_gait(random_seed *seed, moray_model model, int N)
     moray_swimmer_free(swimmer);
 }
 
+// The water is all that moves the whole: its forces over the links are mass times acceleration. At rest a current
+// pushes each link by its drag alone.
+static void check_water(random_seed *seed, int N)
+{
+    const moray_robot robot = random_robot(seed, N);
+    moray_swimmer *swimmer = make(&robot, MORAY_FIRST_PRINCIPLES), *other = make(&robot, MORAY_CONTROL_ORIENTED);
+    double x[MAX_STATES], dx[MAX_STATES], ubar[MAX_LINKS], along[MAX_LINKS], across[MAX_LINKS], sum[2] = {0}, mass = 0;
+    random_vector(seed, 1, 2 * N + 4, x);
+    random_vector(seed, 1, N - 1, ubar);
+    moray_swimmer_set_current(swimmer, 0.3, -0.2);
+    CHECK(moray_swimmer_rates(swimmer, x, ubar, dx, NULL), "regular");
+    CHECK(moray_swimmer_water_forces(swimmer, x, ubar, along, across), "the water's forces on %d links", N);
+    for (int i = 0; i < N; i++) {
+        sum[0] += along[i] * cos(x[i]) - across[i] * sin(x[i]);
+        sum[1] += along[i] * sin(x[i]) + across[i] * cos(x[i]);
+        mass += moray_robot_link(&robot, i).m;
+    }
+    CHECK_NEAR(sum[0], mass * dx[2 * N + 2], 1e-11 * (1 + fabs(sum[0])), "along x");
+    CHECK_NEAR(sum[1], mass * dx[2 * N + 3], 1e-11 * (1 + fabs(sum[1])), "along y");
+    moray_swimmer_rest(swimmer, 0.5, 0, 0, x);
+    CHECK(moray_swimmer_water_forces(swimmer, x, NULL, along, across), "at rest");
+    CHECK_NEAR(along[N - 1], robot.c_t * (0.3 * cos(0.5) - 0.2 * sin(0.5)), 1e-13, "drag along");
+    CHECK_NEAR(across[0], robot.c_n * (-0.2 * cos(0.5) - 0.3 * sin(0.5)), 1e-13, "and across");
+    CHECK(!moray_swimmer_water_forces(other, x, NULL, along, across), "the control-oriented model knows none");
+    moray_swimmer_free(swimmer);
+    moray_swimmer_free(other);
+}
+
 int main(void)
 {
     random_seed seed = 34;
@@ -246,6 +274,7 @@ int main(void)
     }
     for (int k = 0; k < ROBOT_SIZES; k++) {
         check_links_fp(&seed, robot_links[k]);
+        check_water(&seed, robot_links[k]);
         check_links_control(&seed, robot_links[k]);
     }
     CHECK(turning(MORAY_FIRST_PRINCIPLES, 0.02) < 0, "Property 3: a positive offset turns clockwise");
