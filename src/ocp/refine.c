@@ -279,19 +279,3 @@ moray_status moray_refine(const moray_solution *solution, double tolerance, stru
     moray_witness_free(&w);
     return status;
 }
-
-moray_status moray_solution_interval_errors(const moray_solution *solution, int phase, double *error)
-{
-    const struct phase_layout *layout = &solution->transcription->layout.phase[phase];
-    struct witness w;
-    struct examiner e;
-    MORAY_TRY(moray_witness_of_sizes(&w, solution));
-    const moray_status status = moray_examiner_new(&e, &w, phase);
-    if (!moray_failed(status)) {
-        for (int k = 0; k < layout->mesh.intervals; k++)
-            error[k] = moray_examiner_error(&e, &layout->interval[k]);
-        moray_examiner_free(&e);
-    }
-    moray_witness_free(&w);
-    return status;
-}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ocp/solution.h"
+#include "ocp/examine.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,6 +57,22 @@ int moray_solution_intervals(const moray_solution *solution, int phase, double *
     for (int k = 0; edge && k <= mesh->intervals; k++)
         edge[k] = t0 + (tf - t0) * mesh->edge[k];
     return mesh->intervals;
+}
+
+moray_status moray_solution_interval_errors(const moray_solution *solution, int phase, double *error)
+{
+    const struct phase_layout *layout = &solution->transcription->layout.phase[phase];
+    struct witness w;
+    struct examiner e;
+    MORAY_TRY(moray_witness_of_sizes(&w, solution));
+    const moray_status status = moray_examiner_new(&e, &w, phase);
+    if (!moray_failed(status)) {
+        for (int k = 0; k < layout->mesh.intervals; k++)
+            error[k] = moray_examiner_error(&e, &layout->interval[k]);
+        moray_examiner_free(&e);
+    }
+    moray_witness_free(&w);
+    return status;
 }
 
 const char *moray_solution_diagnosis(const moray_solution *solution)
