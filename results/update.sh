@@ -35,12 +35,12 @@ show() {
     *) return 0 ;;
     esac
     mkdir -p "results/$name" || exit 1
-    if ! sh $runner "$@" $quiet ${files:+--out "results/$name"} >table.tmp; then
-        rm -f table.tmp
+    if ! sh $runner "$@" $quiet ${files:+--out "results/$name"} >"$name.tmp"; then
+        rm -f "$name.tmp"
         echo "failed: sh $runner $*" >&2
         exit 1
     fi
-    mv table.tmp "results/$name/table.txt"
+    mv "$name.tmp" "results/$name/table.txt"
     echo "sh $runner $*" >"results/$name/command.txt"
     for page in README.md results/README.md; do
         awk -v name="$name" -v table="results/$name/table.txt" '
@@ -51,7 +51,7 @@ show() {
                 print "```text"
                 while ((getline line < table) > 0) print line
                 print "```"
-            }' $page >README.tmp && mv README.tmp $page
+            }' $page >"$name.tmp" && mv "$name.tmp" $page
     done
 }
 
@@ -111,13 +111,14 @@ show sea_trials_consistent sea_trials $few --rung consistent
 show sea_trials_control sea_trials $few --model control
 show tour tour
 show paper paper all
-show sweep sweep measure
-swept atlas max_speed --grid hydrodynamics=consistent --grid links=4:16:7 --grid current_speed=0:0.15:4 --grid current_deg=-135:180:8 \
+show sweep sweep measure --points 100000 --repeats 2
+swept atlas max_speed --grid hydrodynamics=consistent --grid over=none --grid links=4:16:5 --grid current_speed=0.05,0.1 --grid current_deg=-135:180:8 \
     --show gait.delta_deg --show gait.omega_deg_s --show gain.speed_percent_at_equal_power --show 'ladder.*.gain_percent_at_equal_power' \
-    --show validated.speed_m_s --show validated.course_speed_m_s --show validated.power_W --show validated.course_cost_J_m --mirror current_deg
+    --show validated.speed_m_s --show validated.course_speed_m_s --show validated.power_W --show validated.cost_of_transport_J_m \
+    --show validated.course_cost_J_m --mirror current_deg
 swept sea_sweep sea_trials --grid first_seed=1:40:40 --grid seeds=1 --grid tuned=build/sea_sweep.tuned \
     --grid training=5 --grid starts=3 --grid evaluations=6 \
-    --quantiles --show laws_PID_and_rate__ahead_rms_deg_median --show laws_receding__told_rms_deg_median \
+    --quantiles --show laws_PID_and_rate__ahead_rms_deg_median --show laws_PID_rms_deg_median --show laws_receding__told_rms_deg_median \
     --show laws_receding__believing_rms_deg_median --show laws_receding__estimating_rms_deg_median \
     --show laws_plan_and_feedback_rms_deg_median
 by tests/studies/kills.sh sweep_kills build/problems/sweep 50 1
