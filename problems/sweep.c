@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A program over all combinations of settings: on all cores of this machine or, under mpirun or srun, on many.
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,6 +102,7 @@ int main(int argc, char **argv)
     int exit_code;
     if (!sweep_arguments_read(argc, argv, &arguments, &exit_code))
         return exit_code;
+    signal(SIGXFSZ, SIG_IGN); // a file that grows beyond a limit is told, as a disk that is full is
     moray_interrupt_begin();
     const moray_status status =
         arguments.program->main ? run(&arguments, argc, argv) : sweep_measure(&arguments, argc, argv);

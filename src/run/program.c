@@ -69,6 +69,7 @@ bool moray_app_start(const moray_program *program, int argc, char **argv, void *
     moray_request request;
     hold_standard_streams();
     signal(SIGCHLD, SIG_DFL); // a parent that ignores it hands that on, and no child could be waited for
+    signal(SIGXFSZ, SIG_IGN); // a file that grows beyond a limit is told, as a disk that is full is
     before_start = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); // numbers have points, read and written
     moray_status status = moray_options_parse(program, argc, argv, settings, &request, &common->ini);
     if (!moray_failed(status) && request != MORAY_REQUEST_RUN)

@@ -2,7 +2,8 @@
 //
 // Without mpirun, one process a job, each for one point. With it, every rank has one such process, the first one too,
 // and ranks speak in texts: "task POINT START ROUND START_ROUND", the line of a record, "alive", "home", and "leave",
-// which is "home" where a rank is lost, for whom nobody is to wait at the end.
+// which is "home" where a rank is lost, for whom nobody is to wait at the end. The first one misses those who are
+// silent; the others go where it is silent far longer than that, for it may be writing a large file.
 #include "sweep/sweep.h"
 
 #include <math.h>
@@ -82,10 +83,29 @@ moray_status moray_crew_begin(struct crew *crew, const struct task *task)
     return moray_ok();
 }
 
+double moray_crew_silence(const struct crew *crew)
+{
+    const double asked = crew->grid->spec->silent_seconds;
+    return asked > 0 ? asked : 30;
+}
+
+void moray_crew_show_life(struct crew *crew)
+{
+    const double now = moray_clock();
+    if (crew->ranks == 1 || now - crew->shown < fmin(2, moray_crew_silence(crew) / 5))
+        return;
+    crew->shown = now;
+    if (crew->rank > 0)
+        moray_ranks_send(0, "alive");
+    for (int k = 1; crew->rank == 0 && k < crew->ranks; k++)
+        if (!crew->other[k].lost)
+            moray_ranks_send(k, "alive");
+}
+
 // One who is silent for too long may have died with its machine, and what it had in hand is for another.
 static void miss_ranks(struct crew *crew)
 {
-    const double now = moray_clock(), asked = crew->grid->spec->silent_seconds, most = asked > 0 ? asked : 30;
+    const double now = moray_clock(), most = moray_crew_silence(crew);
     for (int k = 1; k < crew->ranks; k++) {
         struct other *other = &crew->other[k];
         if (other->lost || now - other->heard < most)
@@ -139,9 +159,7 @@ static moray_status begin_orphans(struct crew *crew)
     return moray_ok();
 }
 
-// A process that somebody killed says nothing of its point, which is tried again; one that is killed each time, as by a
-// system out of memory, does.
-static moray_status answer_of_worker(struct crew *crew, struct record *record, bool *found)
+moray_status moray_crew_answer_of_worker(struct crew *crew, struct record *record, bool *found)
 {
     enum { most_killed = 2 };
     for (int k = 0; k < crew->n_workers && !*found; k++) {
@@ -159,8 +177,7 @@ static moray_status answer_of_worker(struct crew *crew, struct record *record, b
     return moray_ok();
 }
 
-// Until a process says something or is late, or `seconds` are over.
-static void sleep_until_heard(struct crew *crew, double seconds)
+void moray_crew_sleep(struct crew *crew, double seconds)
 {
     nfds_t n = 0;
     for (int k = 0; k < crew->n_workers; k++) {
@@ -183,67 +200,14 @@ moray_status moray_crew_wait(struct crew *crew, double seconds, struct record *r
 {
     const double until = moray_clock() + seconds;
     for (*found = false;;) {
-        MORAY_TRY(answer_of_worker(crew, record, found));
+        moray_crew_show_life(crew);
+        MORAY_TRY(moray_crew_answer_of_worker(crew, record, found));
         if (!*found)
             MORAY_TRY(answer_of_rank(crew, record, found));
         MORAY_TRY(begin_orphans(crew)); // before whoever is free gets something new
         const double left = until - moray_clock();
         if (*found || left <= 0)
             return moray_ok();
-        sleep_until_heard(crew, left);
-    }
-}
-
-// To the first rank, now and then.
-static void show_life(struct crew *crew)
-{
-    const double now = moray_clock(), asked = crew->grid->spec->silent_seconds;
-    if (now - crew->shown < fmin(2, asked > 0 ? asked / 5 : 2))
-        return;
-    crew->shown = now;
-    moray_ranks_send(0, "alive");
-}
-
-static moray_status answer(const struct record *record)
-{
-    char *line = moray_record_line(record);
-    if (!line)
-        return moray_error(MORAY_MEMORY, "no memory for a record");
-    moray_ranks_send(0, line);
-    free(line);
-    return moray_ok();
-}
-
-// What the first rank says, if anything: a task, or that this one is to go home, whatever it has in hand.
-static moray_status obey(struct crew *crew, bool *home)
-{
-    int from;
-    struct task task;
-    char *text = moray_ranks_receive(&from);
-    if (!text)
-        return moray_ok();
-    crew->leaves = strcmp(text, "leave") == 0;
-    *home = crew->leaves || strcmp(text, "home") == 0;
-    const int read = sscanf(text, "task %ld %ld %d %d", &task.point, &task.start, &task.round, &task.start_round);
-    free(text);
-    return read == 4 ? moray_worker_begin(&crew->worker[0], crew->grid, &task) : moray_ok();
-}
-
-moray_status moray_crew_serve(struct crew *crew)
-{
-    for (bool home = false;;) {
-        struct record record;
-        bool found = false;
-        MORAY_TRY(obey(crew, &home));
-        if (home)
-            return moray_ok();
-        show_life(crew);
-        sleep_until_heard(crew, 1);
-        MORAY_TRY(answer_of_worker(crew, &record, &found));
-        if (!found)
-            continue;
-        const moray_status status = answer(&record);
-        moray_record_free(&record);
-        MORAY_TRY(status);
+        moray_crew_sleep(crew, left);
     }
 }

@@ -9,7 +9,7 @@
 
 #include "sweep/sweep.h"
 
-enum { MOST_ROWS = 200, MOST_COLUMNS = 400, MOST_FAILED = 50 };
+enum { MOST_ROWS = 120, MOST_COLUMNS = 240, MOST_FAILED = 50 };
 
 // Rows and columns of cells: columns are the last axis that has several values, rows all that stand before it.
 typedef struct map {

@@ -15,8 +15,8 @@ enum { ROUNDS = 3, TREE_LEVELS = 8 };
 static moray_status make_trees(struct plan *plan)
 {
     const size_t n = (size_t)plan->grid->points;
-    plan->child = malloc(n * sizeof *plan->child);
-    plan->sibling = malloc(n * sizeof *plan->sibling);
+    plan->child = moray_apart_new(n, sizeof *plan->child);
+    plan->sibling = moray_apart_new(n, sizeof *plan->sibling);
     if (!plan->child || !plan->sibling)
         return moray_error(MORAY_MEMORY, "no memory for a plan of %ld points", plan->grid->points);
     for (long k = 0; k < plan->grid->points; k++)
@@ -36,7 +36,7 @@ static void add(struct plan *plan, struct task task)
 moray_status moray_plan_new(struct plan *plan, const struct grid *grid, struct store *store)
 {
     *plan = (struct plan){.grid = grid, .store = store, .expected = grid->points, .room = 2 * grid->points};
-    plan->ready = malloc((size_t)plan->room * sizeof *plan->ready);
+    plan->ready = moray_apart_new((size_t)plan->room, sizeof *plan->ready);
     moray_status status =
         plan->ready ? make_trees(plan) : moray_error(MORAY_MEMORY, "no memory for a plan of %ld points", grid->points);
     for (long k = grid->points - 1; !moray_failed(status) && k >= 0; k--) {
@@ -56,9 +56,10 @@ moray_status moray_plan_new(struct plan *plan, const struct grid *grid, struct s
 
 void moray_plan_free(struct plan *plan)
 {
-    free(plan->ready);
-    free(plan->child);
-    free(plan->sibling);
+    const size_t n = plan->grid ? (size_t)plan->grid->points : 0;
+    moray_apart_free(plan->ready, (size_t)plan->room, sizeof *plan->ready);
+    moray_apart_free(plan->child, n, sizeof *plan->child);
+    moray_apart_free(plan->sibling, n, sizeof *plan->sibling);
     *plan = (struct plan){0};
 }
 

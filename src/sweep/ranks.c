@@ -24,12 +24,41 @@ void moray_ranks_leave(void)
     leaving = true;
 }
 
+// A text on its way: to a rank that is gone it is for ever, and nobody waits for that.
+struct letter {
+    MPI_Request request;
+    char *text;
+    struct letter *next;
+};
+static struct letter *underway;
+
+static void forget_arrived(bool all)
+{
+    for (struct letter **at = &underway; *at;) {
+        struct letter *letter = *at;
+        int arrived = 1;
+        if (all)
+            MPI_Wait(&letter->request, MPI_STATUS_IGNORE);
+        else
+            MPI_Test(&letter->request, &arrived, MPI_STATUS_IGNORE);
+        if (!arrived) {
+            at = &letter->next;
+            continue;
+        }
+        *at = letter->next;
+        free(letter->text);
+        free(letter);
+    }
+}
+
 static void end(void)
 {
     int ended = 0;
     MPI_Finalized(&ended);
-    if (!ended && !leaving)
-        MPI_Finalize();
+    if (ended || leaving)
+        return;
+    forget_arrived(true);
+    MPI_Finalize();
 }
 
 struct ranks moray_ranks_begin(void)
@@ -57,7 +86,17 @@ int moray_sweep_rank(void)
 
 void moray_ranks_send(int to, const char *text)
 {
-    MPI_Send(text, (int)strlen(text) + 1, MPI_CHAR, to, 0, MPI_COMM_WORLD);
+    forget_arrived(false);
+    struct letter *letter = malloc(sizeof *letter);
+    char *copy = letter ? strdup(text) : NULL;
+    if (!copy) { // the text itself has to last until it has arrived
+        free(letter);
+        MPI_Send(text, (int)strlen(text) + 1, MPI_CHAR, to, 0, MPI_COMM_WORLD);
+        return;
+    }
+    *letter = (struct letter){.text = copy, .next = underway};
+    underway = letter;
+    MPI_Isend(copy, (int)strlen(copy) + 1, MPI_CHAR, to, 0, MPI_COMM_WORLD, &letter->request);
 }
 
 char *moray_ranks_receive(int *from)

@@ -9,7 +9,7 @@
 
 static double *blank(long points)
 {
-    double *value = malloc((size_t)points * sizeof *value);
+    double *value = moray_apart_new((size_t)points, sizeof *value);
     for (long k = 0; value && k < points; k++)
         value[k] = NAN;
     return value;
@@ -19,14 +19,14 @@ moray_status moray_store_new(struct store *store, const struct grid *grid)
 {
     const size_t n = (size_t)grid->points;
     *store = (struct store){.grid = grid,
-                            .state = calloc(n, 1),
-                            .code = calloc(n, 1),
-                            .round = calloc(n, 1),
-                            .start = calloc(n, sizeof *store->start),
-                            .seconds = calloc(n, sizeof *store->seconds),
+                            .state = moray_apart_new(n, 1),
+                            .code = moray_apart_new(n, 1),
+                            .round = moray_apart_new(n, 1),
+                            .start = moray_apart_new(n, sizeof *store->start),
+                            .seconds = moray_apart_new(n, sizeof *store->seconds),
                             .objective = blank(grid->points),
                             .other = blank(grid->points),
-                            .reason = calloc(n, sizeof *store->reason)};
+                            .reason = moray_apart_new(n, sizeof *store->reason)};
     if (store->state && store->code && store->round && store->start && store->seconds && store->objective &&
         store->other && store->reason)
         return moray_ok();
@@ -36,22 +36,23 @@ moray_status moray_store_new(struct store *store, const struct grid *grid)
 
 void moray_store_free(struct store *store)
 {
+    const size_t n = store->grid ? (size_t)store->grid->points : 0;
     for (int k = 0; k < store->n; k++) {
         free(store->name[k]);
-        free(store->value[k]);
+        moray_apart_free(store->value[k], n, sizeof *store->value[k]);
     }
     for (long k = 0; store->reason && k < store->grid->points; k++)
         free(store->reason[k]);
     free(store->name);
     free(store->value);
-    free(store->state);
-    free(store->code);
-    free(store->round);
-    free(store->start);
-    free(store->seconds);
-    free(store->objective);
-    free(store->other);
-    free(store->reason);
+    moray_apart_free(store->state, n, 1);
+    moray_apart_free(store->code, n, 1);
+    moray_apart_free(store->round, n, 1);
+    moray_apart_free(store->start, n, sizeof *store->start);
+    moray_apart_free(store->seconds, n, sizeof *store->seconds);
+    moray_apart_free(store->objective, n, sizeof *store->objective);
+    moray_apart_free(store->other, n, sizeof *store->other);
+    moray_apart_free(store->reason, n, sizeof *store->reason);
     *store = (struct store){0};
 }
 
@@ -85,7 +86,7 @@ static int column(struct store *store, const char *name, int *last)
     store->value[i] = blank(store->grid->points);
     if (!store->name[i] || !store->value[i]) {
         free(store->name[i]);
-        free(store->value[i]);
+        moray_apart_free(store->value[i], (size_t)store->grid->points, sizeof *store->value[i]);
         return -1;
     }
     store->n++;

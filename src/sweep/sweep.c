@@ -2,6 +2,7 @@
 #include "sweep/sweep.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -203,7 +204,10 @@ moray_status moray_sweep(const moray_sweep_spec *spec, moray_sweep_result *resul
         return moray_error(MORAY_INPUT, "file of a sweep: must be a path of at most 4000 characters");
     MORAY_TRY(moray_grid_new(spec, &r.grid));
     MORAY_TRY(moray_crew_new(&r.crew, &r.grid));
+    struct sigaction before; // a file that grows beyond a limit is told, as a disk that is full is
+    sigaction(SIGXFSZ, &(struct sigaction){.sa_handler = SIG_IGN}, &before);
     const moray_status status = work(&r);
+    sigaction(SIGXFSZ, &before, NULL);
     moray_crew_free(&r.crew);
     result->seconds = moray_clock() - r.begun;
     return status;

@@ -41,6 +41,13 @@ double moray_grid_draw(const moray_sweep_spec *spec, long draw, int r);
 void moray_grid_settings(const struct grid *grid, long point, moray_key_value *setting, double *value,
                          char (*text)[32]);
 
+// ---- Memory --------------------------------------------------------------------------------------------------------
+
+// Zeroed memory that the processes of points do not have: to make one would take the longer the more points there are.
+// NULL: none is left.
+void *moray_apart_new(size_t n, size_t size);
+void moray_apart_free(void *memory, size_t n, size_t size); // NULL is allowed
+
 // ---- Records -------------------------------------------------------------------------------------------------------
 
 // One attempt at a point.
@@ -200,7 +207,7 @@ void moray_worker_kill(struct worker *worker);
 // Where a point leaves its solution, into path[size].
 void moray_solution_path(const moray_sweep_spec *spec, long point, int round, char *path, size_t size);
 
-// A rank other than this one, as the first one knows it.
+// A rank other than this one: all of them, as the first one knows them; of the first one, when others last heard of it.
 struct other {
     bool busy, lost; // has a task; has been silent for too long
     bool given_away; // its task, when it was lost: what it finds is no longer wanted
@@ -220,7 +227,7 @@ struct crew {
     struct other *other; // [ranks]
     struct task *orphan; // [ranks], orphans of them: tasks of those who are lost
     int orphans;
-    double shown; // clock; when this rank last showed the first one that it is alive
+    double shown; // clock; when this rank last showed that it is alive
 };
 
 moray_status moray_crew_new(struct crew *crew, const struct grid *grid);
@@ -230,6 +237,16 @@ moray_status moray_crew_begin(struct crew *crew, const struct task *task);
 // Waits at most `seconds` for a record. Error: MORAY_MEMORY, MORAY_IO.
 moray_status moray_crew_wait(struct crew *crew, double seconds, struct record *record, bool *found);
 moray_status moray_crew_serve(struct crew *crew); // on other ranks: works until it is sent home
+
+// Parts of both sides. The silence [s] by which a rank is lost.
+double moray_crew_silence(const struct crew *crew);
+// Now and then: of the first rank to all others, of these to the first one.
+void moray_crew_show_life(struct crew *crew);
+// Until a process says something or is late, or `seconds` are over; of ranks' messages not for long.
+void moray_crew_sleep(struct crew *crew, double seconds);
+// A process that somebody killed says nothing of its point, which is tried again; one that is killed each time, as by a
+// system out of memory, does.
+moray_status moray_crew_answer_of_worker(struct crew *crew, struct record *record, bool *found);
 
 // MPI, whatever its library: sizes and messages of one text.
 struct ranks {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "moray/number.h"
 
@@ -45,6 +46,17 @@ static bool all_numbers(const char *const *word, int n, double *value)
     return true;
 }
 
+// Words are names; not a number and infinity are meant as numbers.
+static moray_status check_words(const char *const *word, int n)
+{
+    static const char *const odd[] = {"nan", "inf", "infinity"};
+    for (int k = 0; k < n; k++)
+        for (unsigned i = 0; i < sizeof odd / sizeof *odd; i++)
+            if (strcasecmp(word[k] + strspn(word[k], "+-"), odd[i]) == 0)
+                return moray_error(MORAY_INPUT, "value %d of the list, %.20s: must be finite", k + 1, word[k]);
+    return moray_ok();
+}
+
 moray_status moray_sweep_values(char *text, double **value, const char ***word, int *n)
 {
     *value = NULL;
@@ -69,6 +81,8 @@ moray_status moray_sweep_values(char *text, double **value, const char ***word, 
         return status;
     }
     free(values);
+    if (!moray_failed(status))
+        status = check_words(words, *n);
     if (moray_failed(status))
         free(words);
     else

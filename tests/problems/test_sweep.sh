@@ -87,6 +87,17 @@ if command -v mpirun >/dev/null; then
     wait $!
     check "a rank that dies is missed: $(number lost_ranks)" [ "$(number lost_ranks)" = 1 ]
     check "and all points are solved: $(number solved)" [ "$(number solved)" = 40 ]
+    if thorough; then
+        # shellcheck disable=SC2086
+        timeout 60 mpirun $root --oversubscribe --enable-recovery -n 3 "$program" simulate --grid links=4,6 --grid current_x=-0.1:0.1:40 \
+            --file headless.nc --silent 0.5 --json --quiet -- --duration 300 >out 2>err &
+        until [ "$(grep -c point headless.nc.journal 2>/dev/null)" -ge 2 ] 2>/dev/null || ! kill -0 $!; do sleep 0.05; done
+        # shellcheck disable=SC2046
+        kill -KILL $(ps -o pid= --ppid $(ps -o pid= --ppid $!) | head -n 1)
+        wait $!
+        check "where the first one dies the others end: $(grep -c 'first rank has been silent' err) of 2" [ \
+            "$(grep -c 'first rank has been silent' err)" = 2 ]
+    fi
 else
     echo "ok $((tap_run += 1)) - two ranks # SKIP mpirun is not installed"
 fi
@@ -100,6 +111,9 @@ if thorough; then
     sh "$2/tests/studies/kills.sh" "$program" 3 5 >kills 2>&1
     check "killed at random times: $(tail -n 1 kills)" grep -q ' 0 of the files differ' kills
 fi
+(ulimit -f 20 && "$program" simulate --grid links=4,6 --grid current_x=-0.1:0.1:5 --file limited.nc --quiet >out 2>err)
+code=$?
+check "files that may not grow: exit $code: $(cat err)" eval '[ $code -eq 2 ] && one_line && grep -q "cannot be written" err'
 ln -s /dev/zero zero.nc.journal
 refuse 'not a regular file' simulate --grid links=4,6 --file zero.nc
 

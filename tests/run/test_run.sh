@@ -187,6 +187,9 @@ run --help
 check "--help has the constants and nothing of robots" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -qiE "robot|model" out'
 run --version
 check "--version: $(cat out)" grep -q '^run_demo (moray) [0-9.]*$' out
+(ulimit -f 1 && "$program" --quiet --out limited >out 2>err)
+code=$?
+check "files that may not grow: exit 2, not a signal: $(cat err)" eval '[ $code -eq 2 ] && says "cannot be written"'
 lost
 lost --json
 lost --help

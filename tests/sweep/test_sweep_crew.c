@@ -18,8 +18,8 @@ typedef struct message {
 } message;
 
 static struct ranks here = {3, 0};
-static message said[16], sent[16]; // by others; by us
-static int n_said, heard, n_sent;
+static message said[16], sent[16];       // by others; by us
+static int n_said, heard, n_sent, shown; // shown: how often we said that we are alive
 static bool left;
 
 struct ranks moray_ranks_begin(void)
@@ -34,6 +34,10 @@ void moray_ranks_leave(void)
 
 void moray_ranks_send(int to, const char *text)
 {
+    if (strcmp(text, "alive") == 0) {
+        shown++;
+        return;
+    }
     sent[n_sent].rank = to;
     snprintf(sent[n_sent].text, sizeof sent[n_sent].text, "%s", text);
     n_sent += n_sent + 1 < 16;
@@ -82,7 +86,7 @@ static struct crew begin(int rank)
 {
     struct crew crew = {0};
     here.rank = rank;
-    n_said = heard = n_sent = 0;
+    n_said = heard = n_sent = shown = 0;
     left = false;
     CHECK_OK(moray_crew_new(&crew, &grid), "a crew of three ranks");
     if (rank == 0)
@@ -116,6 +120,7 @@ static void test_idle(void)
     struct crew crew = begin(0);
     be_silent();
     listen(&crew);
+    CHECK(shown == 2, "the first one shows both others that it is alive: %d", shown);
     CHECK(crew.lost == 2 && !moray_crew_idle(&crew), "ranks that are silent are lost: %d", crew.lost);
     say(2, "alive");
     listen(&crew);
@@ -181,6 +186,20 @@ static void test_sent_home(void)
     moray_crew_free(&crew);
 }
 
+static void test_first_is_gone(void)
+{
+    struct crew crew = begin(1);
+    say(0, "task 2 -1 0 0");
+    const double begun = moray_clock();
+    const moray_status status = moray_crew_serve(&crew);
+    CHECK(status.code == MORAY_INTERRUPTED && strstr(status.text, "silent"), "where the first one is gone: %s",
+          status.text);
+    CHECK(moray_clock() - begun > 5 * silence && moray_clock() - begun < 30, "the others go, but not soon");
+    CHECK(shown > 2, "having shown that they are alive: %d times", shown);
+    moray_crew_free(&crew);
+    CHECK(left, "and wait for nobody");
+}
+
 int main(void)
 {
     setvbuf(stdout, NULL, _IOLBF, 0); // processes that are made here have nothing of it to write
@@ -189,5 +208,6 @@ int main(void)
     test_busy();
     test_waiting();
     test_sent_home();
+    test_first_is_gone();
     return tap_done();
 }
