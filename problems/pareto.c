@@ -108,8 +108,24 @@ static moray_status make_front(pareto *run, moray_model model, int kind)
         memcpy(front->at[k].taper, taper[kind], sizeof eel);
         limit_power(&front->at[k], front, 0, 0, 0);
     }
-    MORAY_TRY(follow(run, front, kind == 0 ? NULL : front - kind));
+    const pareto_front *lateral = front - kind;
+    MORAY_TRY(follow(run, front, kind == 0 || lateral->n == 0 ? NULL : lateral));
     return prove(run, front);
+}
+
+// The lateral front of the model asked for is what the program is for; another that cannot be had takes nothing from it.
+static moray_status make_or_leave_out(pareto *run, moray_model model, int kind)
+{
+    const moray_status status = make_front(run, model, kind);
+    pareto_front *front = &run->front[run->fronts - 1];
+    const bool needed = kind == 0 && model == run->job.snake.model;
+    if (!moray_failed(status) || needed || status.code == MORAY_INTERRUPTED || status.code == MORAY_MEMORY)
+        return status;
+    for (int k = 0; k < run->points; k++)
+        gait_job_stage_free(&front->at[k]);
+    front->n = 0;
+    front->why = status;
+    return moray_ok();
 }
 
 // ---- All -----------------------------------------------------------------------------------------------------------
@@ -124,7 +140,7 @@ static moray_status work(gait_job *job)
     MORAY_TRY(gait_job_prepare(job));
     for (int model = 0; model <= (int)job->snake.model; model++)
         for (int kind = 0; kind < kinds; kind++)
-            MORAY_TRY(make_front(run, (moray_model)model, kind));
+            MORAY_TRY(make_or_leave_out(run, (moray_model)model, kind));
     return moray_ok();
 }
 

@@ -53,6 +53,10 @@ run --json --model control --set points=3 --set taper=0 --set eel_taper=-0.5
 check "one model, no free taper, another eel: two fronts" eval '[ $code -eq 0 ] && [ "$(grep -c "\"kind\"" out)" = 2 ]'
 check "the taper is that asked for" eval '[ "$(grep -c "\"taper\":[[:space:]]*-0.5" out)" = 3 ]'
 
+run --json --links 6 --current 0,0.05 --set points=2 --set taper=0
+check "a front that cannot be had is left out, and nothing else: $code $(cat err)" \
+    eval '[ $code -eq 0 ] && [ "$(grep -c "\"left_out\":.*rot_damping" out)" -eq 2 ] && [ "$(grep -c "\"taper\":" out)" -ge 3 ]'
+
 refuse 'points = 1' --set points=1
 refuse 'least_share = 2' --set least_share=2
 refuse 'eel_taper = -3' --set eel_taper=-3

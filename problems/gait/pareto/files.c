@@ -46,6 +46,8 @@ void pareto_summary(const void *found, moray_json *json)
         moray_json_open(json, NULL);
         moray_json_text(json, "model", moray_model_key(front->model));
         moray_json_text(json, "kind", pareto_kinds[front->kind]);
+        if (front->n == 0)
+            moray_json_text(json, "left_out", front->why.text);
         moray_json_open_list(json, "points");
         for (int k = 0; k < front->n; k++)
             json_point(json, run, &front->at[k]);
@@ -95,7 +97,7 @@ static moray_status draw(const pareto *run, const picture *what, double *const v
     for (int f = 0; f < run->fronts; f++) {
         const pareto_front *front = &run->front[f];
         const bool control = front->model == MORAY_CONTROL_ORIENTED;
-        if (front->kind == 2 && (control || pareto_is_lateral(front))) // no more curves than the palette tells apart
+        if (front->n == 0 || (front->kind == 2 && (control || pareto_is_lateral(front)))) // no more curves than the palette tells apart
             continue;
         for (int truth = 0; truth <= (what->truth && control); truth++, n++) {
             snprintf(labels[n], sizeof labels[n], "%s, %s%s", pareto_kinds[front->kind],
@@ -138,7 +140,8 @@ static moray_status with_values(const pareto *run, moray_output *output,
 static moray_status write_all(const pareto *run, double *const values[PARETO_FRONTS], moray_output *output)
 {
     for (int f = 0; f < run->fronts; f++)
-        MORAY_TRY(write_csv(&run->front[f], values[f], output));
+        if (run->front[f].n > 0)
+            MORAY_TRY(write_csv(&run->front[f], values[f], output));
     return moray_ok();
 }
 

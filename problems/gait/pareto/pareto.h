@@ -12,9 +12,10 @@ enum { PARETO_KINDS = 3, PARETO_FRONTS = 2 * PARETO_KINDS, PARETO_POINTS = 60 };
 // The fastest gaits of one model and one kind of motion, by falling power; the first has no limit of it.
 typedef struct pareto_front {
     moray_model model;
-    int kind;  // lateral, eel-like, free
-    stage *at; // [most]; after the proof, those that are kept
-    int n;     // solved, within a limit that makes a difference (or the first), and swum
+    int kind;         // lateral, eel-like, free
+    stage *at;        // [most]; after the proof, those that are kept
+    int n;            // solved, within a limit that makes a difference (or the first), and swum; 0: left out
+    moray_status why; // it is left out
 } pareto_front;
 
 typedef struct pareto {

@@ -88,10 +88,10 @@ static void say_shortfall(const pareto *run, const pareto_front *control, const 
             pareto_kinds[control->kind], -most, -least);
 }
 
-// A front with free taper that is the lateral one.
-static bool repeats(const pareto_front *front)
+// Not so a front that is left out, or one with free taper that is the lateral one.
+static bool is_shown(const pareto_front *front)
 {
-    return front->kind == 2 && pareto_is_lateral(front);
+    return front->n > 0 && !(front->kind == 2 && pareto_is_lateral(front));
 }
 
 // How many gaits of a front win on every model of the ladder, and the range of all their gains.
@@ -117,20 +117,24 @@ static void find_words(const pareto *run, char *text)
 {
     const int kinds = run->fronts / (1 + (int)run->job.snake.model);
     for (int f = 0; f < run->fronts; f++)
-        if (!repeats(&run->front[f]))
+        if (is_shown(&run->front[f]))
             say_trend(run, &run->front[f], text);
     for (int f = 0; f < run->fronts; f++)
-        if (repeats(&run->front[f]))
+        if (run->front[f].n == 0)
+            moray_text_add(text, text_size, "Left out: the %s front of the %s model: %s.\n",
+                           pareto_kinds[run->front[f].kind], moray_model_name(run->front[f].model),
+                           run->front[f].why.text);
+        else if (!is_shown(&run->front[f]))
             moray_text_add(text, text_size,
                            "%s model, free taper: none is best, everywhere; the front is the lateral one.\n",
                            moray_model_name(run->front[f].model));
-        else if (run->front[f].kind > 0)
+        else if (run->front[f].kind > 0 && run->front[f - run->front[f].kind].n > 0)
             say_eel(&run->front[f - run->front[f].kind], &run->front[f], text);
     for (int kind = 0; kind < kinds && run->fronts > kinds; kind++)
-        if (!repeats(&run->front[kind]))
+        if (is_shown(&run->front[kind]) && run->front[kinds + kind].n > 0)
             say_shortfall(run, &run->front[kind], &run->front[kinds + kind], text);
     for (int f = 0; f < run->fronts; f++)
-        if (!repeats(&run->front[f]))
+        if (is_shown(&run->front[f]))
             say_ladder(&run->front[f], text);
 }
 
@@ -195,7 +199,7 @@ static void print(const void *found, const moray_report *report)
     printf(": fastest gaits within ever less %s; columns f.-p.: swum on the first-principles model\n\n",
            moray_power_label(&run->job.snake.robot, run->job.snake.model));
     for (int f = 0; f < run->fronts; f++)
-        if (!repeats(&run->front[f]))
+        if (is_shown(&run->front[f]))
             moray_tables_print(&report->sections->tables[2 * f], 2, stdout);
     printf("%s", report->text);
 }
