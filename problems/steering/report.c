@@ -199,6 +199,17 @@ static bool certify(const steer_job *job, char *text, size_t size)
 }
 
 // What the time given cut short, and the plan that there is none of.
+// Limits that plans keep, and rivals are not held to.
+static void say_motors(const steer_job *job, char *text, size_t size)
+{
+    const moray_robot *robot = &job->snake.robot;
+    if (job->snake.model == MORAY_FIRST_PRINCIPLES &&
+        (robot->motor.lines > 0 || (robot->supply.rate > 0 && isfinite(robot->supply.rate))))
+        moray_text_add(text, size,
+                       " The first-principles plan keeps to what the motors give and how fast they turn; who steers "
+                       "otherwise, or by feedback around it, is not held to that.");
+}
+
 static void say_missing(const steer_job *job, char *text, size_t size)
 {
     const char *before = " Not swum in the time given (--time):";
@@ -226,6 +237,7 @@ moray_status steer_report(steer_job *job)
     moray_swim_scene scene = {0};
     job->program->tables(job, &tables);
     job->program->conclude(job, text, sizeof text);
+    say_motors(job, text, sizeof text);
     say_missing(job, text, sizeof text);
     job->program->explain(job, why, sizeof why);
     const bool pass = certify(job, certificates, sizeof certificates);

@@ -56,6 +56,11 @@ check "and where the model errs most is said" grep -q 'swum on the first-princip
 check "parameters of the other model are not there" eval '! grep -q lambda_ out && grep -q "^rot_damping" out'
 fi
 
+if thorough; then
+run --quiet --robot "$source/problems/robots/head_and_fin.ini"
+check "links of their own have no common length: exit $code, $(cat err)" eval '[ $code -eq 0 ] && grep -q "^Without slopes: length_m (the links have lengths of their own)" out'
+fi
+
 refuse 'predict_current = fast' --set predict_current=fast
 refuse 'power_W = 0' --set power_W=0
 tap_done
