@@ -44,8 +44,9 @@ fi
 # ---- A way through water that is not uniform: against the current where it is strong the gait is faster, and one gait
 # swum through the table itself takes the time and the work that were added up place by place
 awk 'BEGIN { print "x_m,y_m,v_x_m_s,v_y_m_s"; for (x = -6; x <= 12; x += 1.5) for (y = -2; y <= 2; y += 1) printf "%g,%g,%.12g,0\n", x, y, -0.08 * sin(x / 2) }' >along.csv
-run --json --water along.csv --way '0,0 8,0' --set hotel_W=0.3 --set places=5 --set theta_max_deg=20 --set delta_deg=45
+run --json --water along.csv --way '0,0 8,0' --set hotel_W=0.3 --set places=5 --set theta_max_deg=20 --set delta_deg=45 --out way
 check "along a way: exit $code, $(cat err)" [ $code -eq 0 ]
+check "--out has report, figure and table of the way: $(ls way | tr '\n' ' ')" eval '[ -s way/report.html ] && [ -s way/way.svg ] && [ "$(wc -l <way/way.csv)" -eq 6 ]'
 check "the faster, the more there is against it" eval 'awk "/\"along_m\"/ { n++ } /\"current_m_s\"/ { sub(/.*\[[ \t]*/, \"\"); v[n] = \$0 + 0 } /\"omega_deg_s\"/ { sub(/.*:[ \t]*/, \"\"); if (n && !w[n]) w[n] = \$0 + 0 }
     END { for (i = 1; i <= 5; i++) for (j = 1; j <= 5; j++) if (v[i] < v[j] - 0.01 && !(w[i] > w[j])) exit 1; exit n != 5 }" out'
 own=$(number adapted work_J) one=$(number one_gait work_J)

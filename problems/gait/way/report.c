@@ -150,6 +150,76 @@ static void summarise(const void *found, moray_json *json)
     }
 }
 
+// ---- Files ---------------------------------------------------------------------------------------------------------
+
+enum { ALONG, TIME, X, Y, CURRENT_X, CURRENT_Y, COURSE_CURRENT, THETA_MAX, OMEGA, DELTA, SPEED, POWER, COST, VALUES };
+
+// value[places][VALUES], angles in deg.
+static void list(const way_job *run, double *value)
+{
+    for (int k = 0; k < run->places; k++, value += VALUES) {
+        const way_place *p = &run->place[k];
+        const moray_gait_prediction *at = &p->at.prediction;
+        const double of[VALUES] = {[ALONG] = p->along,
+                                   [TIME] = p->t,
+                                   [X] = p->x,
+                                   [Y] = p->y,
+                                   [CURRENT_X] = p->current[0],
+                                   [CURRENT_Y] = p->current[1],
+                                   [COURSE_CURRENT] = p->current[0] * cos(p->course) + p->current[1] * sin(p->course),
+                                   [THETA_MAX] = theta_max_of(run, &at->gait) / DEG,
+                                   [OMEGA] = at->gait.omega / DEG,
+                                   [DELTA] = at->gait.delta / DEG,
+                                   [SPEED] = at->course_speed,
+                                   [POWER] = at->power,
+                                   [COST] = budget_of(run, at).over_ground};
+        memcpy(value, of, sizeof of);
+    }
+}
+
+static moray_status write(const void *found, moray_output *output)
+{
+    static const char *const heads[VALUES][2] = {
+        {"along", "m"},          {"t", "s"},         {"x", "m"},           {"y", "m"},         {"V_x", "m/s"},
+        {"V_y", "m/s"},          {"V_along", "m/s"}, {"theta_max", "deg"}, {"omega", "deg/s"}, {"delta", "deg"},
+        {"course_speed", "m/s"}, {"power", "W"},     {"whole_cost", "J/m"}};
+    const way_job *run = found;
+    double value[WAY_PLACES * VALUES];
+    moray_column column[VALUES];
+    FILE *file;
+    MORAY_TRY(moray_output_file(output, "way.csv", &file));
+    list(run, value);
+    for (int i = 0; i < VALUES; i++)
+        column[i] = (moray_column){.name = heads[i][0], .unit = heads[i][1], .values = value + i, .stride = VALUES};
+    moray_csv_write(file, column, VALUES, run->places);
+    return moray_ok();
+}
+
+static moray_status draw(const void *found, moray_output *output)
+{
+    const way_job *run = found;
+    double value[WAY_PLACES * VALUES];
+    list(run, value);
+    const moray_curve curves[] = {{.label = "speed over ground",
+                                   .x = value,
+                                   .y = value + SPEED,
+                                   .n = run->places,
+                                   .stride = VALUES,
+                                   .style = MORAY_CURVE_MARKED},
+                                  {.label = "current along the course",
+                                   .x = value,
+                                   .y = value + COURSE_CURRENT,
+                                   .n = run->places,
+                                   .stride = VALUES,
+                                   .style = MORAY_CURVE_MARKED}};
+    return moray_output_figure(output, &(moray_figure){.name = "way",
+                                                       .title = "Speed and current along the way",
+                                                       .x_label = "along the way [m]",
+                                                       .y_label = "speed [m/s]",
+                                                       .curves = curves,
+                                                       .n_curves = 2});
+}
+
 // ---- The whole -----------------------------------------------------------------------------------------------------
 
 moray_status way_report(gait_job *job)
@@ -163,7 +233,11 @@ moray_status way_report(gait_job *job)
     const moray_section section = {.title = "What adapting gains", .text = s->words, .figures = ""};
     const moray_report report = {
         .title = job->name, .text = s->text, .tables = s->table, .n_tables = 2, .sections = &section, .n_sections = 1};
-    return moray_app_show(
-        &job->common,
-        &(moray_results){.name = job->name, .found = run, .summary = summarise, .print = print, .report = &report});
+    return moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                         .found = run,
+                                                         .summary = summarise,
+                                                         .print = print,
+                                                         .write = write,
+                                                         .draw = draw,
+                                                         .report = &report});
 }
