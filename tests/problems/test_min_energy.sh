@@ -62,6 +62,15 @@ set -- $(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) { if ($i ~ /^p_x/) x = i; 
 check "one gait through the table: ${1-} s, $seconds s by places" awk -v a="${1-}" -v b="$seconds" 'BEGIN { d = a / b - 1; exit !(d * d < 0.01 ^ 2) }'
 check "its work: ${2-} J, $one J by places" awk -v a="${2-}" -v b="$one" 'BEGIN { d = a / b - 1; exit !(d * d < 0.01 ^ 2) }'
 
+# A current that turns: who hurries before it does spends less than who heeds each place alone
+awk 'BEGIN { print "x_m,y_m,t_s,v_x_m_s,v_y_m_s"; for (x = -1; x <= 9; x += 10) for (y = -1; y <= 1; y += 2) for (t = 0; t <= 60; t += 30)
+    printf "%g,%g,%g,%g,0\n", x, y, t, 0.1 - 0.2 * t / 30 }' >tide.csv
+run --json --water tide.csv --way '0,0 8,0' --set hotel_W=0.3 --set places=3
+check "in a tide: exit $code, $(cat err)" [ $code -eq 0 ]
+check "a gait for each place, $(number adapted work_J) J, takes less than one kept, $(number one_gait work_J) J" \
+    awk -v a="$(number adapted work_J)" -v b="$(number one_gait work_J)" 'BEGIN { exit !(a > 0 && a < b) }'
+check "as a second later costs on the rest of the way: $(number time_price_W) W" awk -v p="$(number time_price_W)" 'BEGIN { exit !(p > 0.05) }'
+
 # ---- Bad input
 refuse '--water FILE and --way' --water along.csv
 refuse '--water FILE and --way' --way '0,0 8,0'

@@ -82,7 +82,8 @@ static void describe(const way_job *run, struct sheet *s)
         run->water_file, moray_power_label(&snake->robot, snake->model), snake->robot.supply.constant);
     moray_text_add(
         s->words, sizeof s->words,
-        "Each place by itself, in the current met there and then. A gait for each takes %+.3g %% of work beside "
+        "Steady gaits in the currents met there and then, with what a second is worth where they change with time. A "
+        "gait for each place takes %+.3g %% of work beside "
         "the best kept all the way (that of %.4g m), %+.3g %% beside the paper's. Swum from rest in these "
         "currents the gaits are off by %.2g %% in speed or power at most.",
         100 * (run->own.work / run->one.work - 1), run->place[run->best].along,
@@ -110,11 +111,12 @@ static void place_to_json(moray_json *json, const way_job *run, const way_place 
     moray_json_members(json, MORAY_MEMBERS({"along_m", p->along}, {"x_m", p->x}, {"y_m", p->y}, {"t_s", p->t},
                                            {"course_deg", p->course / DEG}));
     moray_json_numbers(json, "current_m_s", p->current, 2);
-    moray_json_members(json, MORAY_MEMBERS({"theta_max_deg", theta_max_of(run, &at->gait) / DEG},
-                                           {"omega_deg_s", at->gait.omega / DEG}, {"delta_deg", at->gait.delta / DEG},
-                                           {control ? "phi0_m" : "phi0_deg", at->gait.offset / (control ? 1 : DEG)},
-                                           {"course_speed_m_s", at->course_speed}, {"power_W", at->power},
-                                           {"whole_cost_J_m", budget_of(run, at).over_ground}));
+    moray_json_members(json,
+                       MORAY_MEMBERS({"theta_max_deg", theta_max_of(run, &at->gait) / DEG},
+                                     {"omega_deg_s", at->gait.omega / DEG}, {"delta_deg", at->gait.delta / DEG},
+                                     {control ? "phi0_m" : "phi0_deg", at->gait.offset / (control ? 1 : DEG)},
+                                     {"course_speed_m_s", at->course_speed}, {"power_W", at->power},
+                                     {"whole_cost_J_m", budget_of(run, at).over_ground}, {"time_price_W", p->price}));
     moray_json_object(
         json, "validated",
         MORAY_MEMBERS({"course_speed_m_s", moray_course_speed(&p->swum, p->course)}, {"power_W", p->swum.power}));

@@ -2,7 +2,8 @@
 //
 // A way through water that is not uniform: at each of its places the gait of least whole work per metre over ground in
 // the current that the robot meets there and then, as though it swam in that current for good. That is the same
-// approximation as the water's own (src/snake/README.md): what changes within a few strokes is left out.
+// approximation as the water's own (src/snake/README.md): what changes within a few strokes is left out. Where the
+// current changes with time, a second has a price: what it costs on the rest of the way to be there later.
 #ifndef PROBLEMS_GAIT_WAY_WAY_H
 #define PROBLEMS_GAIT_WAY_WAY_H
 
@@ -13,7 +14,8 @@ enum { WAY_PLACES = 60 };
 // The middle of an equal share of the way.
 typedef struct way_place {
     double along, x, y, course; // [m], [rad]
-    double t, current[2];       // when the robot is there, on the gaits found, and what it meets [s], [m/s]
+    double t, left, current[2]; // when the robot is there, and at the end of the share; what it meets [s], [m/s]
+    double price;               // of a second, beside the constant power, as the water changes behind [W]
     stage at;
     moray_steady swum; // simulated from rest in that current; power NaN: cannot be
 } way_place;
@@ -29,7 +31,7 @@ typedef struct way_job {
     int places;
     moray_water *water;
     moray_path path;
-    way_place place[WAY_PLACES];
+    way_place place[WAY_PLACES], again[WAY_PLACES]; // again: room
     way_total own, one, paper; // on a gait for each place, on the best of these all the way, on the paper's
     int best;                  // place of that one
 } way_job;
