@@ -129,6 +129,11 @@ print benchmark_horizon benchmark --part horizon --set repeats=3
 show benchmark benchmark --set repeats=3 --set most_intervals=1000
 by problems/benchmark/peers/run.sh peers 5 # the other tools, where they are installed
 
+# Wants debootstrap, root and a quiet machine: by name alone.
+case $wanted in
+*" fresh "*) by tests/studies/fresh.sh fresh ;;
+esac
+
 # Takes an hour: by name alone.
 case $wanted in
 *" trust "*) by tests/studies/trust.sh trust build ;;

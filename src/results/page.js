@@ -26,7 +26,8 @@
       for (const frame of body.at) for (let i = 0; i < frame.length; i += 3) see(frame[i], frame[i + 1]);
     }
     for (const [x, y] of scene.asked || []) see(x, y);
-    let width = x1 - x0 + 3 * reach, height = y1 - y0 + 3 * reach;
+    const margin = (scene.bodies.some(b => b.force) ? 5 : 3) * reach; // the lines of forces are some two links long
+    const width = x1 - x0 + margin, height = y1 - y0 + margin;
     const flattest = 3, tallest = 0.8;
     const w = Math.max(width, height / tallest), h = Math.max(height, w / flattest);
     return { x: (x0 + x1) / 2, y: (y0 + y1) / 2, w, h };

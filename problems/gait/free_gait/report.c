@@ -215,9 +215,12 @@ static moray_status make_scene(const free_gait *run, moray_swim_scene *scene)
     char baseline[64];
     scene->scene.title = "The freest motion swimming";
     scene->scene.text = "All from rest on the same water, simulated, side by side.";
-    MORAY_TRY(gait_job_scene_add(job, scene, freest(run)->name, MORAY_COLOUR_BEST, &freest(run)->at.trial, 2));
-    MORAY_TRY(gait_job_scene_add(job, scene, "best gait (25)", MORAY_COLOUR_SECOND, &last_stage(job)->trial, 1));
-    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0);
+    MORAY_TRY(gait_job_scene_add(job, scene, freest(run)->name, MORAY_COLOUR_BEST, &freest(run)->at.trial, 2,
+                                 GAIT_SHOWN_SECONDS));
+    MORAY_TRY(gait_job_scene_add(job, scene, "best gait (25)", MORAY_COLOUR_SECOND, &last_stage(job)->trial, 1,
+                                 GAIT_SHOWN_SECONDS));
+    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0,
+                              GAIT_SHOWN_SECONDS);
 }
 
 static moray_judgement judge(const free_gait *run, char *text)

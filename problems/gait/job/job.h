@@ -281,10 +281,12 @@ moray_status gait_job_draw_gait(const gait_job *job, const char *what, const mor
 // All figures of a job, as moray_results wants them. Error: the same.
 moray_status gait_job_draw(const void *job, moray_output *output);
 
-// Adds a gait to the scene of a page: the robot from rest on the job's model, `place` lengths of it aside across the
-// course. What cannot be swum or simulated is left out. Error: MORAY_MEMORY.
+enum { GAIT_SHOWN_SECONDS = 15 };
+
+// Adds a gait to the scene of a page: the robot from rest on the job's model for so many seconds, `place` times its
+// room aside across the course. What cannot be swum or simulated is left out. Error: MORAY_MEMORY.
 moray_status gait_job_scene_add(const gait_job *job, moray_swim_scene *scene, const char *name, moray_colour colour,
-                                const moray_gait_trial *trial, int place);
+                                const moray_gait_trial *trial, int place, double seconds);
 
 // trajectory.csv of a stage. Error: MORAY_IO, MORAY_MEMORY.
 moray_status gait_job_trajectory(const gait_job *job, const stage *at, moray_output *output);

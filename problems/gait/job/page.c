@@ -70,17 +70,17 @@ static void certify(const gait_job *job, gait_job_page *page)
 }
 
 moray_status gait_job_scene_add(const gait_job *job, moray_swim_scene *scene, const char *name, moray_colour colour,
-                                const moray_gait_trial *trial, int place)
+                                const moray_gait_trial *trial, int place, double seconds)
 {
     const moray_model model = job->snake.model;
-    const double duration = 15, apart = 6 * place * job->snake.robot.l, course = job->snake.course;
+    const double apart = 6 * place * job->snake.robot.l, course = job->snake.course;
     if (isnan(trial->steady[model].speed))
         return moray_ok();
     const moray_swim_look look = {.name = name,
                                   .colour = colour,
                                   .width = 2 * job->snake.geometry.a_e,
                                   .aside = {-apart * sin(course), apart * cos(course)}};
-    const moray_status status = moray_swim_scene_gait(scene, &look, &job->rig, trial, model, duration);
+    const moray_status status = moray_swim_scene_gait(scene, &look, &job->rig, trial, model, seconds);
     return status.code == MORAY_MEMORY ? status : moray_ok();
 }
 
@@ -92,8 +92,10 @@ static moray_status make_scene(gait_job *job, gait_job_page *page)
     moray_swim_scene *scene = &page->scene;
     scene->scene.title = "The robot swimming";
     scene->scene.text = "Both from rest on the same water, simulated, side by side.";
-    MORAY_TRY(gait_job_scene_add(job, scene, gait_job_kind(job, at), gait_job_colour(job, at), &at->trial, 1));
-    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0);
+    MORAY_TRY(gait_job_scene_add(job, scene, gait_job_kind(job, at), gait_job_colour(job, at), &at->trial, 1,
+                                 GAIT_SHOWN_SECONDS));
+    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0,
+                              GAIT_SHOWN_SECONDS);
 }
 
 moray_status gait_job_page_new(gait_job *job, gait_job_page *page)

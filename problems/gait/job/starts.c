@@ -158,8 +158,8 @@ static moray_status try_random(struct hand *hand, int n, int jobs, moray_status 
     moray_gait gait;
     hand->gait = jobs > 1 ? calloc((size_t)most, sizeof *hand->gait) : &gait;
     struct outcome *outcome = jobs > 1 ? calloc((size_t)most, sizeof *outcome) : NULL;
-    moray_status status = jobs > 1 && (!hand->gait || !outcome) ? moray_error(MORAY_MEMORY, "no memory for %d starts", n)
-                                                                : moray_ok();
+    moray_status status =
+        jobs > 1 && (!hand->gait || !outcome) ? moray_error(MORAY_MEMORY, "no memory for %d starts", n) : moray_ok();
     for (int k = 0, some; k < n && !moray_failed(status) && !moray_interrupted(); k += some) {
         some = jobs == 1 ? 1 : n - k < most ? n - k : most;
         for (int i = 0; i < some; i++)

@@ -210,17 +210,24 @@ static moray_status make_scene(const pareto *run, moray_swim_scene *scene)
     const pareto_front *lateral = &run->front[run->fronts - run->fronts / (1 + (int)run->job.snake.model)];
     const pareto_front *eel = lateral + 1;
     const gait_job *job = &run->job;
+    const double ways = 6,
+                 length = 2 * job->snake.robot.l * job->snake.robot.links; // the fastest swims so many lengths
+    const double speed = lateral->n > 0 ? lateral->at[0].trial.steady[job->snake.model].speed : NAN;
+    const double seconds = fmin(GAIT_SHOWN_SECONDS, ways * length / speed); // of a number and a NaN the number
     char baseline[64];
     scene->scene.title = "Ends of the fronts, swimming";
     scene->scene.text = "All from rest on the same water, simulated, side by side.";
     if (lateral->n > 0)
-        MORAY_TRY(gait_job_scene_add(job, scene, "fastest lateral gait", MORAY_COLOUR_BEST, &lateral->at[0].trial, 3));
+        MORAY_TRY(gait_job_scene_add(job, scene, "fastest lateral gait", MORAY_COLOUR_BEST, &lateral->at[0].trial, 3,
+                                     seconds));
     if (eel->n > 0)
-        MORAY_TRY(gait_job_scene_add(job, scene, "fastest eel-like gait", MORAY_COLOUR_SECOND, &eel->at[0].trial, 2));
+        MORAY_TRY(gait_job_scene_add(job, scene, "fastest eel-like gait", MORAY_COLOUR_SECOND, &eel->at[0].trial, 2,
+                                     seconds));
     if (lateral->n > 1)
         MORAY_TRY(gait_job_scene_add(job, scene, "lateral gait of the least power", MORAY_COLOUR_THIRD,
-                                     &last(lateral)->trial, 1));
-    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0);
+                                     &last(lateral)->trial, 1, seconds));
+    return gait_job_scene_add(job, scene, gait_job_baseline(job, baseline), MORAY_COLOUR_BASELINE, &job->paper, 0,
+                              seconds);
 }
 
 static moray_judgement judge(const pareto *run, char *text)

@@ -271,10 +271,11 @@ static moray_status make_scene(const search_gait *run, moray_swim_scene *scene)
     scene->scene.text = "All from rest on the same water, simulated, side by side.";
     for (int k = 0; k < n; k++) {
         snprintf(name, sizeof name, "optimum %d", k + 1);
-        MORAY_TRY(gait_job_scene_add(&run->job, scene, name, colours[k], &run->optimum[k].at.trial, n - k));
+        MORAY_TRY(gait_job_scene_add(&run->job, scene, name, colours[k], &run->optimum[k].at.trial, n - k,
+                                     GAIT_SHOWN_SECONDS));
     }
     return gait_job_scene_add(&run->job, scene, gait_job_baseline(&run->job, baseline), MORAY_COLOUR_BASELINE,
-                              &run->job.paper, 0);
+                              &run->job.paper, 0, GAIT_SHOWN_SECONDS);
 }
 
 static moray_status write(const void *found, moray_output *output)

@@ -121,7 +121,7 @@ static void say_forecast(const sensitivity *run, sensitivity_findings *f)
             "was, by %+.3f %% and %+.3f %%.",
             percent(moray_course_speed(swum[1], course), best), percent(swum[1]->power, swum[2]->power),
             percent(moray_course_speed(swum[0], course), best), percent(swum[0]->power, swum[2]->power));
-    moray_text_add(f->text, SENSITIVITY_TEXT, " The speed that the slopes alone prediction is off by %+.2f %%.",
+    moray_text_add(f->text, SENSITIVITY_TEXT, " The speed that the slopes alone predict is off by %+.2f %%.",
                    percent(forecast->prediction[1].course_speed, forecast->prediction[2].course_speed));
     if (fabs(forecast->change.step) < 1)
         moray_text_add(f->text, SENSITIVITY_TEXT, " WARNING: after %.2g %% of the way the active set changes: %s.",
@@ -241,15 +241,17 @@ static moray_status make_scene(const sensitivity *run, moray_swim_scene *scene)
     if (!forecast->asked || moray_failed(forecast->why)) {
         scene->scene.title = "The fastest gait swimming";
         MORAY_TRY(gait_job_scene_add(&there, scene, gait_job_kind(&run->job, last_stage(&run->job)), MORAY_COLOUR_BEST,
-                                     &last_stage(&run->job)->trial, 1));
+                                     &last_stage(&run->job)->trial, 1, GAIT_SHOWN_SECONDS));
         return gait_job_scene_add(&there, scene, gait_job_baseline(&there, baseline), MORAY_COLOUR_BASELINE,
-                                  &there.paper, 0);
+                                  &there.paper, 0, GAIT_SHOWN_SECONDS);
     }
     scene->scene.title = "In another current: the gait kept, predicted, solved again";
     memcpy(there.rig.current, forecast->current, sizeof there.rig.current);
-    MORAY_TRY(gait_job_scene_add(&there, scene, "solved again", MORAY_COLOUR_SECOND, &forecast->trial[2], 2));
-    MORAY_TRY(gait_job_scene_add(&there, scene, "predicted", MORAY_COLOUR_BEST, &forecast->trial[1], 1));
-    return gait_job_scene_add(&there, scene, "kept", MORAY_COLOUR_BASELINE, &forecast->trial[0], 0);
+    MORAY_TRY(gait_job_scene_add(&there, scene, "solved again", MORAY_COLOUR_SECOND, &forecast->trial[2], 2,
+                                 GAIT_SHOWN_SECONDS));
+    MORAY_TRY(
+        gait_job_scene_add(&there, scene, "predicted", MORAY_COLOUR_BEST, &forecast->trial[1], 1, GAIT_SHOWN_SECONDS));
+    return gait_job_scene_add(&there, scene, "kept", MORAY_COLOUR_BASELINE, &forecast->trial[0], 0, GAIT_SHOWN_SECONDS);
 }
 
 static moray_status draw(const void *found, moray_output *output)

@@ -35,7 +35,7 @@ typedef struct sensitivity_row {
     bool current;         // which is measured by the speed
     double slope[SLOPES]; // from the KKT system
     double again[SLOPES]; // from solving again at both sides; NaN where that fails
-    double swum[2];       // first-principles speed and power of the gaits that the slopes prediction, by simulation
+    double swum[2];       // first-principles speed and power of the gaits that the slopes predict, by simulation
     double deviation;     // largest |slope - again| scale / size of the quantity
     moray_active_change up, down; // steps in the unit
     bool unsteady;                // the active set changes within the differences
