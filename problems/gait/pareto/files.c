@@ -92,16 +92,18 @@ static moray_status draw(const pareto *run, const picture *what, double *const v
                          moray_output *output)
 {
     moray_curve curves[2 * PARETO_FRONTS];
-    char labels[2 * PARETO_FRONTS][80];
+    char labels[2 * PARETO_FRONTS][100];
     int n = 0;
     for (int f = 0; f < run->fronts; f++) {
         const pareto_front *front = &run->front[f];
         const bool control = front->model == MORAY_CONTROL_ORIENTED;
-        if (front->n == 0 || (front->kind == 2 && (control || pareto_is_lateral(front)))) // no more curves than the palette tells apart
+        if (front->n == 0 ||
+            (front->kind == 2 && (control || pareto_is_lateral(front)))) // no more curves than the palette tells apart
             continue;
         for (int truth = 0; truth <= (what->truth && control); truth++, n++) {
             snprintf(labels[n], sizeof labels[n], "%s, %s%s", pareto_kinds[front->kind],
-                     control ? "c.-o. optima" : "f.-p. optima", truth ? " on the f.-p. model" : "");
+                     control ? "control-oriented optima" : "first-principles optima",
+                     truth ? ", swum on the first-principles model" : "");
             curves[n] = (moray_curve){.label = labels[n],
                                       .x = values[f] + (truth ? PARETO_TRUE_POWER : PARETO_POWER),
                                       .y = values[f] + (truth ? PARETO_TRUE_SPEED : what->value),
