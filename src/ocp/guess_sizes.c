@@ -10,13 +10,18 @@ static const double least_size = 1e-15; // that is derived from others
 enum { trial_nodes = 8 };               // at which integrands are looked at, about
 enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
-static const double noise = 1e-8;       // a guess as small as this may be rounding
+static const double noise = 1e-9;       // part of a size that may be rounding
+
+bool moray_is_rounding(double value, double size)
+{
+    return !(fabs(value) > noise * size);
+}
 
 double moray_known_size(moray_bounds bounds, double guess)
 {
     if (bounds.lower > -MORAY_ENDLESS && bounds.upper < MORAY_ENDLESS && bounds.lower < bounds.upper)
         return fmax(fabs(bounds.lower), fabs(bounds.upper));
-    return guess > noise && guess < MORAY_INFINITY ? guess : 0;
+    return !moray_is_rounding(guess, 1) && guess < MORAY_INFINITY ? guess : 0;
 }
 
 // Of a state: that of its box, unless it is fixed at both ends to far less.
@@ -27,12 +32,15 @@ static double size_of_state(const struct phase *phase, int r, double guess)
     return fixed && guess * wide < known ? moray_known_size(moray_free(), guess) : known;
 }
 
+// Of a state: its largest value, or how far it goes.
 static double largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
 {
-    double largest = 0;
-    for (int n = 0; n < layout->nodes; n++)
-        largest = fmax(largest, fabs(x[layout->node[n].x + offset]));
-    return largest;
+    double low = INFINITY, high = -INFINITY;
+    for (int n = 0; n < layout->nodes; n++) {
+        low = fmin(low, x[layout->node[n].x + offset]);
+        high = fmax(high, x[layout->node[n].x + offset]);
+    }
+    return fmax(high - low, fmax(fabs(low), fabs(high)));
 }
 
 // How far an input of size 1 moves a state over the phase, by the largest slope among the nodes at the guess.
@@ -58,9 +66,10 @@ static double known_reach(const struct transcription *t, int p, const double *si
     return furthest;
 }
 
-// The size of an input that nothing else tells: for a state what those of known size move it by, else what it takes to
-// move a state of known size by that, or by as much as another cause does where they hold each other in check. 0:
-// nothing is known.
+// The size of an input that nothing else tells: for a state what those of known size move it by; or what it takes to
+// move a state of known size by that, or by as much as another cause does where they hold each other in check. The one
+// grows with the duration, the other falls: where there are both, the mean of their digits does not hang on a guess of
+// it. 0: nothing is known.
 static double derived_size(const struct transcription *t, int p, const double *size, int i)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -69,7 +78,9 @@ static double derived_size(const struct transcription *t, int p, const double *s
     for (int r = 0; r < phase->nx; r++)
         if (size[r] > 0 && reach(t, p, r, i) > 0)
             by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / reach(t, p, r, i));
-    return by_causes > 0 ? by_causes : isfinite(by_effects) ? by_effects : 0;
+    if (by_causes > 0)
+        return isfinite(by_effects) && by_effects > 0 ? sqrt(by_causes * by_effects) : by_causes;
+    return isfinite(by_effects) ? by_effects : 0;
 }
 
 static double largest_of(const double *size, int n)

@@ -4,6 +4,8 @@
 
 #include "ocp/solution.h"
 
+bool moray_is_rounding(double value, double size); // whether it may be, of what has that size
+
 // Of a quantity: that of its bounds where it has both, else of its guess; 0 where that says nothing.
 double moray_known_size(moray_bounds bounds, double guess);
 

@@ -49,8 +49,9 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
     moray_fill_sights(layout, phase, in_node, true, g_scale);
     for (int m = 0; m < phase->nq; m++) {
         const double here = fabs(x[layout->q + m]);
+        const double usual = moray_size_of_integral(t, p, m, found ? 0 : here, size, size + phase->nx + phase->nu);
         x_scale[layout->q + m] = g_scale[layout->integral_row + m] =
-            1 / (found && here > 0 ? here : moray_size_of_integral(t, p, m, here, size, size + phase->nx + phase->nu));
+            1 / (found && !moray_is_rounding(here, usual) ? here : usual);
     }
     if (layout->t0 >= 0)
         x_scale[layout->t0] = 1 / size_of_time(phase->t0, t0, tf, phase->tf.upper, found);
@@ -58,7 +59,24 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
         x_scale[layout->tf] = 1 / size_of_time(phase->tf, tf, t0, phase->t0.lower, found);
 }
 
-// A row that is not a defect: the largest entry of its gradient in scaled variables becomes at most 1.
+// A path constraint has one scale along its phase, by the steepest of its rows. Scales are being collected, negative.
+static void join_path_rows(const struct transcription *t, double *g_scale)
+{
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const struct phase_layout *layout = &t->layout.phase[p];
+        for (int i = 0; i < t->ocp->phase[p].nc; i++) {
+            double steepest = 0;
+            for (int n = 0; n < layout->nodes; n++)
+                if (layout->node[n].collocated)
+                    steepest = fmin(steepest, g_scale[layout->node[n].path + i]);
+            for (int n = 0; n < layout->nodes; n++)
+                if (layout->node[n].collocated)
+                    g_scale[layout->node[n].path + i] = steepest;
+        }
+    }
+}
+
+// A row that is not a defect: the largest entry of its gradient in scaled variables becomes 1, in any units.
 static void scale_row_groups(const struct transcription *t, const double *jac, const double *x_scale, double *g_scale)
 {
     for (int k = 0; k < t->nlp.nnz_jac; k++) {
@@ -67,9 +85,10 @@ static void scale_row_groups(const struct transcription *t, const double *jac, c
         if (*scale <= 0)
             *scale = fmin(*scale, -slope); // negative while being collected
     }
+    join_path_rows(t, g_scale);
     for (int i = 0; i < t->nlp.m; i++)
         if (g_scale[i] <= 0)
-            g_scale[i] = g_scale[i] < -1 ? -1 / g_scale[i] : 1;
+            g_scale[i] = g_scale[i] < 0 ? -1 / g_scale[i] : 1;
 }
 
 static double moray_objective_scale(const struct transcription *t, const double *gradient, const double *x_scale)

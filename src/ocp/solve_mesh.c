@@ -9,13 +9,14 @@
 #include <string.h>
 
 #include "ocp/certificate/saddle.h"
+#include "ocp/guess_sizes.h"
 #include "ocp/observe/observed.h"
 #include "ocp/observe/sight.h"
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-2;
-static const double out_of_scale = 1e-3, nothing = 1e-9; // of what a duration was scaled by
-static const double least_seconds = 1e-3;                // of a solve that is begun
+static const double out_of_scale = 1e-3;  // of what a duration was scaled by
+static const double least_seconds = 1e-3; // of a solve that is begun
 
 moray_status moray_allocate_iterate(moray_solution *solution)
 {
@@ -71,7 +72,7 @@ static bool can_start_warm(const moray_solution *solution, const moray_guess *gu
 
 static bool is_small(double scaled)
 {
-    return fabs(scaled) < out_of_scale && fabs(scaled) > nothing;
+    return fabs(scaled) < out_of_scale && !moray_is_rounding(scaled, 1);
 }
 
 // Whether a duration or an integral that was found is far smaller than what it was scaled by: a guess of one unit of

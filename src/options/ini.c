@@ -15,6 +15,7 @@ typedef struct ini_state {
     void *settings;
     int *set_in_line;         // of each row; 0: not yet
     const moray_option *open; // the list that goes on in the next line; NULL: none
+    bool passing;             // that list is one of another program
     char list[LIST_SIZE];     // of it, so far
     moray_ipopt_list ipopt;   // what this file has set
     bool words_given;         // before it was read
@@ -31,8 +32,9 @@ static char *next_line(char *line, int size, void *self)
         return NULL;
     const char *from = text->line[text->at++];
     from += strspn(from, " \t");
-    const bool more = state->open && *from && !strchr(";#\r\n", *from);
-    const char *key = more ? state->open->key : "", *is = more ? "=" : "";
+    state->passing = state->passing && *from != '[';
+    const bool more = (state->open || state->passing) && *from && !strchr(";#\r\n", *from);
+    const char *key = !more ? "" : state->open ? state->open->key : "passed", *is = more ? "=" : "";
     if (strlen(key) + strlen(is) + strlen(from) >= (size_t)size) {
         state->status =
             moray_text_error(text, text->at, moray_error(MORAY_INPUT, "longer than %d characters", size - 1));
@@ -73,6 +75,20 @@ static moray_status set_run(ini_state *state, const char *key, const char *value
     return moray_ok();
 }
 
+static bool ends_with_comma(const char *value)
+{
+    return *value && value[strlen(value) - 1] == ',';
+}
+
+// Whether a key of a run is of no use to this program: options of Ipopt are, where it solves.
+static bool is_foreign(const ini_state *state, const char *section, const char *key)
+{
+    if (strcmp(section, "ipopt") == 0)
+        return !moray_option_find_ipopt(state->options, "ipopt.key=value");
+    const moray_option *own = moray_option_find(state->options, key);
+    return !own || strcmp(section, own->section) != 0;
+}
+
 // One line of a list; the last one has no comma behind it.
 static moray_status set_list(ini_state *state, const moray_option *row, const char *value)
 {
@@ -80,16 +96,15 @@ static moray_status set_list(ini_state *state, const moray_option *row, const ch
     if (length + added >= sizeof state->list)
         return moray_error(MORAY_INPUT, "%s: longer than %zu characters", row->key, sizeof state->list - 1);
     memcpy(state->list + length, value, added + 1);
-    state->open = added > 0 && value[added - 1] == ',' ? row : NULL;
+    state->open = ends_with_comma(value) ? row : NULL;
     return state->open ? moray_ok() : moray_option_read(row, row->key, state->list, state->settings);
 }
 
 static moray_status set_key(ini_state *state, const char *section, const char *key, const char *value)
 {
-    if (state->of_a_run) {
-        const moray_option *own = moray_option_find(state->options, key);
-        if (!own || strcmp(section, own->section) != 0)
-            return moray_ok();
+    if (state->of_a_run && (state->passing || is_foreign(state, section, key))) {
+        state->passing = ends_with_comma(value);
+        return moray_ok();
     }
     if (strcmp(section, "ipopt") == 0)
         return set_ipopt(state, key, value);

@@ -512,6 +512,35 @@ static void test_small_parts(void)
     CHECK(strcmp(moray_version(), MORAY_VERSION) == 0, "version %s", moray_version());
 }
 
+// ---- Settings of a run of another program ----
+
+typedef struct heir {
+    moray_common common;
+    double depth;
+    char from[64];
+} heir;
+
+static void test_run_of_another(void)
+{
+    static const moray_option own[] = {
+        MORAY_ROW(REAL, heir, depth, "problem", "depth_m", .help = "h"),
+        MORAY_ROW(RUN, heir, from, "problem", "from", .flag = "from", .argument = "DIR", .help = "h")};
+    static const moray_program heir_program = {.name = "h", .summary = "s", .options = own, .n_options = 2};
+    char path[64], *argv[] = {"h", "--from", directory};
+    heir s = {.common = moray_common_default()};
+    moray_request request;
+    snprintf(path, sizeof path, "%s/run.ini", directory);
+    FILE *file = fopen(path, "w");
+    fputs("[links]\nlink_m_kg = 0.4,\n  0.5,\n\n  0.6\n[problem]\ndepth_m = 4\nodd = 1,\n[ipopt]\nmu_strategy = "
+          "adaptive\n",
+          file);
+    fclose(file);
+    CHECK_OK(moray_app_parse(&heir_program, 3, argv, &s, &request), "a list of another program");
+    CHECK(s.depth == 4, "its own keys are taken: %g", s.depth);
+    CHECK(s.common.ipopt.n == 1 && strcmp(s.common.ipopt.at[0].key, "mu_strategy") == 0, "and the options of Ipopt");
+    unlink(path);
+}
+
 int main(void)
 {
     if (!mkdtemp(directory))
@@ -528,6 +557,7 @@ int main(void)
     test_plain();
     test_words();
     test_idle();
+    test_run_of_another();
     test_small_parts();
     rmdir(directory);
     return tap_done();

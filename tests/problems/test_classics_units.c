@@ -225,6 +225,7 @@ int main(int argc, char **argv)
     test_one("bryson-denham", 0);
     test_one("van-der-pol", 0);
     test_one("hypersensitive", 0);
+    test_one("rayleigh", 0);
     CHECK(2 * compared > tried, "%d of %d ended on the same mesh", compared, tried);
     return tap_done();
 }

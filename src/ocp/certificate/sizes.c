@@ -78,6 +78,7 @@ void moray_size_by_effect(struct witness *e, int p)
         const double width = moray_witness_width(e->phase[p].box[j]);
         if (size[j] <= 0)
             size[j] = width > 0 ? width : 1;
+        size[j] = width > 0 ? fmin(size[j], width) : size[j]; // further it never moves
     }
 }
 
