@@ -9,7 +9,7 @@
 // with --json, on standard output; with --out a report. Error: MORAY_IO, MORAY_MEMORY, MORAY_NOT_SOLVED.
 moray_status sweep_measure(sweep_arguments *a, int argc, char **argv);
 
-enum { REAL_POINTS = 8, SIZES = 3, NUMBERS = 20 };
+enum { REAL_POINTS = 8, SIZES = 3, NUMBERS = 20, ANSWERS = 1000 };
 
 // One sweep in a process of its own.
 typedef struct cost {
@@ -25,6 +25,7 @@ typedef struct plain_loop {
 typedef struct measured {
     plain_loop loop, two_loops;    // one; two at once, each with half of the points
     cost one, two, warm;           // of the same points
+    cost answers;                  // as long as one of these, ANSWERS of them, of no cost
     long size[SIZES];              // points of no cost
     cost made[SIZES], read[SIZES]; // and the same files once more, where nothing is left to do
 } measured;

@@ -11,7 +11,7 @@
 // What the process that hands out does for an answer of max_speed's length, on the processor.
 static double handing(const measured *m)
 {
-    return m->one.result.handing / REAL_POINTS;
+    return m->answers.result.handing / ANSWERS;
 }
 
 // On the processor: all of the sweep over the loop.
@@ -56,7 +56,9 @@ static void tell_work(const measured *m, moray_table_row row[WORK])
         {.label = "sweep, two cores", .value = {m->two.result.seconds / n}, .unit = "s a point"},
         {.label = "efficiency", .value = {efficiency(m)}, .unit = "%"},
         {.label = "of what two plain loops reach", .value = {of_loops(m)}, .unit = "%"},
-        {.label = "answers, in the process that hands out", .value = {1e3 * handing(m)}, .unit = "ms a point"},
+        {.label = "an answer of that length, in the process that hands out",
+         .value = {1e3 * handing(m)},
+         .unit = "ms a point"},
         {.label = "the same from neighbours", .value = {m->warm.result.seconds / n}, .unit = "s a point"},
         {.label = "begun from a neighbour", .value = {(double)m->warm.result.warm}},
         {.label = "of these, solved so", .value = {(double)m->warm.result.held}},
@@ -111,7 +113,7 @@ static void tell_paper(const measured *m, moray_table_row row[PAPER])
         {.label = "its memory", .value = {memory_of(m, points)}, .unit = "MB"},
         {.label = "results file", .value = {m->made[SIZES - 1].file * grown / 1e6}, .unit = "MB"},
         {.label = "journal, as long as max_speed's summaries",
-         .value = {m->one.journal / REAL_POINTS * points / 1e9},
+         .value = {m->answers.journal / ANSWERS * points / 1e9},
          .unit = "GB"},
         {.label = "writing the file once", .value = {m->read[SIZES - 1].result.saving / 2 * grown}, .unit = "s"}};
     memcpy(row, all, sizeof all);

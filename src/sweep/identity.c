@@ -44,7 +44,7 @@ char *moray_identity_line(const struct grid *grid)
     const bool written = file && !moray_failed(moray_json_write(json, file));
     if (file)
         fclose(file);
-    if (!written || moray_failed(moray_json_on_one_line(text, &line)))
+    if (!written || moray_failed(moray_json_on_one_line(text, &line, NULL)))
         line = NULL;
     free(text);
     moray_json_free(json);

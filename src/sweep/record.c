@@ -11,6 +11,7 @@ void moray_record_free(struct record *record)
 {
     free(record->reason);
     free(record->found);
+    cJSON_Delete(record->read);
     *record = (struct record){0};
 }
 
@@ -81,6 +82,7 @@ moray_status moray_record_read(const char *text, struct record *record)
         record->seconds = seconds;
         record->reason = strdup(reason->valuestring);
         record->found = found ? raw_found(text) : NULL;
+        record->read = cJSON_DetachItemFromObjectCaseSensitive(line, "found");
         if (!record->reason || (found && !record->found))
             status = moray_error(MORAY_MEMORY, "no memory for a record");
     }
@@ -90,14 +92,17 @@ moray_status moray_record_read(const char *text, struct record *record)
     return status;
 }
 
-moray_status moray_json_on_one_line(const char *text, char **line)
+moray_status moray_json_on_one_line(const char *text, char **line, cJSON **read)
 {
     cJSON *object = text ? cJSON_Parse(text) : NULL;
     const bool is_object = cJSON_IsObject(object);
-    cJSON_Delete(object);
     *line = is_object ? strdup(text) : NULL;
     if (*line)
         cJSON_Minify(*line);
+    if (read && *line)
+        *read = object;
+    else
+        cJSON_Delete(object);
     const bool failed = is_object && !*line;
     return failed ? moray_error(MORAY_MEMORY, "no memory for a summary") : moray_ok();
 }

@@ -186,7 +186,7 @@ static bool is_better(const struct store *store, const struct record *record, do
 moray_status moray_store_add(struct store *store, const struct record *record, bool *better)
 {
     const long at = record->task.point;
-    cJSON *found = record->found ? cJSON_Parse(record->found) : NULL;
+    const cJSON *found = record->read;
     const double objective = objective_of(store, found);
     *better = is_better(store, record, objective);
     store->seconds[at] += record->seconds;
@@ -209,6 +209,5 @@ moray_status moray_store_add(struct store *store, const struct record *record, b
     } else if (record->code == MORAY_OK) {
         store->other[at] = objective;
     }
-    cJSON_Delete(found);
     return w.no_memory ? moray_error(MORAY_MEMORY, "no memory for the numbers of point %ld", at) : moray_ok();
 }

@@ -62,14 +62,16 @@ struct record {
     moray_code code;
     double seconds;
     char *reason, *found; // owned; found: a JSON object on one line, or NULL
+    struct cJSON *read;   // the same, read; owned
 };
 
 void moray_record_free(struct record *record);
 char *moray_record_line(const struct record *record);                    // to be freed; NULL: no memory
 moray_status moray_record_read(const char *line, struct record *record); // Error: MORAY_INPUT, MORAY_MEMORY
 bool moray_record_task(const char *line, struct task *task);             // no more than what it was an attempt at
-// The object that a text holds, on one line, to be freed; NULL where it holds none. Error: MORAY_MEMORY.
-moray_status moray_json_on_one_line(const char *text, char **line);
+// The object that a text holds, on one line, and read unless `read` is NULL, both to be freed; NULL where it holds
+// none. Error: MORAY_MEMORY.
+moray_status moray_json_on_one_line(const char *text, char **line, struct cJSON **read);
 
 // ---- Store ---------------------------------------------------------------------------------------------------------
 

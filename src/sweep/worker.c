@@ -180,7 +180,7 @@ moray_status moray_worker_record(struct worker *worker, const struct grid *grid,
     *record = (struct record){.task = worker->task, .seconds = moray_clock() - worker->begun};
     judge(worker, grid, record, reason, sizeof reason);
     record->reason = strdup(reason);
-    moray_status status = record->reason ? moray_json_on_one_line(worker->text[0], &record->found)
+    moray_status status = record->reason ? moray_json_on_one_line(worker->text[0], &record->found, &record->read)
                                          : moray_error(MORAY_MEMORY, "no memory for a record");
     if (!moray_failed(status) && !record->found && record->code == MORAY_OK) {
         record->code = MORAY_NOT_SOLVED;
