@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What was measured of a sweep, as tables, and what follows from it on paper.
+#include <math.h>
 #include <string.h>
 
 #include "moray/app/options.h"
@@ -35,7 +36,8 @@ static double of_loops(const measured *m)
 static double memory_of(const measured *m, double points)
 {
     const int last = SIZES - 1;
-    const double slope = (m->made[last].megabytes - m->made[0].megabytes) / (double)(m->size[last] - m->size[0]);
+    const double more = fmax(0, m->made[last].megabytes - m->made[0].megabytes),
+                 slope = more / (double)(m->size[last] - m->size[0]);
     return m->made[0].megabytes + slope * points;
 }
 

@@ -92,4 +92,14 @@ if thorough; then
     done <inline
     check "there are some: $(wc -l <inline)" [ "$(wc -l <inline)" -ge 5 ]
 fi
+python=
+for one in python3 /usr/bin/python3; do
+    [ -n "$python" ] || ! "$one" -c 'import xarray, netCDF4' 2>/dev/null || python=$one
+done
+if [ -n "$python" ]; then
+    awk '/^```python$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$source/docs/sweeps.md" >read.py
+    check "xarray reads it as sweeps.md says: $("$python" read.py 2>&1 | tail -n 1)" eval '"$python" read.py | grep -q "^0.1 *0\.[0-9]"'
+else
+    echo "ok $((tap_run += 1)) - xarray reads it # SKIP no Python with xarray and netCDF4 (Debian's python3-xarray, python3-netcdf4)"
+fi
 tap_done
