@@ -11,6 +11,7 @@ enum { trial_nodes = 8 };               // at which integrands are looked at, ab
 enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
 static const double noise = 1e-9;       // part of a size that may be rounding
+static const double digits = 1e-13;     // that is left of 1 where a 0 was meant, as by sin(M_PI)
 
 bool moray_is_rounding(double value, double size)
 {
@@ -21,7 +22,7 @@ double moray_known_size(moray_bounds bounds, double guess)
 {
     if (bounds.lower > -MORAY_ENDLESS && bounds.upper < MORAY_ENDLESS && bounds.lower < bounds.upper)
         return fmax(fabs(bounds.lower), fabs(bounds.upper));
-    return !moray_is_rounding(guess, 1) && guess < MORAY_INFINITY ? guess : 0;
+    return guess > digits && guess < MORAY_INFINITY ? guess : 0;
 }
 
 // Of a state: that of its box, unless it is fixed at both ends to far less.

@@ -56,16 +56,22 @@ struct told {
     double value, doubt;
 };
 
-// Second differences of one step after another, extrapolated: row[levels] is that of the step before.
-static struct told extrapolate(const struct bending *b, int level, double here, double noise, double *row)
+// Which points a second difference is of: the one in the middle is `at` steps off.
+enum side { behind = -1, both, ahead };
+
+// Second differences of one step after another, extrapolated: row[levels] is that of the step before. Errors go with
+// the square of the step, or with the step.
+static struct told extrapolate(const struct bending *b, enum side at, int level, double noise, double *row)
 {
     struct told told = {NAN, INFINITY};
     const double h = ldexp(first_step, -2 * level);
     double rounding = noise, above = row[0], power = 1;
-    row[0] = (weighted_at(b, h, &rounding) - 2 * here + weighted_at(b, -h, &rounding)) / (h * h);
+    row[0] = (weighted_at(b, (at + 1) * h, &rounding) - 2 * weighted_at(b, at * h, &rounding) +
+              weighted_at(b, (at - 1) * h, &rounding)) /
+             (h * h);
     for (int k = 1; k <= level; k++) {
         const double old = above;
-        power *= 16;
+        power *= at == both ? 16 : 4;
         above = k < level ? row[k] : 0;
         row[k] = row[k - 1] + (row[k - 1] - old) / (power - 1);
         const double spread =
@@ -78,13 +84,13 @@ static struct told extrapolate(const struct bending *b, int level, double here, 
 
 // The step that agrees best with itself and with all smaller ones: where a function is flat but here, larger ones agree
 // on nothing.
-static double difference(const struct bending *b, double *doubt)
+static double difference_beside(const struct bending *b, enum side at, double *doubt)
 {
     struct told told[levels];
     double row[levels] = {0}, noise = 0, best = NAN;
-    const double here = weighted_at(b, 0, &noise);
+    weighted_at(b, 0, &noise);
     for (int level = 0; level < levels; level++)
-        told[level] = extrapolate(b, level, here, noise, row);
+        told[level] = extrapolate(b, at, level, noise, row);
     *doubt = INFINITY;
     for (int level = 1; level < levels; level++) {
         double far = told[level].doubt;
@@ -96,6 +102,17 @@ static double difference(const struct bending *b, double *doubt)
         }
     }
     return best;
+}
+
+// On one side where functions are not finite on the other.
+static double difference(const struct bending *b, double *doubt)
+{
+    static const enum side order[] = {both, ahead, behind};
+    double found = NAN;
+    *doubt = INFINITY;
+    for (int k = 0; k < 3 && !isfinite(*doubt); k++)
+        found = difference_beside(b, order[k], doubt);
+    return found;
 }
 
 static double in_use(const struct bending *b)

@@ -315,8 +315,84 @@ static void test_untold(void)
     CHECK(share > 0.2 && share < 0.4, "one in three or four is not: %.3f", share);
 }
 
+// ---- Sizes 1e18 apart, told by one bound alone: u = 3 (1 - t), J = 3 ----
+
+static void far_apart(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = 1e9 * at->u[0];
+    out->f[1] = 1e-18 * at->x[0];
+    out->g[0] = at->u[0] * at->u[0];
+}
+
+static void test_far_apart(void)
+{
+    check(&(struct hostile){"sizes of 1e9 and 1e-9",
+                            {.name = "far apart",
+                             .nx = 2,
+                             .nu = 1,
+                             .nq = 1,
+                             .continuous = far_apart,
+                             .tf = moray_fixed(1),
+                             .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                             .xf = MORAY_BOUNDS(moray_free(), moray_fixed(1e-9))},
+                            first_integral,
+                            0,
+                            3,
+                            1e-6});
+}
+
+// ---- A double well without bounds from the top between its sides, where x = u = 0 is stationary and J = 0: the top is
+//      left; and with pow, which has no value where x is negative, its Hessian there is told to be none ----
+
+static void well(const moray_node *at, moray_rates *out, const void *data)
+{
+    const moray_num x = at->x[0];
+    (void)data;
+    out->f[0] = at->u[0];
+    out->g[0] = at->u[0] * at->u[0] + moray_pow(x, 4) - x * x;
+}
+
+static void well_of_pow(const moray_node *at, moray_rates *out, const void *data)
+{
+    const moray_num x = at->x[0];
+    (void)data;
+    out->f[0] = at->u[0];
+    out->g[0] = at->u[0] * at->u[0] + pow(x, 4.0) - x * x;
+}
+
+static void test_well(moray_continuous_fn *continuous, bool has_values)
+{
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = continuous,
+                                    .tf = moray_fixed(10),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(0))};
+    moray_ocp *ocp;
+    moray_solution *solution;
+    moray_certificate c;
+    moray_settings settings = moray_settings_default();
+    settings.max_refinements = 12;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = first_integral}), "well");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "well");
+    CHECK_OK(moray_certify(solution, &careful, &c), "well");
+    if (has_values)
+        CHECK(moray_solution_objective(solution) < -1 && c.pass, "a well, left its top: %.6g %s",
+              moray_solution_objective(solution), c.why);
+    else
+        CHECK(!c.pass && c.directions > MORAY_LIMIT_DIRECTIONS, "half a well: %.6g, %s",
+              moray_solution_objective(solution), c.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
+    test_far_apart();
+    test_well(well, true);
+    test_well(well_of_pow, false);
     test_untold();
     test_late();
     test_dashes();
