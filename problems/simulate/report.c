@@ -151,12 +151,13 @@ static void json_gait(moray_json *json, const simulate *run, const moray_gait_ch
 
 static void json_head(moray_json *json, const simulate *run, const simulate_results *results)
 {
-    moray_snake_to_json(json, &run->snake);
+    static moray_snake_options met; // large
+    met = run->snake;
+    memcpy(met.current, results->current, sizeof met.current);
+    moray_snake_to_json(json, &met);
     moray_json_number(json, "course_deg", run->snake.course / DEG);
-    if (results->water) {
+    if (results->water)
         moray_json_text(json, "water", run->water_file);
-        moray_json_numbers(json, "mean_current_m_s", results->current, 2);
-    }
     moray_json_open_list(json, "gaits");
     for (int i = 0; i < results->n_changes; i++)
         json_gait(json, run, &results->schedule[i]);

@@ -93,7 +93,7 @@ check "swims in a table: $(cat err)" [ $code -eq 0 ]
 found power_W "$power" 1e-9
 found course_speed_m_s "$along" 1e-9
 found speed_m_s "$speed" 1e-9
-found mean_current_m_s 0.1 1e-9
+found current_m_s 0.1 1e-9
 check "and says in what" eval '"$simulate" --water uniform.csv --set rot_gain=40 --set rot_damping=1.15 --duration 1 |
     grep -qF "water of uniform.csv, current (0.1, 0.05) m/s in the mean of the table below"'
 for kind in current table; do # what the water does to each link, as the animation shows it
