@@ -45,6 +45,30 @@ same_by_jobs() {
     [ -s by_1 ] && cmp -s by_1 by_2
 }
 
+# subsets KEY: whether no law of the steering in the JSON of `out` has a larger `validated` KEY than one that leaves some of its
+# numbers out, on the same gait and plan; prints those that have, and how many pairs there are.
+subsets() {
+    python3 - "$1" <<'END'
+import json, sys
+numbers = {"plan": "", "plan and feedback": "g", "feedback": "g", "feedback and rate": "gf", "PID": "gid", "PID and rate": "gfid",
+           "bang-bang": "h", "bang-bang, braking": "hb", "line of sight": "gla"}
+laws = []
+for t in json.load(open("out"))["steering"]:
+    if t["law"] not in numbers or "cut_short" in t:
+        continue
+    own = set(numbers[t["law"]])
+    if t["law"] != "plan" and t.get("reference_known_ahead") and not t["plan"]:
+        own.add("lead")
+    if t.get("name", "").startswith("ILOS"):
+        own.add("integral")
+    laws.append(((t.get("gait"), t["plan"]), own, t["validated"][sys.argv[1]], t["law"]))
+pairs = [(a, b) for a in laws for b in laws if a[0] == b[0] and a[1] < b[1]]
+worse = ["%s %g worse than %s %g" % (b[3], b[2], a[3], a[2]) for a, b in pairs if b[2] > a[2] * (1 + 1e-9)]
+print(len(pairs), "pairs", *worse)
+sys.exit(not pairs or bool(worse))
+END
+}
+
 # number KEY: the first value of KEY in the JSON on standard output; BLOCK KEY: the first after BLOCK opens.
 number() {
     [ $# -eq 1 ] && set -- . "$1"

@@ -22,6 +22,7 @@ run --json --out results $short --current 0.1,0.1 --set reference=steps:6=20 --s
 check "solved and certified: $(cat err)" [ $code -eq 0 ]
 check "one JSON object" eval 'python3 -c "import json, sys; json.load(sys.stdin)" <out'
 check "summary.json is what --json prints" cmp -s out results/summary.json
+check "no law is worse than its subset: $(subsets rms_deg)" eval 'subsets rms_deg >/dev/null'
 for file in report.html trajectory.csv heading.svg offset.svg path.svg joints.svg; do
     check "--out has $file" [ -s results/$file ]
 done

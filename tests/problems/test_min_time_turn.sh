@@ -9,6 +9,7 @@ for file in summary.json report.html trajectory.csv heading.svg offset.svg path.
     check "--out has $file" [ -s results/$file ]
 done
 check "what motors limit is said" grep -q 'plan keeps to what the motors give and how fast they turn' results/report.html
+check "no law is worse than its subset: $(subsets weighted_s)" eval 'subsets weighted_s >/dev/null'
 steady=$(awk -v rate="$(number first_principles_plan turn_rate_deg_s)" 'BEGIN { print 45 / rate }')
 check "the turn takes about as long as steady turning, and the ramps" near "$(number first_principles_plan time_s)" "$steady" 4
 heading=$(grep -n '"plan":[[:space:]]*"fp"' out | head -n 1 | cut -d : -f 1)

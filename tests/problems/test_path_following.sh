@@ -16,6 +16,7 @@ block() {
     awk -v name="\"$1\"" -v key="\"$2\"" 'index($0, name) { seen = 1 } seen && /"validated"/ { inside = 1 }
         inside && index($0, key) { sub(/.*:[ \t]*/, ""); sub(/,.*/, ""); print; exit }' out
 }
+check "no law is worse than its subset: $(subsets cost)" eval 'subsets cost >/dev/null'
 planned=$(number first_principles_plan time_s)
 check "swum blindly on its own model the plan takes as long as it says" \
     near "$(block 'first-principles plan' time_s)" "$planned" 0.1

@@ -9,6 +9,13 @@ check "swum: $(cat err)" [ $code -eq 0 ]
 check "one JSON object" eval 'python3 -c "import json, sys; json.load(sys.stdin)" <out'
 check "of all laws" eval '[ "$(grep -c "\"told\"" out)" -eq 11 ]'
 cp out first
+check "no law tuned worse than its subset" python3 - <<'END'
+import json, sys
+cost = {law["name"]: law.get("training_cost") for law in json.load(open("out"))["laws"]}
+pairs = [("P", "P, rate fed forward"), ("P", "PID"), ("P", "P ahead"), ("P, rate fed forward", "PID and rate, ahead"),
+         ("PID", "PID and rate, ahead"), ("P ahead", "PID and rate, ahead")]
+sys.exit(any(cost[of] > cost[less] * (1 + 1e-6) for less, of in pairs))
+END
 check "every trial is in the file" eval '[ "$(grep -vc "^#" done.txt)" -eq 22 ]'
 head -9 done.txt >half.txt && printf '2 3 0.1' >>half.txt
 run --json $few --set results=half.txt
