@@ -11,6 +11,7 @@ enum { trial_nodes = 8 };               // at which integrands are looked at, ab
 enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
 static const double noise = 1e-9;       // part of a size that may be rounding
+static const double rest = 1e-8;        // of an integral in a guess that follows what it is to follow
 static const double digits = 1e-13;     // that is left of 1 where a 0 was meant, as by sin(M_PI)
 
 bool moray_is_rounding(double value, double size)
@@ -145,7 +146,7 @@ static double largest_integrand(const struct transcription *t, int p, int m, int
 double moray_size_of_integral(const struct transcription *t, int p, int m, double guess, const double *size,
                               double *work)
 {
-    const double known = moray_known_size(t->ocp->phase[p].q[m], guess);
+    const double known = moray_known_size(t->ocp->phase[p].q[m], guess > rest ? guess : 0);
     double largest = 0;
     if (known > 0)
         return known;
