@@ -59,7 +59,8 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
         x_scale[layout->tf] = 1 / size_of_time(phase->tf, tf, t0, phase->t0.lower, found);
 }
 
-// A path constraint has one scale along its phase, by the steepest of its rows. Scales are being collected, negative.
+// A path constraint that is nowhere steep has one scale along its phase, by the steepest of its rows; another scales
+// each row that is steep by itself. Scales are being collected, negative.
 static void join_path_rows(const struct transcription *t, double *g_scale)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
@@ -71,7 +72,7 @@ static void join_path_rows(const struct transcription *t, double *g_scale)
                     steepest = fmin(steepest, g_scale[layout->node[n].path + i]);
             for (int n = 0; n < layout->nodes; n++)
                 if (layout->node[n].collocated)
-                    g_scale[layout->node[n].path + i] = steepest;
+                    g_scale[layout->node[n].path + i] = fmin(g_scale[layout->node[n].path + i], fmax(steepest, -1));
         }
     }
 }
