@@ -27,6 +27,18 @@ static void add_contents(FILE *to, const char *name)
     fprintf(to, " (%016llx)", (unsigned long long)sum);
 }
 
+// Keys of files that the program itself makes along the way, as [--]KEY=FILE or KEY.
+static bool is_made(const char *key)
+{
+    static const char *const made[] = {"tuned", "results"};
+    key += strspn(key, "-");
+    const size_t length = strcspn(key, "=");
+    bool found = false;
+    for (unsigned k = 0; k < sizeof made / sizeof *made; k++)
+        found = found || (strlen(made[k]) == length && strncmp(key, made[k], length) == 0);
+    return found;
+}
+
 // The program and its own arguments, as one text: what they are decides what a point is.
 static char *configuration_of(const sweep_arguments *a)
 {
@@ -39,10 +51,11 @@ static char *configuration_of(const sweep_arguments *a)
     for (int k = 0; k < a->rest_n; k++) {
         const char *equals = strchr(a->rest[k], '=');
         fprintf(file, " %s", a->rest[k]);
-        add_contents(file, equals ? equals + 1 : a->rest[k]);
+        if (!is_made(a->rest[k]))
+            add_contents(file, equals ? equals + 1 : a->rest[k]);
     }
     for (int k = 0; k < a->axes; k++)
-        for (int i = 0; a->axis[k].word && i < a->axis[k].n; i++)
+        for (int i = 0; a->axis[k].word && !is_made(a->axis[k].key) && i < a->axis[k].n; i++)
             add_contents(file, a->axis[k].word[i]);
     fclose(file);
     return text;

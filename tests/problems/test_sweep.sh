@@ -108,6 +108,9 @@ if thorough; then
     # shellcheck disable=SC2086
     run sea_trials $tiny --grid tuned=sea.tuned --file sea.nc --json --jobs 1
     check "sea trials: $(number solved) $(cat err)" eval '[ "$(number solved)" = 2 ] && [ -s sea.tuned ]'
+    # shellcheck disable=SC2086
+    run sea_trials $tiny --grid tuned=sea.tuned --file sea.nc --json --jobs 1
+    check "which is theirs, so that they can be gone on with: $(number made_before) $(cat err)" [ "$(number made_before)" = 2 ]
     sh "$2/tests/studies/kills.sh" "$program" 3 5 >kills 2>&1
     check "killed at random times: $(tail -n 1 kills)" grep -q ' 0 of the files differ' kills
 fi
