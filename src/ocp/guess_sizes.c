@@ -11,7 +11,7 @@ enum { trial_nodes = 8 };               // at which integrands are looked at, ab
 enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
 static const double noise = 1e-9;       // part of a size that may be rounding
-static const double rest = 1e-8;        // of an integral in a guess that follows what it is to follow
+static const double rest = 1e-6;        // of an integral in a guess that follows what it is to follow
 static const double digits = 1e-13;     // that is left of 1 where a 0 was meant, as by sin(M_PI)
 
 bool moray_is_rounding(double value, double size)
