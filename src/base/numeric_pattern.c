@@ -179,8 +179,8 @@ moray_status moray_numeric_arrange(struct numeric_map *self)
 static void dense_direction(const struct numeric_map *self, const double *in, double *direction)
 {
     for (int j = 0; j < self->n_in; j++) {
-        const double part = fmod(0.7548776662466927 * (j + 1), 1), sign = fmod(0.5698402909980532 * (j + 1), 1) < 0.5;
-        direction[j] = (sign ? 1 : -1) * (0.5 + part) * (self->size[j] + fabs(in[j]));
+        const double part = fmod(0.7548776662466927 * (j + 1), 1), sign = fmod(0.5698402909980532 * (j + 1), 1) - 0.5;
+        direction[j] = (sign < 0 ? 1 : -1) * (0.5 + part) * (self->size[j] + fabs(in[j]));
     }
 }
 

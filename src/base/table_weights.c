@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/table.h"
+#include "moray/num.h"
 
 // The piece that holds x, the first or last where it is beyond.
 static int piece_of(const struct table_axis *axis, double x)
@@ -66,7 +67,7 @@ int moray_table_complex_weights(const struct table_axis *axis, double complex x,
     }
     const bool none = axis->outside == MORAY_NAN || isnan(creal(x));
     for (int k = 0; k < 4; k++)
-        weight[k] = none ? CMPLX(NAN, NAN) : 0;
+        weight[k] = none ? moray_complex(NAN, NAN) : 0;
     if (none)
         return i;
     weight[end] = 1;

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "moray/num.h"
 #include "moray/table.h"
 
 enum { most = 65 };
@@ -42,7 +43,7 @@ static void test_cubic(void)
         value = fmax(value, fabs(moray_spline_real(spline, x, d) - cubic(x)));
         first = fmax(first, fabs(d[0] - (2 - x + 0.9 * x * x)));
         second = fmax(second, fabs(d[1] - (-1 + 1.8 * x)));
-        const double complex z = moray_spline_at(spline, CMPLX(x, 1e-100));
+        const double complex z = moray_spline_at(spline, moray_complex(x, 1e-100));
         step = fmax(step, fmax(fabs(creal(z) - cubic(x)), fabs(cimag(z) / 1e-100 - d[0])));
     }
     CHECK(value < 1e-13 && first < 1e-12 && second < 1e-11, "a cubic and its derivatives: %.1e, %.1e, %.1e", value,
@@ -119,7 +120,7 @@ static void test_outside(void)
         moray_spline *spline = through(cubic, 5, -1, 2, MORAY_NOT_A_KNOT, outside);
         double d[2];
         const double high = moray_spline_real(spline, 5, d);
-        const double complex z = moray_spline_at(spline, CMPLX(5, 1e-100));
+        const double complex z = moray_spline_at(spline, moray_complex(5, 1e-100));
         if (outside == MORAY_NAN) {
             CHECK(isnan(high) && isnan(creal(z)) && isnan(moray_spline_real(spline, -1.01, NULL)), "no number beyond");
         } else {
@@ -163,8 +164,8 @@ static void test_surface(void)
         error = fmax(error, fabs(moray_surface_real(surface, a, b, d) - hill(a, b)) / size);
         for (int i = 0; i < 5; i++)
             error = fmax(error, fabs(d[i] - exact[i]) / (size + fabs(exact[i])));
-        step = fmax(step, fabs(cimag(moray_surface_at(surface, CMPLX(a, 1e-100), b)) / 1e-100 - d[0]) / size);
-        step = fmax(step, fabs(cimag(moray_surface_at(surface, a, CMPLX(b, 1e-100))) / 1e-100 - d[1]) / size);
+        step = fmax(step, fabs(cimag(moray_surface_at(surface, moray_complex(a, 1e-100), b)) / 1e-100 - d[0]) / size);
+        step = fmax(step, fabs(cimag(moray_surface_at(surface, a, moray_complex(b, 1e-100))) / 1e-100 - d[1]) / size);
     }
     CHECK(error < 1e-12 && step < 1e-12, "a product of cubics, two derivatives: %.1e; complex step: %.1e", error, step);
     double d[5];
