@@ -68,10 +68,9 @@ static double known_reach(const struct transcription *t, int p, const double *si
     return furthest;
 }
 
-// The size of an input that nothing else tells: for a state what those of known size move it by; or what it takes to
-// move a state of known size by that, or by as much as another cause does where they hold each other in check. The one
-// grows with the duration, the other falls: where that is free, the mean of their digits does not hang on the guess of
-// it. 0: nothing is known.
+// The size of an input that nothing else tells: for a state what those of known size move it by, else what it takes to
+// move a state of known size by that, or by as much as another cause does where they hold each other in check. 0:
+// nothing is known.
 static double derived_size(const struct transcription *t, int p, const double *size, int i)
 {
     const struct phase *phase = &t->ocp->phase[p];
@@ -80,10 +79,7 @@ static double derived_size(const struct transcription *t, int p, const double *s
     for (int r = 0; r < phase->nx; r++)
         if (size[r] > 0 && reach(t, p, r, i) > 0)
             by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / reach(t, p, r, i));
-    const bool timed = t->layout.phase[p].t0 < 0 && t->layout.phase[p].tf < 0;
-    if (by_causes > 0)
-        return !timed && isfinite(by_effects) && by_effects > 0 ? sqrt(by_causes * by_effects) : by_causes;
-    return isfinite(by_effects) ? by_effects : 0;
+    return by_causes > 0 ? by_causes : isfinite(by_effects) ? by_effects : 0;
 }
 
 static double largest_of(const double *size, int n)
