@@ -34,15 +34,12 @@ static double size_of_state(const struct phase *phase, int r, double guess)
     return fixed && guess * wide < known ? moray_known_size(moray_free(), guess) : known;
 }
 
-// Of a state: its largest value, or how far it goes.
 static double largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
 {
-    double low = INFINITY, high = -INFINITY;
-    for (int n = 0; n < layout->nodes; n++) {
-        low = fmin(low, x[layout->node[n].x + offset]);
-        high = fmax(high, x[layout->node[n].x + offset]);
-    }
-    return fmax(high - low, fmax(fabs(low), fabs(high)));
+    double largest = 0;
+    for (int n = 0; n < layout->nodes; n++)
+        largest = fmax(largest, fabs(x[layout->node[n].x + offset]));
+    return largest;
 }
 
 // How far an input of size 1 moves a state over the phase, by the largest slope among the nodes at the guess.
