@@ -101,7 +101,7 @@ show heading_tracking heading_tracking --current 0.1,0.1
 show heading_fig8 heading_tracking --set reference=fig8 --current 0.1,0.1
 show path_following path_following --current=-0.05,0.1
 show min_time_turn min_time_turn --current 0.1,0.1
-show sea_trials sea_trials --seeds 20 --set training=6 --set starts=3 --set evaluations=6
+show sea_trials sea_trials --seeds 10 --set training=4 --set starts=2 --set evaluations=4
 show sea_trials_path sea_trials --task path --set current_max_m_s=0.1 --set duration_s=150 --seeds 12 --set training=5 --set starts=4 --set evaluations=8
 few='--seeds 12 --set training=4 --set starts=2 --set evaluations=4'
 none='--set spread=0 --set current_max_m_s=0 --set current_turning_deg_s=0 --set heading_deg=0 --set joints_deg=0 --set position_m=0
