@@ -27,7 +27,7 @@ double memory_begin(void)
     if (!file)
         return NAN;
     const bool reset = fputs("5", file) >= 0; // sets the peak back to what is held now
-    return (fclose(file) == 0) & reset ? 1024 * kilobytes("VmRSS: %lf") : NAN;
+    return fclose(file) == 0 && reset ? 1024 * kilobytes("VmRSS: %lf") : NAN;
 }
 
 double memory_peak(double before)

@@ -17,8 +17,7 @@ static const char *const kind_names[kinds] = {"time",
                                               "a control",
                                               "a parameter",
                                               "time, in the Hessian alone",
-                                              "a place that no point of the box "
-                                              "is near to",
+                                              "a place that no point of the box is near to",
                                               "such a place, in the Hessian alone"};
 
 struct branch {

@@ -14,8 +14,8 @@ enum { HOLD, BRAKING, GAIN, NUMBERS };
 enum { SETTLED, WEIGHTED, FINAL, MISS, POWER, SCORES };
 
 static const steer_number numbers[NUMBERS] = {
-    [HOLD] = {"hold_s"}, // their ranges: by the turn
-    [BRAKING] = {"brake_s"},
+    [HOLD] = {.key = "hold_s"}, // their ranges: by the turn
+    [BRAKING] = {.key = "brake_s"},
     [GAIN] = {"gain_m_rad", .searched = {MORAY_TUNED_LOGARITHMIC, 0.002, 20, 0}},
 };
 
