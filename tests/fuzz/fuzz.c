@@ -279,7 +279,9 @@ static bool try(int k, int round)
 int main(int argc, char **argv)
 {
     const int count = argc > 2 ? atoi(argv[2]) : 6000;
-    char directory[] = "/tmp/moray-fuzz-XXXXXX", command[100];
+    // Some ten thousand small files: in memory, where there is such a place.
+    char directory[40], command[100];
+    snprintf(directory, sizeof directory, "%s/moray-fuzz-XXXXXX", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
     int bad = 0, read[n_kinds] = {0}, tried[n_kinds] = {0};
     seed = argc > 3 ? strtoull(argv[3], NULL, 10) : 1;
     load(argc > 1 ? argv[1] : "tests/fuzz/corpus");
