@@ -296,7 +296,7 @@ static void test_tube(const moray_reference *reference)
 // the largest share of what the motors give.
 static void steer_with(const moray_motor *motor, double rate, double *fastest, double *load)
 {
-    const moray_reference ahead = read_ok("steps:0=15");
+    moray_reference ahead = read_ok("steps:0=15");
     moray_heading_spec spec = spec_of(MORAY_FIRST_PRINCIPLES, &ahead);
     const moray_settings settings = settings_of(10);
     moray_steering_plan plan;
@@ -327,6 +327,7 @@ static void steer_with(const moray_motor *motor, double rate, double *fastest, d
     }
     moray_swimmer_free(swimmer);
     moray_steering_plan_free(&plan);
+    moray_reference_free(&ahead);
 }
 
 // What motors give and how fast they turn limits the plan where it would be more.
