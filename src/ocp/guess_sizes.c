@@ -12,7 +12,8 @@ enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
 static const double noise = 1e-9;       // part of a size that may be rounding
 static const double rest = 1e-6;        // of an integral in a guess that follows what it is to follow
-static const double digits = 1e-13;     // that is left of 1 where a 0 was meant, as by sin(M_PI)
+static const double small = 1e-8;       // a guess as small as this may be rounding,
+static const double digits = 1e-13;     // an end that is asked for only where it is left of 1, as by sin(M_PI)
 
 bool moray_is_rounding(double value, double size)
 {
@@ -23,15 +24,22 @@ double moray_known_size(moray_bounds bounds, double guess)
 {
     if (bounds.lower > -MORAY_ENDLESS && bounds.upper < MORAY_ENDLESS && bounds.lower < bounds.upper)
         return fmax(fabs(bounds.lower), fabs(bounds.upper));
-    return guess > digits && guess < MORAY_INFINITY ? guess : 0;
+    return guess > small && guess < MORAY_INFINITY ? guess : 0;
 }
 
-// Of a state: that of its box, unless it is fixed at both ends to far less.
+static double fixed_to(moray_bounds bounds)
+{
+    return moray_bounds_are_fixed(bounds) ? fabs(bounds.lower) : 0;
+}
+
+// Of a state: that of its box, unless it is fixed at both ends to far less. What an end is fixed to is no rounding.
 static double size_of_state(const struct phase *phase, int r, double guess)
 {
+    const bool asked = fmax(fixed_to(phase->x0[r]), fixed_to(phase->xf[r])) > digits;
+    const double alone = asked && guess < MORAY_INFINITY ? guess : moray_known_size(moray_free(), guess);
     const double known = moray_known_size(phase->x[r], guess);
     const bool fixed = moray_bounds_are_fixed(phase->x0[r]) && moray_bounds_are_fixed(phase->xf[r]);
-    return fixed && guess * wide < known ? moray_known_size(moray_free(), guess) : known;
+    return known == 0 || (fixed && guess * wide < known) ? alone : known;
 }
 
 static double largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
