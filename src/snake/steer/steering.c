@@ -10,18 +10,7 @@
 #include "base/numeric_map.h"
 #include "snake/swim/limits.h"
 #include "snake/steer/problems.h"
-
-enum { states = MORAY_STEERING_STATES, parameters = MORAY_STEERING_PARAMETERS, own_events = 2, rates = 2 };
-enum { NAME_SIZE = 24 };
-
-struct moray_steering {
-    moray_steering_spec spec;
-    moray_map plant;
-    moray_bounds *block;
-    const char **names;            // of controls, events and path outputs
-    char (*path_names)[NAME_SIZE]; // that the motors' point into
-    moray_ocp *ocp;
-};
+#include "snake/steer/steering_parts.h"
 
 moray_gait moray_steering_gait(const double s[parameters])
 {
@@ -55,16 +44,13 @@ static const moray_motor *motor_of(const moray_steering_spec *spec)
     return spec->model == MORAY_FIRST_PRINCIPLES ? &spec->robot.motor : NULL;
 }
 
-// Path outputs of what their supply allows.
-static int supply_rows(const moray_steering_spec *spec)
+int moray_steering_supply_rows(const moray_steering_spec *spec)
 {
     const moray_motor *motor = motor_of(spec);
     return motor ? motor->lines * (spec->robot.links - 1) : 0;
 }
 
-// What the joints can turn at, where that is limited: path outputs are then alpha omega +- phi_0', the largest rates of
-// a stroke either way.
-static int rate_rows(const moray_steering_spec *spec)
+int moray_steering_rate_rows(const moray_steering_spec *spec)
 {
     const double rate = spec->robot.supply.rate;
     return motor_of(spec) && rate > 0 && rate < MORAY_INFINITY ? rates : 0;
@@ -83,10 +69,10 @@ static void added_outputs(void *self, const double complex *in, double complex *
 {
     const moray_steering_spec *spec = self;
     const moray_steering_task *task = &spec->task;
-    if (rate_rows(spec))
+    if (moray_steering_rate_rows(spec))
         fastest(in, states + 1 + task->nu, out);
     if (task->extra)
-        task->extra(task->self, in, out + rate_rows(spec));
+        task->extra(task->self, in, out + moray_steering_rate_rows(spec));
 }
 
 // ---- Checks --------------------------------------------------------------------------------------------------------
@@ -108,38 +94,6 @@ static moray_status check_spec(const moray_steering_spec *spec)
     if (!isfinite(spec->current[0]) || !isfinite(spec->current[1]))
         return moray_error(MORAY_INPUT, "current = %g,%g: must be finite", spec->current[0], spec->current[1]);
     return moray_ok();
-}
-
-// ---- Ends ----------------------------------------------------------------------------------------------------------
-
-// a / (L cos(delta/2)) = sin theta_max of (33), or alpha / (2 sin(delta/2)) = theta_max of (27).
-static moray_num amplitude_event(const moray_steering_spec *spec, const moray_num *s)
-{
-    const moray_num amplitude = s[MORAY_STEERING_AMPLITUDE], half = s[MORAY_STEERING_DELTA] / 2;
-    return amplitude / (2 * (spec->model == MORAY_CONTROL_ORIENTED ? spec->robot.l * cos(half) : sin(half)));
-}
-
-static moray_bounds amplitude_bounds(const moray_steering_spec *spec)
-{
-    const moray_bounds theta_max = spec->limits.theta_max;
-    return spec->model == MORAY_CONTROL_ORIENTED ? moray_between(sin(theta_max.lower), sin(theta_max.upper))
-                                                 : theta_max;
-}
-
-// The objective, and as events the amplitude, the mean power and the task's own.
-static void ends(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    const moray_steering_spec *spec = data;
-    const moray_steering_task *task = &spec->task;
-    const moray_num duration = at->phase->tf - at->phase->t0, work = at->phase->q[task->nq];
-    moray_end_values own = {.objective = 0, .e = out->e + own_events};
-    if (task->events)
-        task->events(at, &own, task->self);
-    out->objective = own.objective + task->weight_time * duration + task->weight_power * work;
-    for (int m = 0; m < task->nq; m++)
-        out->objective += task->weight[m] * at->phase->q[m];
-    out->e[0] = amplitude_event(spec, at->s);
-    out->e[1] = work / duration;
 }
 
 // ---- Building ------------------------------------------------------------------------------------------------------
@@ -185,7 +139,8 @@ static moray_status make_added(moray_steering_spec *spec, int n_in, moray_map *a
     fill_points(spec, n_in, points);
     const struct numeric_probe probe = {.points = points, .n = look_points};
     const moray_status status =
-        moray_complex_map_new(added, n_in, rate_rows(spec) + task->nc + task->nq, added_outputs, spec, NULL, &probe);
+        moray_complex_map_new(added, n_in, moray_steering_rate_rows(spec) + task->nc + task->nq, added_outputs, spec,
+                              NULL, &probe);
     free(points);
     return status;
 }
@@ -199,13 +154,13 @@ static moray_status make_plant(moray_steering *problem)
                                          .joints = MORAY_JOINTS_STEERED,
                                          .current = {spec->current[0], spec->current[1]},
                                          .water = spec->water,
-                                         .path_supply = supply_rows(spec) > 0};
+                                         .path_supply = moray_steering_supply_rows(spec) > 0};
     int place[states + 1 + parameters + 1];
     moray_map plant, added;
     MORAY_TRY(spec->averaged                          ? moray_average_plant(&plant, &plant_spec)
               : spec->model == MORAY_CONTROL_ORIENTED ? moray_control_plant(&plant, &plant_spec)
                                                       : moray_fp_plant(&plant, &plant_spec));
-    if (rate_rows(spec) + task->nc + task->nq == 0) {
+    if (moray_steering_rate_rows(spec) + task->nc + task->nq == 0) {
         problem->plant = plant;
         return moray_ok();
     }
@@ -216,92 +171,7 @@ static moray_status make_plant(moray_steering *problem)
     }
     for (int k = 0; k < states + 1 + parameters + 1; k++)
         place[k] = k <= states ? k : k + task->nu;
-    return moray_map_join(&problem->plant, &plant, place, &added, states + supply_rows(spec));
-}
-
-static moray_bounds narrower(moray_bounds one, moray_bounds other)
-{
-    return moray_between(fmax(one.lower, other.lower), fmin(one.upper, other.upper));
-}
-
-static moray_bounds within(double limit)
-{
-    return moray_between(-limit, limit);
-}
-
-static const char *const s_names[][parameters] = {{"a", "omega", "delta"}, {"alpha", "omega", "delta"}};
-static const char *const x_names[][states] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n", "phi_0", "phi_0'"},
-                                              {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y", "phi_0", "phi_0'"}};
-
-static moray_status make_ocp(moray_steering *problem)
-{
-    const moray_steering_spec *spec = &problem->spec;
-    const moray_steering_limits *limits = &spec->limits;
-    const moray_steering_task *task = &spec->task;
-    const int nu = 1 + task->nu, ne = own_events + task->ne, supply = supply_rows(spec),
-              motors = supply + rate_rows(spec), nc = motors + task->nc;
-    problem->block = calloc((size_t)(3 * states + nu + ne + nc), sizeof *problem->block);
-    problem->names = calloc((size_t)(nu + ne + nc), sizeof *problem->names);
-    problem->path_names = calloc((size_t)supply + 1, sizeof *problem->path_names);
-    if (!problem->block || !problem->names || !problem->path_names)
-        return moray_error(MORAY_MEMORY, "no memory for the steering problem");
-    moray_bounds *x = problem->block, *x0 = x + states, *xf = x0 + states, *u = xf + states, *e = u + nu, *c = e + ne;
-    const char **u_names = problem->names, **e_names = u_names + nu, **c_names = e_names + ne;
-    for (int r = 0; r < states; r++)
-        x[r] = r == MORAY_STATE_PHI_0     ? within(limits->offset)
-               : r == MORAY_STATE_V_PHI_0 ? within(limits->offset_rate)
-                                          : moray_free();
-    for (int r = 0; r < states; r++) {
-        x0[r] = narrower(x[r], spec->x0[r]);
-        xf[r] = narrower(x[r], spec->xf[r]);
-    }
-    u[0] = within(limits->offset_acceleration), u_names[0] = "phi_0''";
-    e[0] = amplitude_bounds(spec), e_names[0] = "theta_max";
-    e[1] = moray_at_most(limits->power), e_names[1] = "mean power";
-    for (int k = 0; k < task->nu; k++)
-        u[1 + k] = task->u[k], u_names[1 + k] = task->u_names[k];
-    for (int k = 0; k < task->ne; k++)
-        e[own_events + k] = task->e[k], e_names[own_events + k] = task->e_names[k];
-    for (int k = 0; k < supply; k++) {
-        snprintf(problem->path_names[k], NAME_SIZE, "supply %d", k + 1);
-        c[k] = within(spec->robot.motor.torque[k / (spec->robot.links - 1)]);
-        c_names[k] = problem->path_names[k];
-    }
-    for (int k = supply; k < motors; k++)
-        c[k] = moray_at_most(spec->robot.supply.rate), c_names[k] = k > supply ? "joint rate down" : "joint rate up";
-    for (int k = 0; k < task->nc; k++)
-        c[motors + k] = task->c[k], c_names[motors + k] = task->c_names[k];
-    const bool control = spec->model == MORAY_CONTROL_ORIENTED;
-    const double largest = control ? 2 * spec->robot.l * sin(limits->theta_max.upper) // of a, by (33)
-                                   : 2 * limits->theta_max.upper;                     // of alpha, by (27)
-    const moray_bounds s[] = {moray_between(0, largest), limits->omega, limits->delta};
-    const moray_phase_spec phase = {.name = task->name,
-                                    .nx = states,
-                                    .nu = nu,
-                                    .nc = nc,
-                                    .nq = task->nq + 1,
-                                    .map = &problem->plant,
-                                    .t0 = spec->t0,
-                                    .tf = spec->tf,
-                                    .x = {x, states},
-                                    .x0 = {x0, states},
-                                    .xf = {xf, states},
-                                    .u = {u, nu},
-                                    .c = {c, nc},
-                                    .x_names = x_names[spec->model],
-                                    .u_names = u_names,
-                                    .c_names = c_names};
-    return moray_ocp_new(&problem->ocp, &(moray_ocp_spec){.name = task->name,
-                                                          .phases = 1,
-                                                          .phase = &phase,
-                                                          .ns = parameters,
-                                                          .s = {s, parameters},
-                                                          .s_names = s_names[spec->model],
-                                                          .ne = ne,
-                                                          .e = {e, ne},
-                                                          .e_names = e_names,
-                                                          .endpoint = ends,
-                                                          .data = &problem->spec});
+    return moray_map_join(&problem->plant, &plant, place, &added, states + moray_steering_supply_rows(spec));
 }
 
 moray_status moray_steering_new(moray_steering **result, const moray_steering_spec *spec)
@@ -314,7 +184,7 @@ moray_status moray_steering_new(moray_steering **result, const moray_steering_sp
     problem->spec = *spec;
     moray_status status = make_plant(problem);
     if (!moray_failed(status))
-        status = make_ocp(problem);
+        status = moray_steering_make_ocp(problem);
     if (moray_failed(status))
         moray_steering_free(problem);
     else
