@@ -41,7 +41,7 @@ show() {
         exit 1
     fi
     mv "$name.tmp" "results/$name/table.txt"
-    echo "sh $runner $*" >"results/$name/command.txt"
+    echo "sh $runner $*" | sed 's/ *$//' >"results/$name/command.txt"
     for page in README.md results/README.md; do
         awk -v name="$name" -v table="results/$name/table.txt" '
             $0 == "<!-- end -->" { inside = 0 }

@@ -123,16 +123,52 @@ static const char **text_of(sweep_arguments *a, int key)
                                   : NULL;
 }
 
+// Of the options that are whole numbers.
+static moray_status take_whole(sweep_arguments *a, int key, const char *value)
+{
+    double x = 0;
+    moray_status status = moray_ok();
+    switch (key) {
+    case KEY_POINTS:
+        status = whole("points", value, 1e7, &x);
+        a->most = (long)x;
+        break;
+    case KEY_REPEATS:
+        status = whole("repeats", value, 100, &x);
+        a->repeats = (int)x;
+        break;
+    case KEY_RANDOM:
+        status = whole("random", value, 1e9, &x);
+        a->draws = (long)x;
+        break;
+    case KEY_SEED:
+        status = whole("seed", value, 0x1p53, &x);
+        a->seed = (uint64_t)x;
+        break;
+    default:
+        status = whole("jobs", value, 10000, &x);
+        a->jobs = (int)x;
+    }
+    return status;
+}
+
+static moray_status take_switch(sweep_arguments *a, int key)
+{
+    a->cold = a->cold || key == KEY_COLD;
+    a->quantiles = a->quantiles || key == KEY_QUANTILES;
+    a->quiet = a->quiet || key == KEY_QUIET;
+    a->json = a->json || key == KEY_JSON;
+    return moray_ok();
+}
+
 static moray_status take(reading *r, int key, char *value)
 {
     sweep_arguments *a = r->a;
-    double x = 0;
-    moray_status status = moray_ok();
     if (key != ARGP_KEY_ARG)
         r->listing = key == KEY_LIST;
     if (text_of(a, key)) {
         *text_of(a, key) = value;
-        return status;
+        return moray_ok();
     }
     switch (key) {
     case ARGP_KEY_ARG:
@@ -147,44 +183,20 @@ static moray_status take(reading *r, int key, char *value)
         return add_name("show", a->show, &a->shown, value);
     case KEY_KEEP:
         return add_name("keep", a->keep, &a->kept, value);
-    case KEY_POINTS:
-        status = whole("points", value, 1e7, &x);
-        a->most = (long)x;
-        return status;
-    case KEY_REPEATS:
-        status = whole("repeats", value, 100, &x);
-        a->repeats = (int)x;
-        return status;
-    case KEY_RANDOM:
-        status = whole("random", value, 1e9, &x);
-        a->draws = (long)x;
-        return status;
-    case KEY_SEED:
-        status = whole("seed", value, 0x1p53, &x);
-        a->seed = (uint64_t)x;
-        return status;
-    case KEY_JOBS:
-        status = whole("jobs", value, 10000, &x);
-        a->jobs = (int)x;
-        return status;
     case KEY_TIME:
         return number("time", value, 1e-3, 1e9, &a->point_seconds);
     case KEY_MEMORY:
         return number("memory", value, 1, 1e9, &a->point_megabytes);
     case KEY_SILENT:
         return number("silent", value, 0.5, 1e6, &a->silent_seconds);
-    case KEY_COLD:
-        a->cold = true;
-        return status;
-    case KEY_QUANTILES:
-        a->quantiles = true;
-        return status;
-    case KEY_QUIET:
-        a->quiet = true;
-        return status;
+    case KEY_POINTS:
+    case KEY_REPEATS:
+    case KEY_RANDOM:
+    case KEY_SEED:
+    case KEY_JOBS:
+        return take_whole(a, key, value);
     default:
-        a->json = a->json || key == KEY_JSON;
-        return status;
+        return take_switch(a, key);
     }
 }
 
