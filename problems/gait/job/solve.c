@@ -5,6 +5,8 @@
 #include "job.h"
 
 enum { START_SAMPLES = 101 }; // of the motion that a solve begins from
+// Of the speed through still water: not all models of the water know nothing of who looks, but none gains so much by it.
+static const double beyond_doubt = 1.25;
 
 static double limit(double value)
 {
@@ -218,24 +220,31 @@ static moray_gait_prediction fastest(gait_job *job, const stage *at, const doubl
     return prediction;
 }
 
-// Why there is no gait that makes way; ok where that cannot be told before one is sought.
-static moray_status explain_no_way(gait_job *job, const stage *at)
+// Whether the current could be stemmed at `reserve` times the best speed through still water.
+static moray_status check_current(gait_job *job, const stage *at, double reserve)
 {
     const double *V = job->snake.current, c = cos(job->snake.course), s = sin(job->snake.course);
     const double along = V[0] * c + V[1] * s, across = fabs(V[1] * c - V[0] * s), still[2] = {0, 0};
-    const double U = V[0] != 0 || V[1] != 0 ? fastest(job, at, still).speed : NAN;
-    if (across >= U)
+    if (along >= 0 && across == 0)
+        return moray_ok();
+    const double U = fastest(job, at, still).speed, most = reserve * U;
+    if (across >= most)
         return moray_error(MORAY_NOT_SOLVED,
                            "current = %g,%g: the robot cannot stem it: %.4f m/s of it run across the course, and "
                            "within the limits the robot swims %.4f m/s at most",
                            V[0], V[1], across, U);
-    if (sqrt(U * U - across * across) + along <= 0)
+    if (sqrt(most * most - across * across) + along <= 0)
         return moray_error(MORAY_NOT_SOLVED,
                            "current = %g,%g: the robot cannot stem it: %.4f m/s of it run against the course, and "
                            "within the limits the robot makes %.4f m/s along it at most",
-                           V[0], V[1], -along, sqrt(U * U - across * across));
-    if (!at->solution)
-        return moray_ok();
+                           V[0], V[1], -along, sqrt(fmax(U * U - across * across, 0)));
+    return moray_ok();
+}
+
+// Why there is no gait that makes way.
+static moray_status explain_no_way(gait_job *job, const stage *at)
+{
+    MORAY_TRY(check_current(job, at, 1));
     if (solved(at->solution))
         return moray_error(MORAY_NOT_SOLVED,
                            "within the limits no gait was found that makes way along the course: the best of %d starts "
@@ -262,18 +271,11 @@ static moray_status explain_failure(gait_job *job, const stage *at)
     return explain_no_way(job, at);
 }
 
-// A speed against a current is sought only where the fastest gait stems that: to find none takes a thousand iterations.
-static bool is_against(const gait_job *job)
-{
-    return job->snake.current[0] * cos(job->snake.course) + job->snake.current[1] * sin(job->snake.course) < 0;
-}
-
 moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *known)
 {
     MORAY_TRY(gait_job_problem(job, at, job->goal, job->snake.current, &at->problem));
     MORAY_TRY(load(job, at));
-    if (at->speed > 0 && is_against(job))
-        MORAY_TRY(explain_no_way(job, at));
+    MORAY_TRY(check_current(job, at, beyond_doubt)); // to find no gait takes a thousand iterations
     MORAY_TRY(solve_all(job, at, known));
     if (moray_interrupted())
         return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");

@@ -118,10 +118,10 @@ static void note_failure(moray_status status, moray_status *first)
         *first = status;
 }
 
-static void try_alone(const struct hand *hand, moray_status *first_failure)
+static void try_alone(const struct hand *hand, const moray_gait *gait, moray_status *first_failure)
 {
     moray_solution *solution = NULL;
-    const moray_status status = hand->attempt(hand->job, hand->at, hand->self, hand->gait, &solution);
+    const moray_status status = hand->attempt(hand->job, hand->at, hand->self, gait, &solution);
     if (moray_failed(status))
         note_start(hand->at, NAN);
     else
@@ -152,25 +152,29 @@ static moray_status try_hand(struct hand *hand, int n, struct outcome *outcome, 
     return moray_ok();
 }
 
-static moray_status try_random(struct hand *hand, int n, int jobs, moray_status *first_failure)
+static void try_random_alone(const struct hand *hand, int n, moray_status *first_failure)
+{
+    for (int k = 0; k < n && !moray_interrupted(); k++) {
+        const moray_gait gait = gait_job_random(hand->job, hand->at);
+        try_alone(hand, &gait, first_failure);
+    }
+}
+
+static moray_status deal_random(struct hand *hand, int n, int jobs, moray_status *first_failure)
 {
     const int most = jobs * HAND;
-    moray_gait gait;
-    hand->gait = jobs > 1 ? calloc((size_t)most, sizeof *hand->gait) : &gait;
-    struct outcome *outcome = jobs > 1 ? calloc((size_t)most, sizeof *outcome) : NULL;
-    moray_status status =
-        jobs > 1 && (!hand->gait || !outcome) ? moray_error(MORAY_MEMORY, "no memory for %d starts", n) : moray_ok();
-    for (int k = 0, some; k < n && !moray_failed(status) && !moray_interrupted(); k += some) {
-        some = jobs == 1 ? 1 : n - k < most ? n - k : most;
+    struct outcome *outcome = calloc((size_t)most, sizeof *outcome);
+    moray_status status = moray_ok();
+    hand->gait = calloc((size_t)most, sizeof *hand->gait);
+    if (!outcome || !hand->gait)
+        status = moray_error(MORAY_MEMORY, "no memory for %d starts", n);
+    for (int some; n > 0 && !moray_failed(status) && !moray_interrupted(); n -= some) {
+        some = n < most ? n : most;
         for (int i = 0; i < some; i++)
             hand->gait[i] = gait_job_random(hand->job, hand->at);
-        if (jobs == 1)
-            try_alone(hand, first_failure);
-        else
-            status = try_hand(hand, some, outcome, first_failure);
+        status = try_hand(hand, some, outcome, first_failure);
     }
-    if (jobs > 1)
-        free(hand->gait);
+    free(hand->gait);
     free(outcome);
     return status;
 }
@@ -182,11 +186,11 @@ moray_status gait_job_try_starts(gait_job *job, stage *at, const gait_starts *kn
     moray_status first_failure = moray_ok();
     struct hand hand = {job, at, attempt, self, NULL};
     srand48(1);
-    for (int k = 0; k < known->n && !moray_interrupted(); k++) {
-        moray_gait gait = known->gait[k];
-        hand.gait = &gait;
-        try_alone(&hand, &first_failure);
-    }
-    MORAY_TRY(try_random(&hand, random, jobs, &first_failure));
+    for (int k = 0; k < known->n && !moray_interrupted(); k++)
+        try_alone(&hand, &known->gait[k], &first_failure);
+    if (jobs == 1)
+        try_random_alone(&hand, random, &first_failure);
+    else
+        MORAY_TRY(deal_random(&hand, random, jobs, &first_failure));
     return at->solution ? moray_ok() : first_failure;
 }
