@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/colouring.h"
+#include "base/dense.h"
 #include "base/numeric_map.h"
 
 static moray_status no_memory(const struct numeric_map *self)
@@ -175,13 +176,10 @@ moray_status moray_numeric_arrange(struct numeric_map *self)
 
 // ---- Whether they explain what is seen ----
 
-// A direction that no symmetry of the function is likely to know: factors of 0.5 to 1.5 and both signs.
 static void dense_direction(const struct numeric_map *self, const double *in, double *direction)
 {
-    for (int j = 0; j < self->n_in; j++) {
-        const double part = fmod(0.7548776662466927 * (j + 1), 1), sign = fmod(0.5698402909980532 * (j + 1), 1) - 0.5;
-        direction[j] = (sign < 0 ? 1 : -1) * (0.5 + part) * (self->size[j] + fabs(in[j]));
-    }
+    for (int j = 0; j < self->n_in; j++)
+        direction[j] = moray_dense_entry(j, MORAY_DENSE_PATTERN) * (self->size[j] + fabs(in[j]));
 }
 
 // Whether sum[n_out], what the entries of a pattern amount to along the direction, is what was seen.

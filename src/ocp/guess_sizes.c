@@ -11,7 +11,7 @@ enum { trial_nodes = 8 };               // at which integrands are looked at, ab
 enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
 static const double noise = 1e-9;       // part of a size that may be rounding
-static const double rest = 1e-6;        // of an integral in a guess that follows what it is to follow
+static const double rest = 1e-6;        // of what an integral may come to, its guess where there is nothing to do
 static const double small = 1e-8;       // a guess as small as this may be rounding,
 static const double digits = 1e-13;     // an end that is asked for only where it is left of 1, as by sin(M_PI)
 
@@ -148,7 +148,7 @@ static double largest_integrand(const struct transcription *t, int p, int m, int
 double moray_size_of_integral(const struct transcription *t, int p, int m, double guess, const double *size,
                               double *work)
 {
-    const double known = moray_known_size(t->ocp->phase[p].q[m], guess > rest ? guess : 0);
+    const double known = moray_known_size(t->ocp->phase[p].q[m], 0);
     double largest = 0;
     if (known > 0)
         return known;
@@ -156,6 +156,8 @@ double moray_size_of_integral(const struct transcription *t, int p, int m, doubl
         if (t->layout.phase[p].node[n].collocated)
             largest = fmax(largest, largest_integrand(t, p, m, n, size, work));
     largest *= fabs(t->phase[p].tf - t->phase[p].t0);
+    if (guess > rest * largest && guess < MORAY_INFINITY)
+        return guess;
     return largest > 0 ? largest : 1;
 }
 

@@ -11,7 +11,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "ocp/observe/sight.h"
-#include "ocp/refine.h"
+#include "ocp/refinement/refine.h"
 
 static const char *const families[] = {[MORAY_LOBATTO] = "lobatto", [MORAY_RADAU] = "radau", [MORAY_GAUSS] = "gauss"};
 

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ocp/campaign.h"
-#include "ocp/family.h"
-#include "ocp/refine.h"
+#include "ocp/refinement/campaign.h"
+#include "ocp/refinement/family.h"
+#include "ocp/refinement/refine.h"
 
 static const double falls = 0.9;   // of the least error before: what counts as less
 static const double margin = 0.98; // of the mesh tolerance: the sizes of the certificate are a little different

@@ -2,7 +2,7 @@
 //
 // The solve on one mesh: transcribed with patterns that hold, solved, widened where a function shows more, and away
 // from a saddle.
-#include "ocp/campaign.h"
+#include "ocp/refinement/campaign.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,42 +2,7 @@
 //
 // Observations: straight lines against linear regression in closed form, a decay against many noisy repetitions of it,
 // derivatives against differences, and what is refused.
-#include "tap.h"
-
-#include <complex.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "moray/fit.h"
-
-#include "ocp/solution.h"
-#include "rk4.h"
-
-static const int rk4_steps = 50;
-static const moray_integrator rk4 = {rk4_run, &rk4_steps};
-
-static void refused(moray_status status, moray_code code, const char *what)
-{
-    CHECK(status.code == code, "%s: %s", what, status.text);
-}
-
-static void nothing(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)at, (void)data;
-    out->objective = 0;
-}
-
-static void see_state(const moray_node *at, moray_num *y, const void *data)
-{
-    (void)data;
-    y[0] = at->x[0];
-}
-
-static void grow(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    out->f[0] = at->s[0];
-}
+#include "observe.h"
 
 static void decay(const moray_node *at, moray_rates *out, const void *data)
 {
@@ -49,36 +14,6 @@ static void decay_twice(const moray_node *at, moray_rates *out, const void *data
 {
     (void)data;
     out->f[0] = -(at->s[0] + at->s[1]) * at->x[0];
-}
-
-struct task {
-    moray_continuous_fn *dynamics;
-    moray_observations data;
-    int ns;
-    double tf;
-    moray_bounds x0;
-};
-
-static moray_status problem(moray_ocp **ocp, const struct task *task)
-{
-    static const char *const names[] = {"slope", "twin", "offset"};
-    const moray_bounds x0[] = {task->x0};
-    const moray_phase_spec phase = {.name = "line",
-                                    .nx = 1,
-                                    .continuous = task->dynamics,
-                                    .tf = moray_fixed(task->tf),
-                                    .x0 = MORAY_BOUNDS_OF(x0),
-                                    .observed = task->data};
-    return moray_ocp_new(
-        ocp, &(moray_ocp_spec){
-                 .name = "fit", .phases = 1, .phase = &phase, .ns = task->ns, .s_names = names, .endpoint = nothing});
-}
-
-static moray_solution *solve(const moray_ocp *ocp, const moray_settings *settings, const double *s)
-{
-    moray_solution *solution = NULL;
-    CHECK_OK(moray_solve(ocp, settings, &(moray_guess){.s = s}, &solution), "solve");
-    return solution;
 }
 
 // ---- Lines ---------------------------------------------------------------------------------------------------------
@@ -239,16 +174,6 @@ static void test_undetermined(void)
 // ---- Noise
 // -----------------------------------------------------------------------------------------------------------
 
-static unsigned long long seed = 12;
-
-static double noise(void)
-{
-    double sum = 0;
-    for (int i = 0; i < 12; i++)
-        sum += tap_random(&seed, 0, 1);
-    return sum - 6;
-}
-
 static void test_noise(void)
 {
     enum { n = 12 };
@@ -348,30 +273,6 @@ static moray_status two_phases(moray_ocp **ocp, moray_loss loss, bool controls)
 }
 
 // The map of all that is added, at random points.
-static void test_map(const moray_map *map)
-{
-    moray_derivative_report report;
-    double *in = calloc((size_t)(map->n_in + map->n_out), sizeof *in), *weight = in + map->n_in;
-    double jacobian = 0, hessian = 0;
-    for (int trial = 0; trial < 5; trial++) {
-        for (int i = 0; i < map->n_in; i++)
-            in[i] = noise();
-        for (int i = 0; i < map->n_out; i++)
-            weight[i] = 1.3 * cos(i);
-        CHECK_OK(moray_check_derivatives(map, in, weight, &report), "differences");
-        jacobian = fmax(jacobian, report.jacobian_error), hessian = fmax(hessian, report.hessian_error);
-    }
-    CHECK(jacobian < 1e-7 && hessian < 1e-6, "derivatives of the losses against differences: %.1e, %.1e", jacobian,
-          hessian);
-    for (int a = 0, twice = 0; a < map->hess.nnz; a++) {
-        for (int b = 0; b < a; b++)
-            twice += map->hess.row[a] == map->hess.row[b] && map->hess.col[a] == map->hess.col[b];
-        if (twice || map->hess.row[a] < map->hess.col[a])
-            CHECK(false, "entry %d of the Hessian stands twice or above the diagonal", a);
-    }
-    free(in);
-}
-
 static void test_controls(moray_loss loss)
 {
     moray_ocp *ocp;
@@ -488,195 +389,6 @@ static void test_refusals(void)
     check_file("t,a\n1,2\n", "no column b");
 }
 
-// ---- Times that are free: the mesh moves under the data ----
-
-static const double seen_at[] = {1.9, 1.2, 2.4, 1.55, 2.05}, seen[] = {0.3, 0.62, 0.19, 0.5, 0.26};
-enum { seen_n = 5 };
-
-static void fade(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    out->f[0] = -at->x[0];
-}
-
-static double misfit(double t0)
-{
-    double sum = 0;
-    for (int k = 0; k < seen_n; k++)
-        sum += pow(exp(t0 - seen_at[k]) - seen[k], 2);
-    return sum;
-}
-
-// By golden section.
-static double best_start(void)
-{
-    const double golden = (sqrt(5) - 1) / 2;
-    double low = 0, high = 1.2;
-    while (high - low > 1e-10)
-        if (misfit(high - golden * (high - low)) < misfit(low + golden * (high - low)))
-            high = low + golden * (high - low);
-        else
-            low = high - golden * (high - low);
-    return (low + high) / 2;
-}
-
-// x' = -x from 1 at t0 to 0.1 at tf: both times follow from data that fall into other intervals than at the guess.
-static void test_free_times(const char *scheme)
-{
-    const moray_phase_spec phase = {
-        .nx = 1,
-        .continuous = fade,
-        .t0 = moray_between(-5, 1.2),
-        .tf = moray_between(0, 60),
-        .x0 = MORAY_BOUNDS(moray_fixed(1)),
-        .xf = MORAY_BOUNDS(moray_fixed(0.1)),
-        .observed = {.n = seen_n, .ny = 1, .time = seen_at, .value = seen, .observe = see_state}};
-    moray_ocp *ocp;
-    moray_certificate certificate;
-    moray_settings settings = moray_settings_default();
-    settings.scheme = scheme, settings.max_refinements = 12, settings.mesh_tolerance = 1e-8;
-    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = nothing}), "free times");
-    moray_solution *solution = solve(ocp, &settings, NULL);
-    if (!solution)
-        return;
-    double t0, tf;
-    moray_solution_times(solution, 0, &t0, &tf);
-    CHECK(fabs(t0 - best_start()) < 1e-6, "%s: start %.9g, by search %.9g", scheme, t0, best_start());
-    CHECK(fabs(tf - best_start() - log(10)) < 1e-6, "%s: end %.9g", scheme, tf);
-    CHECK(fabs(moray_solution_objective(solution) - misfit(best_start())) < 1e-8, "%s: sum %.9g, by search %.9g",
-          scheme, moray_solution_objective(solution), misfit(best_start()));
-    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
-    CHECK(certificate.pass, "%s: passes %s", scheme, certificate.why);
-    moray_residual residual[seen_n];
-    moray_solution_residuals(solution, residual);
-    double worst = 0;
-    for (int k = 0; k < seen_n; k++) {
-        double x;
-        moray_solution_at(solution, 0, seen_at[k], &x, NULL);
-        worst = fmax(worst, fabs(residual[k].predicted - x));
-    }
-    CHECK(worst < 1e-9, "%s: what is seen is on the trajectory: %.1e", scheme, worst);
-    moray_solution_free(solution);
-    moray_ocp_free(ocp);
-}
-
-// A file tells in which intervals data are.
-static void test_kept(void)
-{
-    const moray_phase_spec phase = {
-        .nx = 1,
-        .continuous = fade,
-        .t0 = moray_between(-5, 1.2),
-        .tf = moray_fixed(4),
-        .x0 = MORAY_BOUNDS(moray_fixed(1)),
-        .observed = {.n = seen_n, .ny = 1, .time = seen_at, .value = seen, .observe = see_state}};
-    char path[] = "/tmp/moray_solution_XXXXXX";
-    moray_ocp *ocp;
-    moray_solution *loaded = NULL;
-    moray_certificate certificate;
-    const moray_settings settings = {.scheme = "radau3",
-                                     .intervals = 30,
-                                     .tolerance = 1e-10,
-                                     .mesh_tolerance = 1e-6,
-                                     .max_iterations = 100,
-                                     .barrier = 0.1,
-                                     .own_scaling = true};
-    close(mkstemp(path));
-    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = nothing}), "free start");
-    moray_solution *solution = solve(ocp, &settings, NULL);
-    CHECK_OK(moray_solution_save(solution, path), "kept");
-    CHECK_OK(moray_solution_load(&loaded, ocp, &settings, path), "read");
-    CHECK_OK(moray_certify(loaded, &rk4, &certificate), "certificate");
-    CHECK(certificate.pass && moray_solution_objective(loaded) == moray_solution_objective(solution), "as it was: %s",
-          certificate.why);
-    moray_solution_free(loaded);
-    moray_solution_free(solution);
-    moray_ocp_free(ocp);
-    unlink(path);
-}
-
-// ---- Residuals as events ----
-
-static void level(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)at, (void)data;
-    out->f[0] = 0;
-}
-
-// A level of data 0, 0, 0, 10 within 6 of each: 4, against a bound that would give 12 for each unit.
-static void test_bounded_residuals(void)
-{
-    static const double time[] = {0, 0.25, 0.6, 1}, value[] = {0, 0, 0, 10};
-    const struct task task = {level,
-                              {.n = 4,
-                               .ny = 1,
-                               .time = time,
-                               .value = value,
-                               .observe = see_state,
-                               .residual = MORAY_BOUNDS(moray_between(-6, 6))},
-                              1,
-                              1,
-                              moray_free()};
-    moray_ocp *ocp;
-    moray_certificate certificate;
-    const moray_settings settings = moray_settings_default();
-    CHECK_OK(problem(&ocp, &task), "a level");
-    moray_solution *solution = solve(ocp, &settings, NULL);
-    const double *multiplier = moray_solution_event_multipliers(solution);
-    double x;
-    moray_solution_at(solution, 0, 0.5, &x, NULL);
-    CHECK_NEAR(x, 4, 1e-6, "as near to the most as it must be");
-    CHECK(fabs(multiplier[3] + 12) < 1e-4 && fabs(multiplier[0]) < 1e-4, "which costs 12 a unit: %g", multiplier[3]);
-    test_map(solution->transcription->endpoint);
-    CHECK_OK(moray_certify(solution, &rk4, &certificate), "certificate");
-    CHECK(certificate.pass, "passes %s", certificate.why);
-    moray_solution_free(solution);
-    moray_ocp_free(ocp);
-}
-
-static void steepest(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    (void)data;
-    out->objective = -at->s[0];
-}
-
-// The steepest line through 0 whose weighted sum of squares is 1 at most.
-static void test_bounded_sum(void)
-{
-    static const double time[] = {0.5, 1, 2}, value[] = {0.6, 1.1, 1.8}, weight[] = {2};
-    double tt = 0, ty = 0, least = 0;
-    const moray_phase_spec phase = {.nx = 1,
-                                    .continuous = grow,
-                                    .tf = moray_fixed(2),
-                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
-                                    .observed = {.n = 3,
-                                                 .ny = 1,
-                                                 .time = time,
-                                                 .value = value,
-                                                 .weight = weight,
-                                                 .observe = see_state,
-                                                 .sum = moray_at_most(1),
-                                                 .events_only = true}};
-    moray_ocp *ocp;
-    moray_fit fit;
-    const moray_settings settings = moray_settings_default();
-    for (int k = 0; k < 3; k++)
-        tt += 2 * time[k] * time[k], ty += 2 * time[k] * value[k];
-    for (int k = 0; k < 3; k++)
-        least += 2 * pow(ty / tt * time[k] - value[k], 2);
-    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .ns = 1, .endpoint = steepest}),
-             "the steepest line");
-    moray_solution *solution = solve(ocp, &settings, NULL);
-    CHECK_NEAR(moray_solution_parameters(solution)[0], ty / tt + sqrt((1 - least) / tt), 1e-6, "that the data allow");
-    CHECK_NEAR(moray_solution_objective(solution), -moray_solution_parameters(solution)[0], 1e-12,
-               "and nothing else in the objective");
-    test_map(solution->transcription->endpoint);
-    refused(moray_fit_new(&fit, solution, false), MORAY_INPUT, "no fit");
-    moray_fit_free(&fit);
-    moray_solution_free(solution);
-    moray_ocp_free(ocp);
-}
-
 static void test_student(void)
 {
     CHECK_NEAR(moray_student_95(1), 12.7062047, 1e-6, "Student, 1 degree of freedom");
@@ -699,12 +411,6 @@ int main(void)
     test_derivatives(MORAY_LEAST_SQUARES);
     test_derivatives(MORAY_HUBER);
     test_refusals();
-    test_free_times("gauss3");
-    test_free_times("radau3");
-    test_free_times("hermite-simpson");
-    test_kept();
-    test_bounded_residuals();
-    test_bounded_sum();
     test_student();
     return tap_done();
 }

@@ -112,7 +112,7 @@ static struct found solve(const struct units *in)
     return found;
 }
 
-// ---- Rows that are no defects: divided by their largest slope where that is above 1, and else left ----
+// ---- Rows that are no defects: divided by their largest slope ----
 
 static void level(const moray_node *at, moray_rates *out, const void *data)
 {
@@ -155,9 +155,64 @@ static void test_rows(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Integrals: by their guess, but where that is next to nothing of what they may come to ----
+
+struct effort {
+    double unit, idle; // of the effort, and what is spent without any, of a unit
+};
+
+static void spend(const moray_node *at, moray_rates *out, const void *data)
+{
+    const struct effort *effort = data;
+    out->f[0] = at->u[0];
+    out->g[0] = effort->unit * (at->u[0] * at->u[0] + effort->idle);
+}
+
+static void spent(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+// The scale of the integral, in the unit of the effort, at a guess that is the middle of the control's bounds.
+static double scale_of(struct effort effort, double lowest)
+{
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = spend,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x = MORAY_BOUNDS(moray_between(-5, 5)),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .u = MORAY_BOUNDS(moray_between(lowest, 3))};
+    moray_ocp *ocp;
+    moray_solution *solution;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = spent, .data = &effort}),
+             "an integral");
+    moray_settings settings = moray_settings_default();
+    settings.max_iterations = 1;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "begun");
+    const struct transcription *t = solution->transcription;
+    const double scale = effort.unit * t->nlp.x_scale[t->layout.phase[0].q];
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    return scale;
+}
+
+static void test_integrals(void)
+{
+    static const double units[] = {1, 1e-9, 1e9};
+    for (int k = 0; k < 3; k++) {
+        CHECK_RELATIVE(scale_of((struct effort){units[k], 0}, 1), 1 / 4., 1e-9, "that of its guess, in any unit");
+        CHECK_RELATIVE(scale_of((struct effort){units[k], 1e-8}, -3), 1 / 9., 1e-6, "at rest, of what it may come to");
+    }
+}
+
 int main(void)
 {
     test_rows();
+    test_integrals();
     const struct found reference = solve(&si);
     CHECK(reference.solved, "in %s: optimum %.9g after %d iterations", si.name, reference.objective,
           reference.iterations);

@@ -42,6 +42,8 @@ check "first-principles optimum gains at least 3.9 % at equal power: $(number fi
     awk -v g="$(number first_principles_optimum speed_percent_at_equal_power)" 'BEGIN { exit !(g >= 3.9) }'
 check "simulation confirms its speed" near "$(number predicted speed_m_s)" "$(number validated speed_m_s)" 1e-5
 check "simulation confirms its power" near "$(number predicted power_W)" "$(number validated power_W)" 1e-5
+check "far from hidden effects, in whatever direction they are looked for: $(grep -c '"unseen"' out)" \
+    awk '/"unseen"/ { sub(/.*:[ \t]*/, ""); n++; bad = bad || $1 + 0 > 1e-3 } END { exit bad || n != 3 }' out
 check "the control-oriented optimum is beside it" near "$(number control_oriented_optimum delta_deg)" 34.9 0.1
 
 # The ladder: the recommended gait's and the others', as an independent code has them.

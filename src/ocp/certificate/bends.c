@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/dense.h"
+
 enum { directions = 3, levels = 7 };
 static const double first_step = 0.05; // of the sizes
 static const double least_room = 1e-3; // of a size, on either side, for an input to be moved
@@ -42,12 +44,11 @@ static double weighted_at(const struct bending *b, double step, double *rounding
 static void choose_direction(const struct bending *b, int which, int seed)
 {
     for (int j = 0; j < b->map->n_in; j++) {
-        const double part = fmod(0.7548776662466927 * (j + 1) * (which + 1) + 0.618033988749895 * seed, 1);
-        const double side = fmod(0.5698402909980532 * (j + 1) * (which + 2) + 0.41421356 * seed, 1) < 0.5 ? -1 : 1;
+        const double entry = moray_dense_entry(j, MORAY_DENSE_BENDS + directions * seed + which);
         const double room = fmin(b->in[j] - b->box[j].lower, b->box[j].upper - b->in[j]);
-        const double reach = fmin((0.5 + part) * b->size[j], room / first_step);
+        const double reach = fmin(fabs(entry) * b->size[j], room / first_step);
         const bool still = b->column ? b->column[j] < 0 : b->timeless && j == b->map->n_in - 1;
-        b->direction[j] = !still && reach > least_room * b->size[j] ? side * reach : 0;
+        b->direction[j] = !still && reach > least_room * b->size[j] ? copysign(reach, entry) : 0;
     }
 }
 

@@ -4,7 +4,7 @@
 #ifndef SRC_OCP_CERTIFY_H
 #define SRC_OCP_CERTIFY_H
 
-#include "ocp/examine.h"
+#include "ocp/refinement/examine.h"
 #include "ocp/certificate/witness.h"
 
 // The worst of a number over phases, and when.

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/dense.h"
 #include "ocp/certificate/columns.h"
 
 enum { directions = 3 };
@@ -121,12 +122,11 @@ static void set_direction(struct ray *ray, int which)
 {
     const moray_nlp *nlp = ray->nlp;
     for (int j = 0; j < nlp->n; j++) {
-        const double part = fmod(0.7548776662466927 * (j + 1) * (which + 1), 1);
-        const double side = fmod(0.5698402909980532 * (j + 1) * (which + 1), 1) < 0.5 ? -1 : 1;
-        const double step = step_part * (0.5 + part) * x_size(ray, j), x = ray->solution->iterate.x[j];
+        const double entry = moray_dense_entry(j, MORAY_DENSE_COLUMNS + which);
+        const double step = step_part * fabs(entry) * x_size(ray, j), x = ray->solution->iterate.x[j];
         const bool low = x - 0.02 * step<nlp->x_lower[j], high = x + 0.02 * step> nlp->x_upper[j];
         const double inwards = which > 0 || (low && high) ? 0 : low ? 1 : -1;
-        ray->direction[j] = step * (low || high ? inwards : side);
+        ray->direction[j] = step * (low || high ? inwards : copysign(1, entry));
     }
 }
 

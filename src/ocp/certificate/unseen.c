@@ -5,13 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/dense.h"
+
 static const double step_part = 1e-4; // of a size, by which states and parameters are moved
 static const double inset = 1e-6;     // of an interval, from its ends
 static const double nearby = 1e-3;    // of the way from one point to the next
+static const double resolved = 0.1; // of how far effects differ from node to node, what a polynomial may miss of them
 enum { halvings = 12 };
 static const double small_jump = 1e-5; // in parts of the objective
-
-enum { along_states, low_control, high_control, kinds }; // the last two put controls in place of those at hand
 
 // The ends of what is used of a control, its size apart at least, within its bounds.
 static void choose_controls(struct unseen *u)
@@ -37,10 +38,8 @@ static void choose_direction(struct unseen *u)
 {
     const struct phase *phase = &u->e->solution->transcription->ocp->phase[u->e->p];
     for (int j = 0; j < phase->nx + phase->nu + phase->ns; j++) {
-        const double part = 0.5 + fmod(0.7548776662466927 * (j + 1), 1);
-        const double side = fmod(0.5698402909980532 * (j + 1), 1) < 0.5 ? -1 : 1;
         const bool control = j >= phase->nx && j < phase->nx + phase->nu;
-        u->direction[j] = control ? 0 : side * part * u->e->witness->size[j];
+        u->direction[j] = control ? 0 : moray_dense_entry(j, MORAY_DENSE_UNSEEN) * u->e->witness->size[j];
     }
 }
 
@@ -50,8 +49,8 @@ moray_status moray_unseen_new(struct unseen *u, struct examiner *e)
     const struct phase *phase = &t->ocp->phase[e->p];
     const size_t n_in = (size_t)phase->map->n_in, n_out = (size_t)phase->map->n_out, nu = (size_t)phase->nu;
     const size_t nx = (size_t)phase->nx, states = (size_t)t->layout.phase[e->p].nodes * nx;
-    double *block =
-        calloc(states + 5 * nx + n_in + 2 * nu + (4 + kinds * (MORAY_MAX_STAGES + 2)) * n_out + 1, sizeof *block);
+    double *block = calloc(
+        states + 5 * nx + n_in + 2 * nu + (4 + MORAY_UNSEEN_KINDS * (MORAY_MAX_STAGES + 3)) * n_out + 1, sizeof *block);
     *u = (struct unseen){.e = e, .costate = block};
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
@@ -68,6 +67,8 @@ moray_status moray_unseen_new(struct unseen *u, struct examiner *e)
     u->half = u->last + nx;
     u->end = u->half + nx;
     u->at_nodes = u->end + nx;
+    for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++)
+        u->spread[kind] = u->at_nodes + ((size_t)MORAY_UNSEEN_KINDS * (MORAY_MAX_STAGES + 2) + (size_t)kind) * n_out;
     moray_solution_nodes(e->solution, e->p, NULL, u->costate);
     choose_controls(u);
     choose_direction(u);
@@ -86,12 +87,15 @@ static int outputs(const struct unseen *u)
     return u->e->solution->transcription->ocp->phase[u->e->p].map->n_out;
 }
 
-// A sum over the outputs by what they cost; what is not finite, away from the trajectory, costs nothing.
-static double cost_of(const struct unseen *u, const double *effect, const double *told)
+// A sum over the outputs by what they cost, of what is more than `spread` (NULL: nothing) allows; what is not finite,
+// away from the trajectory, costs nothing.
+static double cost_of(const struct unseen *u, const double *effect, const double *told, const double *spread)
 {
     double sum = 0;
-    for (int i = 0; i < outputs(u); i++)
-        sum += u->price[i] > 0 ? u->price[i] * fabs(effect[i] - (told ? told[i] : 0)) : 0;
+    for (int i = 0; i < outputs(u); i++) {
+        const double off = fabs(effect[i] - (told ? told[i] : 0)), allowed = spread ? resolved * spread[i] : 0;
+        sum += u->price[i] > 0 && !(off <= allowed) ? u->price[i] * (off - allowed) : 0;
+    }
     return isfinite(sum) ? sum : 0;
 }
 
@@ -142,7 +146,7 @@ static void states_effect(struct unseen *u, const double *told, double *effect)
         if (!has_room(u, side))
             continue;
         slope_at(u, side, u->moved);
-        const double cost = cost_of(u, u->moved, told);
+        const double cost = cost_of(u, u->moved, told, NULL);
         if (cost < least) {
             least = cost;
             memcpy(effect, u->moved, (size_t)map->n_out * sizeof *effect);
@@ -191,7 +195,7 @@ static void look_at_nodes(struct unseen *u, const struct interval *interval)
     for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
         const double tau = fmin(fmax(interval->scheme->node[j], inset), 1 - inset);
         moray_examiner_place(u->e, interval, time_at(u, interval, tau), NULL);
-        for (int kind = 0; kind < kinds; kind++)
+        for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++)
             effect_at(u, kind, NULL, effect_of(u, kind, j));
     }
 }
@@ -202,6 +206,19 @@ static void interpolate(struct unseen *u, const struct interval *interval, int k
     for (int j = interval->scheme->first; j <= interval->scheme->last; j++)
         for (int i = 0; i < outputs(u); i++)
             u->told[i] += ell[j] * effect_of(u, kind, j)[i];
+}
+
+// u->spread: how far the effects at the nodes of the interval differ.
+static void find_spread(struct unseen *u, const struct interval *interval, int kind)
+{
+    for (int i = 0; i < outputs(u); i++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
+            low = fmin(low, effect_of(u, kind, j)[i]);
+            high = fmax(high, effect_of(u, kind, j)[i]);
+        }
+        u->spread[kind][i] = isfinite(high - low) ? high - low : 0;
+    }
 }
 
 // ---- Jumps ----
@@ -264,26 +281,29 @@ double moray_unseen_interval(struct unseen *u, const struct interval *interval, 
     const struct phase_cache *cache = &u->e->solution->transcription->phase[u->e->p];
     const int count = moray_points_between(interval, interval->scheme->points);
     const double T = cache->tf - cache->t0;
-    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2], sum[kinds] = {0}, most = 0, worst = 0;
+    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2], sum[MORAY_UNSEEN_KINDS] = {0}, most = 0,
+                                                                      worst = 0;
     *where = 0.5;
     *jumps = 0;
     set_prices(u, interval);
     look_at_nodes(u, interval);
+    for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++)
+        find_spread(u, interval, kind);
     for (int k = 0; k < count; k++) {
         const double tau = (k + 0.5) / count;
         moray_scheme_basis(interval->scheme, tau, ell, integral);
         moray_examiner_place(u->e, interval, time_at(u, interval, tau), NULL);
-        for (int kind = 0; kind < kinds; kind++) {
+        for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++) {
             interpolate(u, interval, kind, ell);
             effect_at(u, kind, u->told, u->e->out);
-            const double here = cost_of(u, u->e->out, u->told);
+            const double here = cost_of(u, u->e->out, u->told, u->spread[kind]);
             sum[kind] += here;
             if (here > most)
                 most = here, *where = tau;
         }
         *jumps += jump_since(u, small_jump * objective / T) * T / objective;
     }
-    for (int kind = 0; kind < kinds; kind++)
+    for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++)
         worst = fmax(worst, sum[kind] * T * interval->width / count / objective);
     return worst;
 }

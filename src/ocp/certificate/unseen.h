@@ -6,18 +6,22 @@
 #ifndef SRC_OCP_UNSEEN_H
 #define SRC_OCP_UNSEEN_H
 
-#include "ocp/examine.h"
+#include "ocp/refinement/examine.h"
+
+// Effects: along states and parameters, and of controls put in place of those at hand.
+enum { along_states, low_control, high_control, MORAY_UNSEEN_KINDS };
 
 // The phase of an examiner, with room for its effects.
 struct unseen {
     struct examiner *e;
-    double *costate, *price;     // [nodes][nx]; [n_out] what outputs cost on the interval at hand
-    double *control[2];          // [nu]: the least and the largest that are tried along the whole phase
-    double *direction;           // [n_in]: of states and parameters
-    double *at_nodes;            // [kinds][points][n_out] effects at the nodes of the interval at hand
-    double *here, *moved, *told; // [n_out] each
-    double *state, *last;        // [nx]: at the point at hand and at the one before it, if any
-    double *before, *half, *end; // [nx] each, in between
+    double *costate, *price; // [nodes][nx]; [n_out] what outputs cost on the interval at hand
+    double *control[2];      // [nu]: the least and the largest that are tried along the whole phase
+    double *direction;       // [n_in]: of states and parameters
+    double *at_nodes;        // [MORAY_UNSEEN_KINDS][points][n_out] effects at the nodes of the interval at hand
+    double *spread[MORAY_UNSEEN_KINDS]; // [n_out]: how far those differ
+    double *here, *moved, *told;        // [n_out] each
+    double *state, *last;               // [nx]: at the point at hand and at the one before it, if any
+    double *before, *half, *end;        // [nx] each, in between
     bool begun;
 };
 

@@ -2,13 +2,13 @@
 //
 // Where an interval is not accurate enough: more stages if its slope is smooth, that is, its Legendre coefficients
 // decay fast enough for the stages allowed to do; else smaller intervals, placed where the slope changes most.
-#include "ocp/refine.h"
+#include "ocp/refinement/refine.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "ocp/certificate/unseen.h"
-#include "ocp/examine.h"
+#include "ocp/refinement/examine.h"
 #include "ocp/legendre.h"
 #include "ocp/hold.h"
 #include "ocp/observe/observed.h"

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <tgmath.h>
 
-#include "ocp/family.h"
-#include "ocp/refine.h"
-#include "ocp/ringing.h"
+#include "ocp/refinement/family.h"
+#include "ocp/refinement/refine.h"
+#include "ocp/refinement/ringing.h"
 
 static void drift(const moray_node *at, moray_rates *out, const void *data)
 {

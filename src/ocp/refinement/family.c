@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // The family of the scheme changes where a control rings, and back where the other does no better.
-#include "ocp/family.h"
+#include "ocp/refinement/family.h"
 
 #include <math.h>
 
-#include "ocp/refine.h"
-#include "ocp/ringing.h"
+#include "ocp/refinement/refine.h"
+#include "ocp/refinement/ringing.h"
 
 static const double least_swing = 0.01, falls = 0.5; // of a control's range; of the swing on the mesh before
 static const double nearly = 100; // of the mesh tolerance: an error that refinement will soon have down

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ocp/ringing.h"
+#include "ocp/refinement/ringing.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #ifndef SRC_OCP_FAMILY_H
 #define SRC_OCP_FAMILY_H
 
-#include "ocp/campaign.h"
+#include "ocp/refinement/campaign.h"
 
 // After a mesh that is to be refined: where a control goes to and fro on it as far as on the one before, the first
 // meshes again in c, with another family. Error: MORAY_MEMORY.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ocp/examine.h"
+#include "ocp/refinement/examine.h"
 
 #include <math.h>
 #include <stdlib.h>
