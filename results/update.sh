@@ -65,22 +65,31 @@ swept() {
     shift 2
     show "$name" sweep "$program" --file "build/$name.nc" "$@"
 }
-# picture NAME: its page as it opens, where Chromium is installed.
+# picture NAME SECONDS: its page as it opens, at that moment of its scene, where Chromium is installed: on a desk and on a
+# telephone, by day and by night.
 picture() {
     case $wanted in
     *" $1 "* | "  ") ;;
     *) return 0 ;;
     esac
     command -v chromium >/dev/null || return 0
+    view "$1" "$2" page 1100,1200 1
+    view "$1" "$2" page-dark 1100,1200 0
+    view "$1" "$2" page-phone 390,844 1
+    view "$1" "$2" page-phone-dark 390,844 0
+}
+# view NAME SECONDS FILE WIDTH,HEIGHT SCHEME: one of these; scheme 0 is what asks pages for their dark colours.
+view() {
     profile=$(mktemp -d)
     chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
-        --disable-component-update --disable-sync --user-data-dir="$profile" --hide-scrollbars --window-size=1100,900 \
-        --screenshot="$root/results/$1/page.png" "file://$root/results/$1/report.html" >/dev/null 2>&1
+        --disable-component-update --disable-sync --user-data-dir="$profile" --hide-scrollbars --window-size="$4" \
+        --blink-settings=preferredColorScheme="$5" --screenshot="$root/results/$1/$3.png" \
+        "file://$root/results/$1/report.html#t=$2" >/dev/null 2>&1
     rm -rf "$profile"
 }
 
 show max_speed max_speed
-picture max_speed
+picture max_speed 8
 show max_speed_free max_speed --set theta_max_deg=1:60
 show min_energy min_energy
 show ladder ladder
@@ -100,6 +109,7 @@ show sensitivity_control sensitivity --model control
 show heading_tracking heading_tracking --current 0.1,0.1
 show heading_fig8 heading_tracking --set reference=fig8 --current 0.1,0.1
 show path_following path_following --current=-0.05,0.1
+picture path_following 40
 show min_time_turn min_time_turn --current 0.1,0.1
 show sea_trials sea_trials --seeds 10 --set training=4 --set starts=2 --set evaluations=4
 show sea_trials_path sea_trials --task path --set current_max_m_s=0.1 --set duration_s=150 --seeds 12 --set training=5 --set starts=4 --set evaluations=8

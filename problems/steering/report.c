@@ -76,6 +76,12 @@ void steer_score_table(const steer_job *job, steer_tables *tables, int n_columns
     steer_add_table(tables, &table);
 }
 
+// A tuner that ends at 0 ends at what rounding makes of it.
+static double tuned(const steer_job *job, const steer_trial *trial, int i)
+{
+    return fabs(trial->number[i]) < 1e-12 ? 0 : job->number[i].unit * trial->number[i];
+}
+
 void steer_tuning_table(const steer_job *job, steer_tables *tables)
 {
     const int n = job->program->n_numbers;
@@ -91,8 +97,7 @@ void steer_tuning_table(const steer_job *job, steer_tables *tables)
         moray_table_row *row = &rows[table.n_rows++];
         *row = (moray_table_row){.label = trial->name};
         for (int i = 0; i < n; i++) // what is known ahead has a lead, if only 0
-            row->value[i] =
-                trial->law->tuned & 1u << i || trial->law->preview ? job->number[i].unit * trial->number[i] : NAN;
+            row->value[i] = trial->law->tuned & 1u << i || trial->law->preview ? tuned(job, trial, i) : NAN;
         row->value[n] = trial->evaluations;
     }
     steer_add_table(tables, &table);
@@ -230,9 +235,30 @@ static void say_missing(const steer_job *job, char *text, size_t size)
     moray_text_add(text, size, *before == ',' ? "." : "");
 }
 
+// What the names of a program's own stand for, and of plans.
+static void list_words(const steer_job *job, moray_meaning words[STEER_WORDS])
+{
+    static const moray_meaning common[] = {
+        {"paper's gait", "the gait of the paper's simulations, not optimised"},
+        {"gait found", "that of the first-principles plan"},
+        {"control opt., first-pr. opt.", "the gait of the plan on the control-oriented, the first-principles model"},
+        {"plan", "the joint offset over time found by collocation on that model, replayed as it is"},
+        {"plan + feedback", "the same with tuned feedback around it"},
+        {"receding", "planned anew again and again, from the state measured, over the next few periods"},
+        {"phi_0", "the joint offset, by which the robot turns"},
+        {NULL, NULL}};
+    int n = 0;
+    for (const moray_meaning *own = job->program->words; own->name && n < STEER_WORDS - 1; own++)
+        words[n++] = *own;
+    for (const moray_meaning *word = common; word->name && n < STEER_WORDS - 1; word++)
+        words[n++] = *word;
+    words[n] = (moray_meaning){NULL, NULL};
+}
+
 moray_status steer_report(steer_job *job)
 {
     steer_tables tables = {0};
+    moray_meaning words[STEER_WORDS];
     char text[STEER_TEXT], why[STEER_TEXT], certificates[3 * STEER_TEXT] = "", asked[800];
     moray_swim_scene scene = {0};
     job->program->tables(job, &tables);
@@ -245,13 +271,14 @@ moray_status steer_report(steer_job *job)
     snprintf(asked, sizeof asked, "A robot of %s in a current of (%g, %g) m/s%s%.60s.",
              moray_snake_links_text(&job->snake.robot, links), job->snake.current[0], job->snake.current[1],
              job->water ? " in the mean, by the table " : "", job->water ? job->water_file : "");
+    list_words(job, words);
     scene.scene.title = "The robot swimming";
     scene.scene.text = "Simulated on the first-principles model, every way of steering on the same water.";
     job->scene = &scene;
     const moray_section sections[] = {{.title = "What keeps the robot from doing better", .text = why},
                                       {.title = "Certificate", .text = certificates}};
     const bool all = !moray_failed(job->without);
-    const moray_report report = {.title = job->name,
+    const moray_report report = {.title = job->program->title,
                                  .judged = !all   ? "No first-principles plan"
                                            : pass ? "Plans solved and certified"
                                                   : "A plan's certificate failed",
@@ -262,7 +289,8 @@ moray_status steer_report(steer_job *job)
                                  .tables = tables.table,
                                  .n_tables = tables.n,
                                  .sections = sections,
-                                 .n_sections = 2};
+                                 .n_sections = 2,
+                                 .words = words};
     const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,
                                                                               .found = job,
                                                                               .summary = steer_summary,

@@ -12,7 +12,15 @@
 #include "moray/moray.h"
 #include "moray/snake.h"
 
-enum { STEER_TRIALS = 16, STEER_GAITS = 3, STEER_NUMBERS = 5, STEER_SUBSETS = 3, STEER_SCORES = 6, STEER_TEXT = 1600 };
+enum {
+    STEER_TRIALS = 16,
+    STEER_GAITS = 3,
+    STEER_NUMBERS = 5,
+    STEER_SUBSETS = 3,
+    STEER_SCORES = 6,
+    STEER_TEXT = 1600,
+    STEER_WORDS = 16
+};
 
 typedef struct steer_input {
     double theta_max[2], omega[2], delta[2]; // ranges
@@ -105,6 +113,8 @@ typedef struct steer_program {
     const char *score_title;
     const steer_column *columns;
     // Report.
+    const char *title;
+    const moray_meaning *words; // what names of its own stand for; up to one without a name
     void (*tables)(const steer_job *job, steer_tables *tables);
     void (*headline)(const steer_job *job, FILE *file);
     void (*conclude)(const steer_job *job, char *text, size_t size); // how optimised steering does against the rest

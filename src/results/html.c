@@ -128,7 +128,7 @@ static void begin_figure(FILE *page, const char *svg)
 {
     static const char mark[] = "aria-label=\"";
     const char *name = strstr(svg, mark), *end = name ? strchr(name + sizeof mark - 1, '"') : NULL;
-    fputs("<figure class=\"scroll picture\" tabindex=\"0\"", page);
+    fputs("<figure class=\"picture\"", page);
     if (end)
         fprintf(page, " %.*s\"", (int)(end - name), name);
     fputs(">\n", page);

@@ -18,7 +18,7 @@
 
   // ---- What is seen: metres, y up ---------------------------------------------------------------------------------
 
-  const whole = (function () {
+  const bounds = (function () {
     let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity, reach = 0;
     const see = (x, y) => { x0 = Math.min(x0, x); x1 = Math.max(x1, x); y0 = Math.min(y0, y); y1 = Math.max(y1, y); };
     for (const body of scene.bodies) {
@@ -27,18 +27,23 @@
     }
     for (const [x, y] of scene.asked || []) see(x, y);
     const margin = (scene.bodies.some(b => b.force) ? 5 : 3) * reach; // the lines of forces are some two links long
-    const width = x1 - x0 + margin, height = y1 - y0 + margin;
-    const flattest = 3, tallest = 0.8;
-    const w = Math.max(width, height / tallest), h = Math.max(height, w / flattest);
-    return { x: (x0 + x1) / 2, y: (y0 + y1) / 2, w, h };
+    return { x: (x0 + x1) / 2, y: (y0 + y1) / 2, w: x1 - x0 + margin, h: y1 - y0 + margin };
   })();
-  const near = (function () { // the view that follows: some two lengths of a body
-    let length = 0;
-    for (const body of scene.bodies) length = Math.max(length, body.length * body.at[0].length / 3);
-    const apart = scene.bodies.length > 1 ? Math.abs(scene.bodies[1].at[0][1] - scene.bodies[0].at[0][1]) : 0;
-    const w = Math.min(whole.w, 1.9 * length + apart);
-    return { w, h: w * Math.min(0.6, whole.h / whole.w * 1.6) };
-  })();
+  const longestBody = Math.max(...scene.bodies.map(body => body.length * body.at[0].length / 3));
+  const apart = scene.bodies.length > 1 ? Math.abs(scene.bodies[1].at[0][1] - scene.bodies[0].at[0][1]) : 0;
+
+  // By the width of the stage: all of it, and the view that follows, some two lengths of a body.
+  let narrow, whole, near, chosen = false;
+  function measure() {
+    narrow = stage.clientWidth > 0 && stage.clientWidth < 500; // a phone
+    const flattest = narrow ? 1.6 : 3, tallest = 0.8;
+    const w = Math.max(bounds.w, bounds.h / tallest), h = Math.max(bounds.h, w / flattest);
+    whole = { x: bounds.x, y: bounds.y, w, h };
+    const close = Math.min(w, 1.9 * longestBody + apart);
+    near = { w: close, h: close * (narrow ? 0.75 : Math.min(0.6, h / w * 1.6)) };
+    const small = longestBody < (narrow ? 0.5 : 0.12) * w; // to be seen in all of it
+    if (!chosen) follow.checked = small && close < w;
+  }
 
   const picture = make("svg", { role: "img", "aria-label": scene.title, focusable: "false" });
   const ground = make("g", {}, picture), asked = make("g", {}, picture);
@@ -49,13 +54,20 @@
   const line = (points, attributes, parent) =>
     make("polyline", Object.assign({ points: points.map(p => p[0] + "," + -p[1]).join(" ") }, attributes), parent);
 
-  if (scene.asked) line(scene.asked, { class: "asked", "vector-effect": "non-scaling-stroke", "stroke-width": 2 }, asked);
+  // All of it, small, in a corner of the view that follows.
+  const map = make("svg", { class: "map", "aria-hidden": "true", preserveAspectRatio: "xMaxYMin" }, picture);
+  const sheet = make("rect", { class: "sheet" }, map);
+
+  const thread = (name, width) => ({ class: name, "vector-effect": "non-scaling-stroke", "stroke-width": width });
+  if (scene.asked) for (const part of [asked, map]) line(scene.asked, thread("asked", 2), part);
 
   const bodies = scene.bodies.map((body, k) => {
     const group = make("g", { class: "body" + body.colour }, robots), links = [], joints = [], forces = [];
-    const trace = make("polyline", { class: "trace", "vector-effect": "non-scaling-stroke", "stroke-width": 1.5 }, group);
+    const trace = make("polyline", thread("trace", 1.5), group);
     for (let i = 0; i < body.at[0].length / 3; i++)
       links.push(make("line", { "stroke-width": body.width, "stroke-linecap": "round" }, group));
+    const far = make("polyline", thread("trace body" + body.colour, 1.5), map);
+    const dot = make("line", Object.assign(thread("body" + body.colour, 7), { "stroke-linecap": "round" }), map);
     const eye = make("circle", { class: "eye", r: body.width * 0.14 }, group);
     if (body.effort)
       for (let i = 0; i < body.effort[0].length; i++)
@@ -72,7 +84,7 @@
       for (let i = 0; i < f.length; i += 3) { x += f[i]; y += f[i + 1]; }
       return [3 * x / f.length, 3 * y / f.length];
     });
-    return { body, links, joints, forces, trace, eye, middle, most, strongest };
+    return { body, links, joints, forces, trace, far, dot, eye, middle, most, strongest };
   });
   const most = Math.max(...bodies.map(b => b.most)), strongest = Math.max(...bodies.map(b => b.strongest));
   const longest = Math.max(...scene.bodies.map(b => b.length)) * 2.2;
@@ -122,7 +134,9 @@
       }
     });
     const points = b.middle.slice(0, p.low + 1).map(m => m[0] + "," + -m[1]);
-    b.trace.setAttribute("points", points.join(" "));
+    for (const trace of [b.trace, b.far]) trace.setAttribute("points", points.join(" "));
+    const [x, y] = b.middle[p.low]; // a line of no length with round ends
+    for (const [name, value] of [["x1", x], ["x2", x], ["y1", -y], ["y2", -y]]) b.dot.setAttribute(name, value);
   }
 
   function view(p) {
@@ -135,11 +149,25 @@
     return { x: x / bodies.length, y: y / bodies.length, w: near.w, h: near.h };
   }
 
+  function placeMap(v) {
+    const share = Math.min(narrow ? 0.35 : 0.24, 0.35 * v.h * whole.w / whole.h / v.w);
+    const w = share * v.w, h = w * whole.h / whole.w, gap = 0.012 * v.w, shown = follow.checked && whole.w > 1.5 * v.w;
+    const set = (element, x, y, width, height) => {
+      for (const [name, value] of Object.entries({ x, y, width, height })) element.setAttribute(name, value);
+    };
+    const x0 = whole.x - whole.w / 2, y0 = -whole.y - whole.h / 2;
+    map.setAttribute("visibility", shown ? "visible" : "hidden");
+    map.setAttribute("viewBox", [x0, y0, whole.w, whole.h].join(" "));
+    set(map, v.x + v.w / 2 - w - gap, -v.y - v.h / 2 + gap, w, h);
+    set(sheet, x0, y0, whole.w, whole.h);
+  }
+
   function drawGround(v, t) {
-    const width = stage.clientWidth || 700, step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50].find(s => s * width / v.w > 55) || 100;
+    const width = stage.clientWidth || 700;
+    const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50].find(s => s * width / v.w > 55) || 100;
     const size = v.w * 12 / width, x0 = v.x - v.w / 2, x1 = v.x + v.w / 2, y0 = v.y - v.h / 2, y1 = v.y + v.h / 2;
     ground.textContent = notes.textContent = "";
-    const thin = { class: "grid", "vector-effect": "non-scaling-stroke", "stroke-width": 1 };
+    const thin = thread("grid", 1);
     const label = (x, y, text, anchor) =>
       make("text", { x, y, "font-size": size, "text-anchor": anchor }, notes).textContent = text;
     const digits = step < 1 ? 1 : 0;
@@ -151,10 +179,11 @@
     const [cx, cy] = scene.current, flow = Math.hypot(cx, cy);
     water.textContent = "";
     if (flow > 0) { // arrows that drift with the water
-      const apart = 2 * step, arrow = 0.35 * step, ux = cx / flow, uy = cy / flow;
-      const start = (from, drift) => Math.ceil((from - drift) / apart) * apart + drift;
-      for (let x = start(x0, cx * t); x <= x1; x += apart)
-        for (let y = start(y0, cy * t); y <= y1; y += apart) {
+      const lattice = step * width / v.w > 90 ? step : 2 * step, arrow = Math.min(0.35 * step, 0.025 * v.w);
+      const ux = cx / flow, uy = cy / flow;
+      const start = (from, drift) => Math.ceil((from - drift) / lattice) * lattice + drift;
+      for (let x = start(x0, cx * t); x <= x1; x += lattice)
+        for (let y = start(y0, cy * t); y <= y1; y += lattice) {
           const hx = x + arrow * ux, hy = y + arrow * uy, b = 0.3 * arrow;
           make("path", { class: "current", "vector-effect": "non-scaling-stroke", "stroke-width": 1.5,
             d: `M${x - arrow * ux},${-(y - arrow * uy)}L${hx},${-hy}M${hx - b * (ux - uy)},${-(hy - b * (uy + ux))}` +
@@ -170,7 +199,8 @@
       return b.body.name + ": " + Math.hypot(x - m[0][0], y - m[0][1]).toFixed(2) + " m from its start";
     });
     for (const c of scene.channels || [])
-      parts.push(c.name + ": " + (c.values[p.low] + p.part * (c.values[p.high] - c.values[p.low])).toPrecision(3) + " " + c.unit);
+      parts.push(c.name + ": " + (c.values[p.low] + p.part * (c.values[p.high] - c.values[p.low])).toPrecision(3) +
+        (c.unit ? " " + c.unit : ""));
     told.textContent = parts.join("; ");
   }
 
@@ -190,6 +220,7 @@
     const p = place(time), v = view(p);
     picture.setAttribute("viewBox", [v.x - v.w / 2, -v.y - v.h / 2, v.w, v.h].join(" "));
     drawGround(v, time);
+    placeMap(v);
     for (const b of bodies) drawBody(b, p);
     clock.textContent = time.toFixed(2) + " of " + end.toFixed(0) + " s";
     scrub.value = time;
@@ -228,16 +259,17 @@
   at("back").addEventListener("click", () => step(-1));
   at("on").addEventListener("click", () => step(1));
   speed.addEventListener("change", () => { rate = Number(speed.value); });
-  follow.addEventListener("change", () => show(time));
+  follow.addEventListener("change", () => { chosen = true; show(time); });
   scrub.addEventListener("input", () => { run(false); show(Number(scrub.value)); });
-  addEventListener("resize", () => show(time));
+  addEventListener("resize", () => { measure(); show(time); });
   // Only where the scene has the focus: elsewhere the page is scrolled by the same keys.
   document.getElementById("scene").addEventListener("keydown", event => {
     const own = event.target.closest && event.target.closest("input, select, button, a, summary, .scroll");
     if (own || event.ctrlKey || event.altKey || event.metaKey) return;
     const keys = { " ": () => run(!running), k: () => run(!running), ArrowRight: () => step(1), ArrowLeft: () => step(-1),
       Home: () => { run(false); show(times[0]); }, End: () => { run(false); show(end); },
-      "+": () => hurry(1), "-": () => hurry(-1), f: () => { follow.checked = !follow.checked; show(time); } };
+      "+": () => hurry(1), "-": () => hurry(-1),
+      f: () => { chosen = true; follow.checked = !follow.checked; show(time); } };
     if (!keys[event.key]) return;
     event.preventDefault();
     keys[event.key]();
@@ -245,7 +277,9 @@
 
   scrub.min = times[0]; scrub.max = end; scrub.step = "any";
   document.getElementById("scene").hidden = false;
-  show(times[0]);
+  measure();
+  const moment = /^#t=([0-9.]+)$/.exec(location.hash); // report.html#t=6: at rest at that moment
+  show(moment ? Number(moment[1]) : times[0]);
   addEventListener("beforeprint", () => { run(false); show(end / 2); });
-  if (!calm) run(true);
+  if (!calm && !moment) run(true);
 })();

@@ -75,6 +75,20 @@ static void write_links(FILE *page, const moray_output *output)
     fputs("</dd>\n", page);
 }
 
+static void write_words(FILE *page, const moray_meaning *words)
+{
+    if (!words)
+        return;
+    fputs("<section aria-labelledby=\"words\">\n<h2 id=\"words\">Names on this page</h2>\n<dl class=\"facts\">\n",
+          page);
+    for (; words->name; words++) {
+        moray_html_element(page, "dt", words->name);
+        moray_html_element(page, "dd", words->meaning);
+        fputc('\n', page);
+    }
+    fputs("</dl>\n</section>\n", page);
+}
+
 static void write_asked(FILE *page, const moray_output *output, const moray_report *report)
 {
     fputs("<section aria-labelledby=\"asked\">\n<h2 id=\"asked\">What was asked</h2>\n", page);
@@ -109,11 +123,16 @@ static const moray_section *section_of(const moray_report *report, const char *f
 static void write_figures(FILE *page, const moray_output *output, const moray_report *report,
                           const moray_section *section)
 {
+    bool any = false;
     for (int i = 0; moray_output_name(output, i); i++) {
         const char *name = moray_output_name(output, i);
-        if (strstr(name, ".svg") && section_of(report, name) == section)
-            moray_html_figure(page, moray_output_stream(output, i), i);
+        if (!strstr(name, ".svg") || section_of(report, name) != section)
+            continue;
+        fputs(any ? "" : "<div class=\"pictures\">\n", page);
+        moray_html_figure(page, moray_output_stream(output, i), i);
+        any = true;
     }
+    fputs(any ? "</div>\n" : "", page);
 }
 
 static void write_section(FILE *page, const moray_output *output, const moray_report *report,
@@ -185,6 +204,29 @@ static void write_lines(FILE *page, const char *element, const char *const *line
     fprintf(page, "</%s>\n", element);
 }
 
+static bool has_scene(const moray_report *report)
+{
+    return report->scene && report->scene->frames > 1;
+}
+
+// What it comes to; then the robots, so that they are seen at once; then the rest of the text.
+static void write_verdict(FILE *page, const moray_report *report)
+{
+    const char *rest = has_scene(report) && report->text ? strchr(report->text, '\n') : NULL;
+    char *first = rest ? strndup(report->text, (size_t)(rest - report->text)) : NULL;
+    fputs("<div id=\"found\" class=\"verdict\">\n", page);
+    moray_html_paragraphs(page, first ? first : report->text);
+    fputs("</div>\n", page);
+    if (has_scene(report))
+        moray_html_scene(page, report->scene);
+    if (first && rest[strspn(rest, "\n")]) {
+        fputs("<div class=\"verdict\">\n", page);
+        moray_html_paragraphs(page, rest);
+        fputs("</div>\n", page);
+    }
+    free(first);
+}
+
 static void write_page(FILE *page, const moray_output *output, const moray_report *report)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -198,18 +240,15 @@ static void write_page(FILE *page, const moray_output *output, const moray_repor
     moray_html_element(page, "h1", report->title);
     fputc('\n', page);
     write_judgement(page, report);
-    fputs("<div id=\"found\" class=\"verdict\">\n", page);
-    moray_html_paragraphs(page, report->text);
-    fputs("</div>\n", page);
-    if (report->scene && report->scene->frames > 1)
-        moray_html_scene(page, report->scene);
+    write_verdict(page, report);
     write_contents(page, report);
     write_results(page, output, report);
     for (int i = 0; i < report->n_sections; i++)
         write_section(page, output, report, &report->sections[i]);
+    write_words(page, report->words);
     write_asked(page, output, report);
     fputs("</main>\n", page);
-    if (report->scene && report->scene->frames > 1)
+    if (has_scene(report))
         write_lines(page, "script", moray_page_js);
     fputs("</body>\n</html>\n", page);
 }

@@ -50,6 +50,10 @@ const examine = () => {
   const headed = [...page.querySelectorAll("table,svg[role=img]")].every(e => e.closest("#scene") || e.closest("section").querySelector("h2"));
   said.push("headed=" + headed, "named=" + [...page.querySelectorAll("[tabindex]")].every(e => e.getAttribute("aria-label")));
   const cursor = page.querySelector("svg[data-time] .cursor"); said.push("cursor=" + (cursor !== null));
+  key("Home"); const robot = stage.querySelector("g.body0").getBoundingClientRect();
+  said.push("robot=" + Math.round(100 * robot.width / stage.clientWidth));
+  const figures = [...page.querySelectorAll("figure svg")].map(svg => svg.getBoundingClientRect());
+  said.push("figures=" + (figures.length > 0 && figures.every(box => box.left >= 0 && box.right <= 390 && box.width > 300)));
   let least = 99, where = "";
   for (const element of page.querySelectorAll("h1,h2,p,th,td,a,caption,dt,dd,pre,button,label,li,summary")) {
     if (!element.textContent.trim() || element.closest("[hidden]")) continue;
@@ -80,15 +84,18 @@ for ground in light dark; do
     fi
     browse examine.html 900
     check "$ground: the console is clean: $(head -1 console)" [ ! -s console ]
-    for what in plays pauses steps back cursor elsewhere_scrolls headed named; do
+    for what in plays pauses steps back cursor elsewhere_scrolls headed named figures; do
         check "$ground: $what" [ "$(said $what)" = true ]
     done
     check "$ground: Home and End: $(said home), $(said end)" eval '[ "$(said home)" = 0 ] && [ "$(said end)" = 5 ]'
     check "$ground: nothing is wider than the telephone: $(said overflow)" [ "$(said overflow)" -le 0 ]
+    check "$ground: the robot is large enough to be seen: $(said robot) % of the width" [ "$(said robot)" -ge 25 ]
     check "$ground: contrast AA: $(said contrast) of $(said where)" awk "BEGIN { exit !($(said contrast) + 0 >= 4.5) }"
     check "$ground: every id is its own, every picture named, nothing from elsewhere: $(said twice) $(said unnamed) $(said elsewhere)" \
         [ "$(said twice)$(said unnamed)$(said elsewhere)" = 000 ]
 done
+browse 'results/report.html#t=2' 900
+check "the page at a moment stays there" eval 'grep -q "data-time=\"2.000\"" dom && grep -q ">Play</button>" dom'
 for key in speed_m_s power_W cost_of_transport_J_m energy_J; do
     value=$(number "$key")
     check "$key: the page has $value" grep -qF "<data value=\"$value\">" results/report.html

@@ -137,7 +137,8 @@ typedef enum {
     MORAY_COLOUR_BASELINE, // orange: what it is compared with
     MORAY_COLOUR_SECOND,   // green and
     MORAY_COLOUR_THIRD,    // purple: others
-    MORAY_COLOUR_LIMIT     // black, thin, dashed: limits, and what was asked for
+    MORAY_COLOUR_LIMIT,    // black, thin, dashed: limits, and what was asked for
+    MORAY_COLOUR_WATER     // grey: the current
 } moray_colour;
 
 // Points (x[i * stride], y[i * stride]), i < n; a NaN interrupts the curve. stride 0 stands for 1. A curve without a
@@ -179,7 +180,7 @@ MORAY_API moray_status moray_output_figure(moray_output *output, const moray_fig
 // Bodies of rigid links moving in the plane, for the report to show: SI units, angles in rad. Everything is borrowed.
 typedef struct moray_scene_body {
     const char *name;
-    moray_colour colour; // not that of a limit
+    moray_colour colour; // not that of a limit or of water
     int links;
     double length, width;  // of a link
     const double *lengths; // [links], where these differ; NULL: they do not
@@ -215,6 +216,11 @@ typedef struct moray_section {
     int n_tables;
 } moray_section;
 
+// What a name or an abbreviation on a page stands for.
+typedef struct moray_meaning {
+    const char *name, *meaning;
+} moray_meaning;
+
 typedef enum { MORAY_JUDGED_NOT, MORAY_JUDGED_PASS, MORAY_JUDGED_FAIL } moray_judgement;
 
 typedef struct moray_report {
@@ -227,7 +233,8 @@ typedef struct moray_report {
     int n_tables;
     const moray_section *sections;
     int n_sections;
-    int argc; // the command line that made it
+    const moray_meaning *words; // up to one without a name; or NULL
+    int argc;                   // the command line that made it
     char **argv;
     const char *configuration; // run.ini, or NULL
 } moray_report;

@@ -79,6 +79,9 @@ MORAY_API void moray_ladder_verdict(const moray_ladder_row row[MORAY_RUNGS], uns
 // is so.
 MORAY_API void moray_ladder_to_json(moray_json *json, const moray_ladder_row row[MORAY_RUNGS]);
 
+// What the names of the rungs stand for, for a report; up to one without a name.
+MORAY_API const moray_meaning *moray_ladder_words(void);
+
 // Rows of a table of gains, one gait a column; returns how many.
 MORAY_API int moray_ladder_rows(const moray_ladder_row *const *ladders, int n, moray_table_row rows[MORAY_RUNGS]);
 

@@ -243,7 +243,8 @@ static moray_status show(const free_gait *run, const struct waves *waves, const 
                                  .text = text,
                                  .scene = &scene->scene,
                                  .tables = tables,
-                                 .n_tables = waves->table.n_columns > 0 ? 3 : 2};
+                                 .n_tables = waves->table.n_columns > 0 ? 3 : 2,
+                                 .words = moray_ladder_words()};
     return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
                                                              .found = run,
                                                              .summary = free_gait_summary,

@@ -182,6 +182,7 @@ moray_status gait_job_report(gait_job *job)
                                  .scene = &page.scene.scene,
                                  .sections = page.section,
                                  .n_sections = 1,
+                                 .words = moray_ladder_words(),
                                  .tables = t.table,
                                  .n_tables = tables};
     const moray_status status = moray_app_show(&job->common, &(moray_results){.name = job->name,

@@ -257,7 +257,8 @@ static moray_status show(const pareto *run, struct sheet *sheets, const moray_sw
                                  .text = text,
                                  .scene = &scene->scene,
                                  .sections = &section,
-                                 .n_sections = 1};
+                                 .n_sections = 1,
+                                 .words = moray_ladder_words()};
     return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
                                                              .found = run,
                                                              .summary = pareto_summary,

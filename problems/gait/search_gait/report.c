@@ -302,7 +302,8 @@ static moray_status show(search_gait *run, moray_swim_scene *scene)
                                  .text = text,
                                  .scene = &scene->scene,
                                  .tables = t.table,
-                                 .n_tables = TABLES};
+                                 .n_tables = TABLES,
+                                 .words = moray_ladder_words()};
     return moray_app_show(&run->job.common, &(moray_results){.name = "search_gait",
                                                              .found = run,
                                                              .summary = summarise,

@@ -328,6 +328,14 @@ static void release(steer_job *steer)
     moray_reference_free(&((heading_job *)steer)->reference);
 }
 
+static const moray_meaning words[] = {
+    {"P", "joint offset in proportion to the heading error"},
+    {"PID", "with its integral and its rate"},
+    {"rate fed forward", "with the rate that the reference has"},
+    {"ahead", "told the reference some time ahead, as plans are"},
+    {NULL, NULL},
+};
+
 const steer_program heading_steering = {
     .work = work,
     .release = release,
@@ -339,6 +347,8 @@ const steer_program heading_steering = {
     .judge = judge,
     .scores = scores,
     .n_scores = SCORES,
+    .title = "heading_tracking: a heading followed in a current",
+    .words = words,
     .score_title = "Heading error, without the undulation, deg; power, W",
     .columns = score_columns,
     .tables = tables,

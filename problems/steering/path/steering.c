@@ -278,6 +278,15 @@ static void release(steer_job *steer)
     moray_path_free(&((path_job *)steer)->path);
 }
 
+static const moray_meaning words[] = {
+    {"LOS", "line of sight: steering for a point of the path some way ahead"},
+    {"ILOS", "with an integral of the cross-track error, against the current"},
+    {"settled", "without the first way to the path"},
+    {"cross-track error", "distance of the centre of mass from the path"},
+    {"crab angle", "heading less course: how far the robot points into the current"},
+    {NULL, NULL},
+};
+
 const steer_program path_steering = {
     .work = work,
     .release = release,
@@ -289,6 +298,8 @@ const steer_program path_steering = {
     .judge = judge,
     .scores = scores,
     .n_scores = SCORES,
+    .title = "path_following: a path followed in a current",
+    .words = words,
     .score_title = "Cross-track error, cm (settled: without the first way to the path); time to the end, s; cost as in "
                    "the objective; power, W",
     .columns = score_columns,

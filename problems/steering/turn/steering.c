@@ -245,6 +245,12 @@ static moray_status work(steer_job *steer)
     return steer_run_trials(steer);
 }
 
+static const moray_meaning words[] = {
+    {"bang-bang", "the joint offset at its limit for a time that is tuned, then none"},
+    {"braking", "with the other limit before the end"},
+    {NULL, NULL},
+};
+
 const steer_program turn_steering = {
     .work = work,
     .one_gait = true,
@@ -256,6 +262,8 @@ const steer_program turn_steering = {
     .judge = judge,
     .scores = scores,
     .n_scores = SCORES,
+    .title = "min_time_turn: the fastest turn",
+    .words = words,
     .score_title = "Time until the heading stays in the band, s; the same, weighted by the error within it; final "
                    "error, deg; power, W; nearest to the end position, m",
     .columns = score_columns,

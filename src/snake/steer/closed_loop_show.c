@@ -76,7 +76,7 @@ moray_status moray_swim_closed_loop_draw_path(moray_output *output, const moray_
         make_arrow(current, all, used, arrow_x, arrow_y);
         snprintf(label, sizeof label, "current, %.3g m/s", hypot(current[0], current[1]));
         all[used++] =
-            (moray_curve){.label = label, .x = arrow_x, .y = arrow_y, .n = arrow_points, .colour = MORAY_COLOUR_THIRD};
+            (moray_curve){.label = label, .x = arrow_x, .y = arrow_y, .n = arrow_points, .colour = MORAY_COLOUR_WATER};
     }
     status = moray_output_figure(output, &(moray_figure){.name = "path",
                                                          .title = "Path over ground",

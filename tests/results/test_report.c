@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "folder.h"
+
+#include <math.h>
+
+static const double t[] = {0, 1, 2, 3}, x[] = {0, 1, NAN, 0.5}, y[] = {1, 2, 3, 4};
+static const moray_curve curves[] = {
+    {.label = "with 'quotes' '' \"and\" `ls`", .x = t, .y = x, .n = 4},
+    {.label = "b_1^2", .x = t, .y = y, .n = 4, .style = MORAY_CURVE_MARKED},
+    {.label = "c", .x = t, .y = y, .n = 2, .stride = 2, .style = MORAY_CURVE_POINTS},
+};
+static const moray_figure figure = {.name = "figure",
+                                    .title = "T'\n!touch pwned\nsystem('touch pwned') <&>",
+                                    .x_label = "time [s]",
+                                    .y_label = "θ [deg]",
+                                    .curves = curves,
+                                    .n_curves = 3};
+
+static void test_report(void)
+{
+    const moray_table_row rows[] = {{"speed <ground>", {0.2293}, "m/s", NULL}, {"scheme", {0}, NULL, "radau3"}};
+    const moray_table table = {
+        .title = "Gait & co", .columns = {"validated"}, .n_columns = 1, .rows = rows, .n_rows = 2};
+    char *argv[] = {"/tmp/x/max_speed", "--out", "/tmp/here", "--set", "c_n=it's <9>", ""};
+    moray_output *output = open_in("report");
+    CHECK_OK(moray_output_figure(output, &figure), "figure");
+    CHECK_OK(moray_output_report(output, &(moray_report){.title = "Max <speed>",
+                                                         .text = "Text & more.",
+                                                         .tables = &table,
+                                                         .n_tables = 1,
+                                                         .argc = 6,
+                                                         .argv = argv}),
+             "report");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *page = content("report/report.html"), *svg = content("report/figure.svg");
+    CHECK(strncmp(page, "<!DOCTYPE html>", 15) == 0 && strstr(page, "</html>"), "a whole page");
+    CHECK(strstr(page, "<h1>Max &lt;speed&gt;</h1>") && strstr(page, "<p>Text &amp; more.</p>"), "title and text");
+    CHECK(strstr(page, "<caption>Gait &amp; co</caption>") &&
+              strstr(page, "<tr><th scope=\"row\">speed &lt;ground&gt;</th><td><data "
+                           "value=\"0.2293\">0.2293</data></td><td class=\"unit\">m/s</td></tr>") &&
+              strstr(page, "<td class=\"words\">radau3</td>"),
+          "the table");
+    CHECK(strstr(page, "role=\"img\" aria-label=\"T'") && strstr(page, "</svg>") && !strstr(page, "<?xml") &&
+              !strstr(page, "Gnuplot"),
+          "the whole figure inline, with its own title");
+    CHECK(!strstr(page, " id=\"gp") && !strstr(page, " id='gp") && strstr(page, "f0-gp"), "and ids of its own");
+    CHECK(!strstr(page, "src=") && !strstr(page, "stylesheet") && !strstr(page, "@import"), "nothing from elsewhere");
+    CHECK(strstr(page, "<pre>max_speed --set 'c_n=it'\\''s &lt;9&gt;' ''</pre>"),
+          "the command line, as a shell reads it, without the places of the files");
+    free(page);
+    free(svg);
+}
+
+// Three figures, of which two begin with the names of sections; headings, paragraphs and figures in their order.
+static void test_report_sections(void)
+{
+    static const char *const names[] = {"wave", "other", "wind_speed"};
+    const moray_table_row row = {"force", {1}, "N", NULL};
+    const moray_table table = {.title = "Forces", .n_columns = 1, .rows = &row, .n_rows = 1};
+    const moray_section sections[] = {
+        {.title = "Wind & weather", .text = "One.\nTwo < three.", .figures = "wind", .tables = &table, .n_tables = 1},
+        {.title = "Waves", .figures = "wave"}};
+    moray_output *output = open_in("sections");
+    for (int i = 0; i < 3; i++) {
+        moray_figure named = figure;
+        named.name = named.title = names[i];
+        CHECK_OK(moray_output_figure(output, &named), "figure");
+    }
+    CHECK_OK(
+        moray_output_report(output, &(moray_report){.title = "Sea", .sections = sections, .n_sections = 2, .argc = 0}),
+        "report");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *page = content("sections/report.html"), *at = page;
+    static const char *const order[] = {"<h1>Sea</h1>",
+                                        ">other<",
+                                        ">Wind &amp; weather</h2>",
+                                        "<p>One.</p>\n<p>Two &lt; three.</p>",
+                                        "<caption>Forces</caption>",
+                                        ">wind_speed<",
+                                        ">Waves</h2>",
+                                        ">wave<",
+                                        "What was asked</h2>"};
+    for (unsigned i = 0; i < sizeof order / sizeof *order; i++) {
+        char *found = at ? strstr(at, order[i]) : NULL;
+        CHECK(found, "part %u of the page stands after the one before", i);
+        at = found;
+    }
+    free(page);
+}
+
+// The first paragraph, then the robots, then the rest; names are told what they stand for.
+static void test_report_order(void)
+{
+    const double t2[] = {0, 1}, at[] = {0, 0, 0, 1, 0, 0};
+    const moray_scene_body body = {.name = "robot", .links = 1, .length = 1, .width = 0.1, .at = at};
+    const moray_scene scene = {.title = "Swimming", .frames = 2, .t = t2, .bodies = &body, .n_bodies = 1};
+    const moray_meaning words[] = {{"LOS", "line of sight <ahead>"}, {NULL, NULL}};
+    moray_output *output = open_in("order");
+    CHECK_OK(moray_output_figure(output, &figure), "figure");
+    CHECK_OK(
+        moray_output_report(
+            output, &(moray_report){.title = "T", .text = "First.\nSecond.\nThird.", .scene = &scene, .words = words}),
+        "report");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *page = content("order/report.html"), *at_page = page;
+    static const char *const order[] = {"<p>First.</p>",
+                                        "id=\"stage\"",
+                                        "<p>Second.</p>\n<p>Third.</p>",
+                                        "<div class=\"pictures\">",
+                                        "<figure class=\"picture\"",
+                                        "<dt>LOS</dt><dd>line of sight &lt;ahead&gt;</dd>",
+                                        "What was asked</h2>"};
+    for (unsigned i = 0; i < sizeof order / sizeof *order; i++) {
+        char *found = at_page ? strstr(at_page, order[i]) : NULL;
+        CHECK(found, "%s stands after what is before it", order[i]);
+        at_page = found;
+    }
+    CHECK(page == strstr(page, "<!DOCTYPE") && strstr(page, "<p>First.</p>\n</div>"), "the first paragraph is alone");
+    free(page);
+}
+
+// Of many parts the page has a list with the way to each; of few it has none.
+static void test_contents(void)
+{
+    const moray_section sections[] = {{.title = "A"}, {.title = "B"}, {.title = "C"}, {.title = "D < E"}};
+    for (int n = 3; n <= 4; n++) {
+        moray_output *output = open_in(n == 3 ? "few" : "many");
+        CHECK_OK(moray_output_report(output, &(moray_report){.title = "T", .sections = sections, .n_sections = n}),
+                 "report");
+        CHECK_OK(moray_output_commit(output), "commit");
+        moray_output_free(output);
+    }
+    char *few = content("few/report.html"), *many = content("many/report.html");
+    CHECK(!strstr(few, "<nav"), "three parts need no list");
+    CHECK(strstr(many, "<a href=\"#part4\">D &lt; E</a>") && strstr(many, "id=\"part4\""), "four have one");
+    free(few);
+    free(many);
+}
+
+int main(void)
+{
+    if (!enter())
+        return 1;
+    test_report();
+    test_report_sections();
+    test_report_order();
+    test_contents();
+    leave();
+    return tap_done();
+}
