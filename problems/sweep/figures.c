@@ -40,7 +40,7 @@ static void add_setting(const sweep_arguments *a, int k, long place, char *text,
     if (axis->value)
         moray_text_add(text, size, "%s%s %.4g", *text ? ", " : "", axis->key, axis->value[place]);
     else
-        moray_text_add(text, size, "%s%s", *text ? ", " : "", axis->word[place]);
+        moray_text_add(text, size, "%s%s %s", *text ? ", " : "", axis->key, axis->word[place]);
 }
 
 static void file_name(const char *title, int number, char *name, size_t size)
@@ -102,7 +102,7 @@ static moray_status draw_planes(const shown *s, const cut *slice, moray_output *
         if (!is_first(s->a, slice, point))
             continue;
         for (int k = 0; k < s->a->axes; k++)
-            if (k != slice->across && k != slice->curves)
+            if (k != slice->across && k != slice->curves && s->a->axis[k].n > 1)
                 add_setting(s->a, k, place_of(s->a, slice, point, k), at, sizeof at);
         MORAY_TRY(draw(s, slice, output, column, point, slice->across, slice->curves, at, ++*number));
     }
@@ -122,7 +122,8 @@ static moray_status draw_lines(const shown *s, const cut *slice, moray_output *o
             if (k == across)
                 continue;
             point += middle * slice->step[k];
-            add_setting(s->a, k, middle, at, sizeof at);
+            if (s->a->axis[k].n > 1)
+                add_setting(s->a, k, middle, at, sizeof at);
         }
         MORAY_TRY(draw(s, slice, output, column, point, across, -1, at, ++*number));
     }

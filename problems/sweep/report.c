@@ -72,7 +72,9 @@ moray_status sweep_report(const sweep_arguments *a, const moray_sweep_result *re
     moray_table_row row[ROWS], quantile_row[2 * SWEEP_MOST_SHOWN];
     moray_table tables[2] = {{.rows = row, .n_rows = rows(result, row), .n_columns = 1}};
     const int n_tables = a->quantiles ? 2 : 1;
-    const moray_report report = {.title = "sweep", .tables = tables, .n_tables = n_tables, .argc = argc, .argv = argv};
+    char title[100];
+    snprintf(title, sizeof title, "sweep: %s at %ld points", a->program->name, result->points);
+    const moray_report report = {.title = title, .tables = tables, .n_tables = n_tables, .argc = argc, .argv = argv};
     moray_json *json = moray_json_new();
     shown s = {0};
     summarise(a, result, json);

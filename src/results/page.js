@@ -67,6 +67,7 @@
     for (let i = 0; i < body.at[0].length / 3; i++)
       links.push(make("line", { "stroke-width": body.width, "stroke-linecap": "round" }, group));
     const far = make("polyline", thread("trace body" + body.colour, 1.5), map);
+    const all = make("polyline", thread("all body" + body.colour, 1), map);
     const dot = make("line", Object.assign(thread("body" + body.colour, 7), { "stroke-linecap": "round" }), map);
     const eye = make("circle", { class: "eye", r: body.width * 0.14 }, group);
     if (body.effort)
@@ -84,6 +85,7 @@
       for (let i = 0; i < f.length; i += 3) { x += f[i]; y += f[i + 1]; }
       return [3 * x / f.length, 3 * y / f.length];
     });
+    all.setAttribute("points", middle.map(m => m[0] + "," + -m[1]).join(" "));
     return { body, links, joints, forces, trace, far, dot, eye, middle, most, strongest };
   });
   const most = Math.max(...bodies.map(b => b.most)), strongest = Math.max(...bodies.map(b => b.strongest));
@@ -139,7 +141,11 @@
     for (const [name, value] of [["x1", x], ["x2", x], ["y1", -y], ["y2", -y]]) b.dot.setAttribute(name, value);
   }
 
-  function view(p) {
+  function view(p) { // as wide as the stage, which is no taller than three quarters of the window
+    const v = centre(p), tallest = 0.75 * innerHeight, width = stage.clientWidth;
+    return width > 0 ? { x: v.x, y: v.y, w: Math.max(v.w, v.h * width / tallest), h: v.h } : v;
+  }
+  function centre(p) {
     if (!follow.checked) return whole;
     let x = 0, y = 0;
     for (const b of bodies) {

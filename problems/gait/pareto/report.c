@@ -200,7 +200,7 @@ static void print(const void *found, const moray_report *report)
            moray_power_label(&run->job.snake.robot, run->job.snake.model));
     for (int f = 0; f < run->fronts; f++)
         if (is_shown(&run->front[f]))
-            moray_tables_print(&report->sections->tables[2 * f], 2, stdout);
+            moray_tables_print(&report->sections[1].tables[2 * f], 2, stdout);
     printf("%s", report->text);
 }
 
@@ -250,14 +250,20 @@ static moray_status show(const pareto *run, struct sheet *sheets, const moray_sw
         tables[2 * f] = sheets[2 * f].table;
         tables[2 * f + 1] = sheets[2 * f + 1].table;
     }
-    const moray_section section = {.title = "Fronts", .figures = "", .tables = tables, .n_tables = 2 * run->fronts};
+    const moray_section sections[] = {
+        {.title = "Fronts", .figures = ""},
+        {.title = "The gaits of each",
+         .text = "m/s per W: what another watt would bring, by the multiplier of the limit. f.-p.: swum on the "
+                 "first-principles model. least, most: of the gains; wins: 1 where all are gains.",
+         .tables = tables,
+         .n_tables = 2 * run->fronts}};
     const moray_report report = {.title = "pareto: speed against power",
                                  .judgement = judge(run, judged),
                                  .judged = judged,
                                  .text = text,
                                  .scene = &scene->scene,
-                                 .sections = &section,
-                                 .n_sections = 1,
+                                 .sections = sections,
+                                 .n_sections = 2,
                                  .words = moray_ladder_words()};
     return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
                                                              .found = run,

@@ -15,13 +15,17 @@ static const struct scale {
                {{"RMS, cm", "time, s", "cost"}, {"rms_m", "time_s", "cost"}, {0.01, 1, 1}}};
 
 // What laws are compared by: the heading error, or the cost of a path.
-static int judged_by(const sea_job *job)
+int sea_judged_by(const sea_job *job)
 {
     return job->task == SEA_HEADING ? 0 : 2;
 }
 
-// A share of the trials' values of a law, or of their differences to another's (other < 0: none).
-static double quantile(const sea_job *job, int law, int other, int which, double share)
+const char *sea_judged_name(const sea_job *job)
+{
+    return scales[job->task].key[sea_judged_by(job)];
+}
+
+double sea_quantile(const sea_job *job, int law, int other, int which, double share)
 {
     static double values[SEA_MOST_SEEDS];
     for (int k = 0; k < job->seeds; k++) {
@@ -36,7 +40,7 @@ static double wins(const sea_job *job, int law, int other)
     int n = 0;
     for (int k = 0; k < job->seeds; k++) {
         const sea_score *of = &job->score[k * SEA_LAWS];
-        n += of[law].value[judged_by(job)] < of[other].value[judged_by(job)];
+        n += of[law].value[sea_judged_by(job)] < of[other].value[sea_judged_by(job)];
     }
     return 100.0 * n / job->seeds;
 }
@@ -64,17 +68,17 @@ enum { MEDIAN, HIGH, SECOND_MEDIAN, SECOND_HIGH, DIFFERENCE, DIFFERENCE_HIGH, WI
 
 static void fill(const sea_job *job, const sea_law *laws, int n, moray_table_row *rows, char label[][64])
 {
-    const int best = best_rival(job, laws, n), by = judged_by(job), second = job->task == SEA_HEADING ? 1 : 0;
+    const int best = best_rival(job, laws, n), by = sea_judged_by(job), second = job->task == SEA_HEADING ? 1 : 0;
     for (int law = 0; law < n; law++) {
         snprintf(label[law], sizeof *label, "%s (told: %s)", laws[law].name, laws[law].told);
         rows[law] = (moray_table_row){.label = label[law]};
         double *value = rows[law].value;
-        value[MEDIAN] = quantile(job, law, -1, by, 0.5);
-        value[HIGH] = quantile(job, law, -1, by, 0.9);
-        value[SECOND_MEDIAN] = quantile(job, law, -1, second, 0.5);
-        value[SECOND_HIGH] = quantile(job, law, -1, second, 0.9);
-        value[DIFFERENCE] = law == best ? NAN : quantile(job, law, best, by, 0.5);
-        value[DIFFERENCE_HIGH] = law == best ? NAN : quantile(job, law, best, by, 0.9);
+        value[MEDIAN] = sea_quantile(job, law, -1, by, 0.5);
+        value[HIGH] = sea_quantile(job, law, -1, by, 0.9);
+        value[SECOND_MEDIAN] = sea_quantile(job, law, -1, second, 0.5);
+        value[SECOND_HIGH] = sea_quantile(job, law, -1, second, 0.9);
+        value[DIFFERENCE] = law == best ? NAN : sea_quantile(job, law, best, by, 0.5);
+        value[DIFFERENCE_HIGH] = law == best ? NAN : sea_quantile(job, law, best, by, 0.9);
         value[WINS] = law == best ? NAN : wins(job, law, best);
         value[FAILED] = laws[law].tuned ? NAN : (double)failures(job, law);
     }
@@ -174,9 +178,9 @@ static void summary(const void *found, moray_json *json)
         for (int which = 0; which < SEA_SCORES; which++) {
             moray_json_open(json, scales[job->task].json[which]);
             const double si = job->task == SEA_PATH ? scales[SEA_PATH].unit[which] : 1; // cm only in tables
-            moray_json_number(json, "median", quantile(job, law, -1, which, 0.5) * si);
-            moray_json_number(json, "percentile_90", quantile(job, law, -1, which, 0.9) * si);
-            moray_json_number(json, "median_difference", quantile(job, law, best, which, 0.5) * si);
+            moray_json_number(json, "median", sea_quantile(job, law, -1, which, 0.5) * si);
+            moray_json_number(json, "percentile_90", sea_quantile(job, law, -1, which, 0.9) * si);
+            moray_json_number(json, "median_difference", sea_quantile(job, law, best, which, 0.5) * si);
             moray_json_close(json);
         }
         moray_json_number(json, "wins_percent", wins(job, law, best));
@@ -200,13 +204,28 @@ static moray_status write_nothing(const void *found, moray_output *output)
     return moray_ok();
 }
 
+static const moray_meaning words[] = {
+    {"P, PID", "joint offset in proportion to the heading error; with its integral and its rate"},
+    {"rate fed forward, and rate", "with the rate that the reference has"},
+    {"ahead", "told the reference some time ahead, as planners are"},
+    {"LOS, ILOS",
+     "line of sight: steering for a point of the path some way ahead; with an integral against the current"},
+    {"by collocation", "its numbers from one optimal-control problem over all training draws, not by trials"},
+    {"receding", "planned anew again and again from what is measured: told the draw's robot and current, believing in "
+                 "those of the options, or estimating them as it swims"},
+    {"plan", "made beforehand: of the robot believed, or one for all robots of the training (robust)"},
+    {"90th", "of a hundred draws ninety do better"},
+    {"wins", "share of the draws in which it does better than the best rival"},
+    {NULL, NULL},
+};
+
 moray_status sea_report(const sea_job *job)
 {
     const sea_law *laws;
-    const int n = sea_laws(job, &laws), best = best_rival(job, laws, n), by = judged_by(job);
+    const int n = sea_laws(job, &laws), best = best_rival(job, laws, n), by = sea_judged_by(job);
     const int second = job->task == SEA_HEADING ? 1 : 0;
     moray_table_row rows[4][SEA_LAWS];
-    char label[SEA_LAWS][64], text[1000] = "";
+    char label[SEA_LAWS][64], text[1600] = "";
     int tuned;
     fill(job, laws, n, rows[0], label);
     fill_tuning(job, laws, n, rows[1], &tuned);
@@ -242,15 +261,20 @@ moray_status sea_report(const sea_job *job)
                    job->seeds, moray_model_name(job->snake.model), job->rung, laws[best].name);
     for (int law = 0; law < n; law++)
         if (!laws[law].tuned || laws[law].collocated || laws[law].knows == SEA_BEFOREHAND)
-            moray_text_add(text, sizeof text, " %s wins %.0f %% of the draws, median difference %+.3g.", laws[law].name,
-                           wins(job, law, best), quantile(job, law, best, by, 0.5));
+            moray_text_add(text, sizeof text, "\n%s wins %.0f %% of the draws, median difference %+.3g.",
+                           laws[law].name, wins(job, law, best), sea_quantile(job, law, best, by, 0.5));
     if (job->seeds < job->wanted)
-        moray_text_add(text, sizeof text, " The time given ended before %d more draws.", job->wanted - job->seeds);
-    const moray_report report = {.title = "sea_trials", .text = text, .tables = tables, .n_tables = 4};
+        moray_text_add(text, sizeof text, "\nThe time given ended before %d more draws.", job->wanted - job->seeds);
+    const moray_report report = {.title = "sea_trials: steering without foreknowledge",
+                                 .text = text,
+                                 .tables = tables,
+                                 .n_tables = 4,
+                                 .words = words};
     return moray_app_show(&job->common, &(moray_results){.name = "sea_trials",
                                                          .found = job,
                                                          .summary = summary,
                                                          .print = print,
                                                          .write = write_nothing,
+                                                         .draw = sea_draw_figures,
                                                          .report = &report});
 }

@@ -160,6 +160,14 @@ moray_status sea_robust_plan(const sea_job *job, const sea_draw *draw, const dou
 // lookahead, its offset; without numbers of nobody's steering. NaN where there are none.
 void sea_multipliers(const sea_job *job, const double *number, double largest[2]);
 
+// Number of the score that laws are compared by; and what it is called in tables, with its unit.
+int sea_judged_by(const sea_job *job);
+const char *sea_judged_name(const sea_job *job);
+// A share of the trials' values of a law in the units of the tables, or of their differences to another's (other < 0:
+// none).
+double sea_quantile(const sea_job *job, int law, int other, int which, double share);
+
+moray_status sea_draw_figures(const void *found, moray_output *output);
 moray_status sea_report(const sea_job *job);
 
 #endif
