@@ -78,22 +78,22 @@ static double stretch_of(const turn_job *job, moray_model model, const moray_ste
     return seconds > ramps ? (ramps + (seconds - ramps) * ratio) / seconds : 1;
 }
 
-// From the plan `from` on times that end at several parts of a stroke, and from nothing where that does not solve;
-// leaves the fastest turn.
+// From the plan `from` on times that end at several parts of a stroke, on longer ones where that does not solve, and at
+// last from nothing; leaves the fastest turn.
 static moray_status solve(turn_job *job, moray_model model, const moray_gait *gait, const moray_steering_plan *from,
                           moray_steering_plan *plan)
 {
-    enum { starts = 2 };
+    enum { starts = 2, longer = 3 };
     const moray_turn_spec spec = spec_of(job, model, from == NULL);
     const double period = 2 * M_PI / gait->omega, turn_rate = job->steer.turn_rate[model];
     const double stretch = from ? stretch_of(job, model, from) : 1;
     const moray_settings settings = settings_of(job, from, period / stretch);
     steer_clock_give(&job->steer.clock, !from ? 0.2 : model < job->steer.snake.model ? 0.3 : 0.5);
-    for (int k = 0; from && k < starts; k++) {
-        const double later = period * (k - 0.5) / starts;
+    for (int k = 0; from && (k < starts || (k < starts + longer && !solved(plan))); k++) {
+        const double later = k < starts ? period * (k - 0.5) / starts / steer_duration(from->solution)
+                                        : stretch * 0.1 * (k - starts + 1);
         moray_steering_plan next;
-        MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, from,
-                                       stretch + later / steer_duration(from->solution)));
+        MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, from, stretch + later));
         keep_faster(plan, &next);
         MORAY_TRY(steer_interruption());
     }

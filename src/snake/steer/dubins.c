@@ -4,6 +4,7 @@
 #include "snake/steer/dubins.h"
 
 #include <math.h>
+#include <string.h>
 
 static double around(double angle)
 {
@@ -52,36 +53,48 @@ static bool turns_by(const double turn[3], const double length[3], double headin
     return fabs(sum - heading) < 1e-6;
 }
 
+bool moray_dubins_way(int kind, double x, double y, double heading, moray_dubins *path)
+{
+    static const double turns[MORAY_DUBINS_KINDS][3] = {{1, 0, 1},  {-1, 0, -1}, {1, 0, -1},
+                                                        {-1, 0, 1}, {1, -1, 1},  {-1, 1, -1}};
+    const double *turn = turns[kind];
+    double length[3];
+    const bool exists = turn[1] == 0 ? arc_leg_arc(x, y, heading, turn[0], turn[2], length)
+                                     : three_arcs(x, y, heading, turn[0], length);
+    if (!exists || !turns_by(turn, length, heading))
+        return false;
+    memcpy(path->turn, turn, sizeof path->turn);
+    memcpy(path->length, length, sizeof path->length);
+    return true;
+}
+
+static double length_of(const moray_dubins *path)
+{
+    return path->length[0] + path->length[1] + path->length[2];
+}
+
 bool moray_dubins_shortest(double x, double y, double heading, moray_dubins *path)
 {
-    static const double turns[6][3] = {{1, 0, 1}, {-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {1, -1, 1}, {-1, 1, -1}};
     double least = INFINITY;
-    for (int k = 0; k < 6; k++) {
-        const double *turn = turns[k];
-        double length[3];
-        const bool exists = turn[1] == 0 ? arc_leg_arc(x, y, heading, turn[0], turn[2], length)
-                                         : three_arcs(x, y, heading, turn[0], length);
-        const double all = exists ? length[0] + length[1] + length[2] : INFINITY;
-        if (!exists || !turns_by(turn, length, heading) || all >= least)
+    for (int kind = 0; kind < MORAY_DUBINS_KINDS; kind++) {
+        moray_dubins way;
+        if (!moray_dubins_way(kind, x, y, heading, &way) || length_of(&way) >= least)
             continue;
-        least = all;
-        for (int i = 0; i < 3; i++) {
-            path->turn[i] = turn[i];
-            path->length[i] = length[i];
-        }
+        least = length_of(&way);
+        *path = way;
     }
     return isfinite(least);
 }
 
-bool moray_dubins_in_current(const double end[2], double heading, const double current[2], double speed, double radius,
-                             double longest, moray_dubins *path, double *seconds)
+bool moray_dubins_in_current(int kind, const double end[2], double heading, const double current[2], double speed,
+                             double radius, double longest, moray_dubins *path, double *seconds)
 {
     enum { steps = 2000 };
     for (int k = 1; k <= steps; k++) {
         const double t = longest * k / steps;
-        if (moray_dubins_shortest((end[0] - current[0] * t) / radius, (end[1] - current[1] * t) / radius, heading,
-                                  path) &&
-            (path->length[0] + path->length[1] + path->length[2]) * radius <= speed * t) {
+        if (moray_dubins_way(kind, (end[0] - current[0] * t) / radius, (end[1] - current[1] * t) / radius, heading,
+                             path) &&
+            length_of(path) * radius <= speed * t) {
             *seconds = t;
             return true;
         }

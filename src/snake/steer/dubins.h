@@ -9,13 +9,18 @@ typedef struct moray_dubins {
     double turn[3], length[3];
 } moray_dubins;
 
-// The shortest from (0, 0), heading 0, to (x, y) in radii that turns by `heading` [rad], of those of at most one turn
-// an arc; false where no such way turns by that.
+enum { MORAY_DUBINS_KINDS = 6 }; // orders of turns; four with a leg in the middle, two with an arc
+
+// The way of one kind, at most one turn an arc, from (0, 0), heading 0, to (x, y) in radii that turns by `heading` [rad];
+// false where no such way turns by that.
+bool moray_dubins_way(int kind, double x, double y, double heading, moray_dubins *path);
+
+// The shortest of all kinds.
 bool moray_dubins_shortest(double x, double y, double heading, moray_dubins *path);
 
-// The same to `end` over ground [m] at a speed through water that moves [m/s]: the first time, of a row of them up to
-// `longest`, in which it can be made [s]. False where there is none.
-bool moray_dubins_in_current(const double end[2], double heading, const double current[2], double speed, double radius,
-                             double longest, moray_dubins *path, double *seconds);
+// The way of one kind to `end` over ground [m] at a speed through water that moves [m/s]: the first time, of a row of
+// them up to `longest`, in which it can be made [s]. False where there is none.
+bool moray_dubins_in_current(int kind, const double end[2], double heading, const double current[2], double speed,
+                             double radius, double longest, moray_dubins *path, double *seconds);
 
 #endif

@@ -103,21 +103,46 @@ typedef struct outline {
     double radius, seconds;
 } outline;
 
-static outline outline_of(const moray_turn_spec *spec, double speed, double turn_rate)
+enum { most_outlines = 4, enough = 2 }; // tried; solved, of which the faster is taken
+
+// Arcs begin and end gently, so they are wider than the circle of steady turning; how much is a guess, too.
+static const double wide[] = {1.15, 1.6};
+
+// In the order of their times; the slowest falls out where there are too many.
+static int insert(outline *plans, int n, outline next)
 {
-    const double ramp = spec->limits.offset / spec->limits.offset_rate, wide = 1.15; // arcs begin and end gently
+    int at = n;
+    while (at > 0 && plans[at - 1].seconds > next.seconds)
+        at--;
+    if (at == most_outlines)
+        return n;
+    const int moved = n < most_outlines ? n - at : most_outlines - 1 - at;
+    memmove(plans + at + 1, plans + at, (size_t)moved * sizeof *plans);
+    plans[at] = next;
+    return n < most_outlines ? n + 1 : n;
+}
+
+// All ways to the end position, or one turn without a way.
+static int outlines_of(const moray_turn_spec *spec, double speed, double turn_rate, outline plans[most_outlines])
+{
+    const double ramp = spec->limits.offset / spec->limits.offset_rate, circle = speed / fabs(turn_rate);
     const double steady = fabs(spec->heading) / fabs(turn_rate) + 2 * ramp + 1;
-    outline plan = {.radius = wide * speed / fabs(turn_rate), .seconds = steady};
-    if (spec->to_position) {
-        const double *V = spec->current, distance = hypot(spec->position[0], spec->position[1]);
-        const double longest = 10 * (steady + (distance + 8 * plan.radius) / speed);
-        if (moray_dubins_in_current(spec->position, spec->heading, V, speed, plan.radius, longest, &plan.way,
-                                    &plan.seconds))
-            return plan;
-        plan.seconds = fmax(steady, distance / (0.2 * speed));
-    }
-    plan.way = (moray_dubins){.turn = {spec->heading < 0 ? -1 : 1}, .length = {fabs(spec->heading)}};
-    return plan;
+    const double distance = spec->to_position ? hypot(spec->position[0], spec->position[1]) : 0;
+    int n = 0;
+    for (int w = 0; spec->to_position && w < (int)(sizeof wide / sizeof *wide); w++)
+        for (int kind = 0; kind < MORAY_DUBINS_KINDS; kind++) {
+            outline next = {.radius = wide[w] * circle};
+            const double longest = 10 * (steady + (distance + 8 * next.radius) / speed);
+            if (moray_dubins_in_current(kind, spec->position, spec->heading, spec->current, speed, next.radius, longest,
+                                        &next.way, &next.seconds))
+                n = insert(plans, n, next);
+        }
+    if (n > 0)
+        return n;
+    plans[0] = (outline){.way = {.turn = {spec->heading < 0 ? -1 : 1}, .length = {fabs(spec->heading)}},
+                         .radius = wide[0] * circle,
+                         .seconds = fmax(steady, distance / (0.2 * speed))};
+    return 1;
 }
 
 // Curvature of the way, in 1/m, where a share of it is swum.
@@ -156,7 +181,8 @@ static void guess_outline(steering_guess *guess, const moray_turn_spec *spec, co
     moray_steering_parameters(&straight->gait, guess->s);
 }
 
-static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spec, double seconds)
+// No turn is much faster than the fastest outline: without a floor Ipopt shortens the time before it minds the end.
+static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spec, double fastest, double slowest)
 {
     double V[2];
     moray_steering_current(spec->water, spec->current, 0, 0, 0, V);
@@ -165,26 +191,66 @@ static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spe
         spec->start[MORAY_STATE_THETA] = spec->start[MORAY_STATE_V_THETA] = 0;
     for (int k = 0; k < 2; k++)
         spec->undulation[k] = spec->averaged ? 0 : plan->straight.undulation[k];
-    spec->shortest = 0.1;
-    spec->longest = 6 * seconds;
+    spec->shortest = 0.5 * fastest;
+    spec->longest = 6 * slowest;
     return moray_turn_new(&plan->problem, spec);
+}
+
+static bool solved(const moray_solution *solution)
+{
+    return moray_solution_info(solution)->outcome == MORAY_NLP_SOLVED;
+}
+
+static moray_status solve(moray_steering_plan *plan, const moray_settings *settings, const steering_guess *samples,
+                          moray_solution **solution)
+{
+    const moray_guess guess = {.phase = &samples->samples, .s = samples->s};
+    return moray_solve(moray_steering_ocp(plan->problem.steering), settings, &guess, solution);
+}
+
+// Keeps the better of two solutions, the only one where there was none.
+static void keep(moray_steering_plan *plan, moray_solution *next)
+{
+    const bool better =
+        !plan->solution || (solved(next) && (!solved(plan->solution) || moray_solution_objective(next) <
+                                                                            moray_solution_objective(plan->solution)));
+    moray_solution_free(better ? plan->solution : next);
+    if (better)
+        plan->solution = next;
+}
+
+// The faster of the first two that solve; where none does, from the first with more time; else what that led to.
+static moray_status solve_outlines(moray_steering_plan *plan, const moray_turn_spec *spec,
+                                   const moray_settings *settings, steering_guess *samples, const outline *plans,
+                                   int n, double turn_rate)
+{
+    for (int k = 0, done = 0; k <= n && done < enough && (k < n || done == 0); k++) {
+        moray_solution *next = NULL;
+        outline likely = plans[k % n];
+        likely.seconds *= k < n ? 1 : 1.5;
+        guess_outline(samples, spec, &plan->straight, &likely, turn_rate);
+        MORAY_TRY(solve(plan, settings, samples, &next));
+        done += solved(next);
+        keep(plan, next);
+    }
+    return moray_ok();
 }
 
 static moray_status make(moray_steering_plan *plan, moray_turn_spec *spec, const moray_settings *settings,
                          const moray_gait *gait, double turn_rate, const moray_steering_plan *from, double stretch)
 {
     steering_guess samples;
+    outline likely[most_outlines];
     MORAY_TRY(moray_straight_motion_find(&plan->straight, &spec->robot, spec->model, gait));
-    const outline likely = outline_of(spec, plan->straight.speed, turn_rate);
-    MORAY_TRY(pose_problem(plan, spec, likely.seconds));
+    const int n = outlines_of(spec, plan->straight.speed, turn_rate, likely);
+    MORAY_TRY(pose_problem(plan, spec, likely[0].seconds, likely[n - 1].seconds));
     MORAY_TRY(moray_steering_guess_new(&samples, 16 * settings->intervals + 1, 1));
-    if (from)
+    moray_status status;
+    if (from) {
         moray_steering_guess_from_other(&samples, &spec->robot, from->solution, &from->straight, spec->model, stretch);
-    else
-        guess_outline(&samples, spec, &plan->straight, &likely, turn_rate);
-    const moray_guess guess = {.phase = &samples.samples, .s = samples.s};
-    const moray_status status =
-        moray_solve(moray_steering_ocp(plan->problem.steering), settings, &guess, &plan->solution);
+        status = solve(plan, settings, &samples, &plan->solution);
+    } else
+        status = solve_outlines(plan, spec, settings, &samples, likely, spec->averaged ? n : 1, turn_rate);
     free(samples.time);
     MORAY_TRY(status);
     if (!spec->averaged)
