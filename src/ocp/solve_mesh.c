@@ -9,13 +9,12 @@
 #include <string.h>
 
 #include "ocp/certificate/saddle.h"
-#include "ocp/guess_sizes.h"
 #include "ocp/observe/observed.h"
 #include "ocp/observe/sight.h"
+#include "ocp/solve_again.h"
 #include "ocp/widen.h"
 
 static const double worst_warm_error = 1e-2;
-static const double out_of_scale = 1e-3;  // of what a duration was scaled by
 static const double least_seconds = 1e-3; // of a solve that is begun
 
 moray_status moray_allocate_iterate(moray_solution *solution)
@@ -28,23 +27,6 @@ moray_status moray_allocate_iterate(moray_solution *solution)
         .x = block, .z_lower = block + n, .z_upper = block + 2 * n, .g = block + 4 * n, .lambda = block + 4 * n + m};
     solution->guess = block + 3 * n;
     return moray_ok();
-}
-
-static moray_nlp_settings solver_settings(const moray_solution *solution, bool warm)
-{
-    const moray_settings *settings = &solution->settings;
-    return (moray_nlp_settings){.tolerance = settings->tolerance,
-                                .max_iterations = settings->max_iterations,
-                                .max_cpu_seconds = settings->max_cpu_seconds,
-                                .barrier = warm ? settings->tolerance : settings->barrier,
-                                .warm = warm,
-                                .print_level = settings->print_level,
-                                .linear_solver = settings->linear_solver,
-                                .timing = settings->timing,
-                                .ipopt = settings->ipopt,
-                                .n_ipopt = settings->n_ipopt,
-                                .progress = moray_iterations_keep,
-                                .observer = solution->iterations};
 }
 
 bool moray_is_solved(const moray_solution *solution)
@@ -70,48 +52,10 @@ static bool can_start_warm(const moray_solution *solution, const moray_guess *gu
            from->history[from->meshes - 1].error < worst_warm_error;
 }
 
-static bool is_small(double scaled)
-{
-    return fabs(scaled) < out_of_scale && !moray_is_rounding(scaled, 1);
-}
-
-// Whether a duration or an integral that was found is far smaller than what it was scaled by: a guess of one unit of
-// time, where nothing better is known; bounds of controls that are far from what is used of them.
-static bool is_out_of_scale(const moray_solution *solution)
-{
-    const struct transcription *t = solution->transcription;
-    for (int p = 0; p < t->ocp->phases; p++) {
-        double t0, tf;
-        const struct phase_layout *layout = &t->layout.phase[p];
-        moray_layout_span(&t->layout, t->ocp, solution->iterate.x, p, &t0, &tf);
-        if (layout->tf >= 0 && is_small((tf - t0) * t->nlp.x_scale[layout->tf]))
-            return true;
-        for (int m = layout->q; m < layout->q + t->ocp->phase[p].nq; m++)
-            if (is_small(solution->iterate.x[m] * t->nlp.x_scale[m]))
-                return true;
-    }
-    return false;
-}
-
-// Once more from the solution, with scales of its own.
-static moray_status solve_in_scale(moray_solution *solution)
-{
-    struct transcription *t = solution->transcription;
-    const moray_nlp_settings settings = solver_settings(solution, true);
-    const moray_nlp_info first = solution->info;
-    MORAY_TRY(moray_iterations_room(solution->iterations, settings.max_iterations));
-    MORAY_TRY(moray_choose_scales(t, solution->iterate.x, true));
-    MORAY_TRY(moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info));
-    solution->info.iterations += first.iterations;
-    solution->info.seconds += first.seconds;
-    solution->info.cpu_seconds += first.cpu_seconds;
-    return moray_ok();
-}
-
 static moray_status run_solver(moray_solution *solution, const moray_guess *guess, bool warm)
 {
     struct transcription *t = solution->transcription;
-    moray_nlp_settings settings = solver_settings(solution, warm);
+    moray_nlp_settings settings = moray_solver_settings(solution, warm);
     MORAY_TRY(moray_iterations_room(solution->iterations, settings.max_iterations));
     if (warm && guess->along_time) // the start has moved
         settings.barrier = solution->settings.barrier;
@@ -123,9 +67,8 @@ static moray_status run_solver(moray_solution *solution, const moray_guess *gues
         MORAY_TRY(moray_carry_multipliers(guess, solution));
     moray_fit_be_gauss_newton(t, solution->settings.gauss_newton);
     moray_status status = moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
-    if (!moray_failed(status) && solution->settings.own_scaling && moray_is_solved(solution) &&
-        is_out_of_scale(solution))
-        status = solve_in_scale(solution);
+    if (!moray_failed(status) && moray_is_solved(solution))
+        status = moray_solve_again(solution);
     moray_fit_be_gauss_newton(t, false); // what comes after asks for the true curvature
     return status;
 }

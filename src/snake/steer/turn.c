@@ -211,9 +211,9 @@ static moray_status solve(moray_steering_plan *plan, const moray_settings *setti
 // Keeps the better of two solutions, the only one where there was none.
 static void keep(moray_steering_plan *plan, moray_solution *next)
 {
-    const bool better =
-        !plan->solution || (solved(next) && (!solved(plan->solution) || moray_solution_objective(next) <
-                                                                            moray_solution_objective(plan->solution)));
+    const bool better = !plan->solution ||
+                        (solved(next) && (!solved(plan->solution) ||
+                                          moray_solution_objective(next) < moray_solution_objective(plan->solution)));
     moray_solution_free(better ? plan->solution : next);
     if (better)
         plan->solution = next;
@@ -221,8 +221,8 @@ static void keep(moray_steering_plan *plan, moray_solution *next)
 
 // The faster of the first two that solve; where none does, from the first with more time; else what that led to.
 static moray_status solve_outlines(moray_steering_plan *plan, const moray_turn_spec *spec,
-                                   const moray_settings *settings, steering_guess *samples, const outline *plans,
-                                   int n, double turn_rate)
+                                   const moray_settings *settings, steering_guess *samples, const outline *plans, int n,
+                                   double turn_rate)
 {
     for (int k = 0, done = 0; k <= n && done < enough && (k < n || done == 0); k++) {
         moray_solution *next = NULL;
