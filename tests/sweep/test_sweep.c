@@ -128,7 +128,8 @@ static void test_values(void)
     CHECK_OK(moray_sweep_values(words, &value, &word, &n), "words");
     CHECK(n == 2 && !value && strcmp(word[0], "a") == 0 && strcmp(word[1], "b:c") == 0, "two words");
     free(word);
-    static const char *const wrong[] = {"1:2", "1:2:0", "1:2:3x", "1:nan:3", "1:2:1", "1:2:1.5", "1:2:3:4", "1,,2", "1,nan", "-Inf,2", ""};
+    static const char *const wrong[] = {"1:2",     "1:2:0", "1:2:3x", "1:nan:3", "1:2:1", "1:2:1.5",
+                                        "1:2:3:4", "1,,2",  "1,nan",  "-Inf,2",  ""};
     for (unsigned k = 0; k < sizeof wrong / sizeof *wrong; k++) {
         char text[20];
         snprintf(text, sizeof text, "%s", wrong[k]);

@@ -455,6 +455,35 @@ static void found_free(found *f)
     free_logs(f->log);
 }
 
+// Through which camera and compass it is seen does not matter to where it starts, in either model.
+static void test_guess(void)
+{
+    for (int model = 0; model < 2; model++) {
+        moray_estimate at[2];
+        for (int seen = 0; seen < 2; seen++) {
+            moray_swim_log log[MOST_LOGS];
+            wanted w;
+            moray_identify *identify;
+            story s = {.model = model, .current = {0.06, -0.04}, .offset = 1 * DEG, .duration = 4, .step = 0.1};
+            memcpy(s.sigma, known, sizeof s.sigma);
+            if (seen)
+                s.noise = (moray_swim_log_noise){.camera = {0.3, -0.2}, .camera_rotation = 0.4, .heading_bias = -0.7};
+            swim_logs(&s, log);
+            moray_identify_spec spec = spec_of(&s, "current_x,current_y", &w);
+            memcpy(spec.start.camera, s.noise.camera, sizeof spec.start.camera);
+            spec.start.camera_rotation = s.noise.camera_rotation;
+            spec.start.heading_bias = s.noise.heading_bias;
+            CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "new");
+            moray_identify_start(identify, 0, &at[seen]);
+            moray_identify_free(identify);
+            free_logs(log);
+        }
+        for (int run = 0; run < MOST_LOGS; run++)
+            for (int i = 0; i < MORAY_BODY_STATES; i++)
+                CHECK_RELATIVE(at[1].first[run][i], at[0].first[run][i], 1e-9, "first state");
+    }
+}
+
 // A compass that is off and a camera that is turned: a world turned as a whole looks the same to both.
 static void test_open(void)
 {
@@ -582,6 +611,7 @@ int main(int argc, char **argv)
     test_zero();
     test_motors();
     test_refusals();
+    test_guess();
     test_open();
     test_simple();
     test_design();
