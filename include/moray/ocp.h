@@ -234,7 +234,7 @@ typedef struct moray_solution moray_solution;
 
 // A guess: samples of each phase (piecewise linear, stretched to the phase's own first and last time), parameters
 // s[ns]. A phase with n = 0, or no phases at all, is guessed from its bounds: straight from x0 to xf, or as at the one
-// end that has bounds; u in the middle of its bounds. Fill it by hand, or by one of the functions below.
+// end that has bounds on both sides; u in the middle of its bounds. Fill it by hand, or by one of the functions below.
 typedef struct moray_guess {
     const moray_samples *phase;
     const double *s;
@@ -296,7 +296,8 @@ typedef struct moray_settings {
 
 MORAY_API moray_settings moray_settings_default(void);
 
-// Transcribes and solves from `guess` (NULL: from the bounds). Stopped early, the solution is the best iterate, see
+// Transcribes and solves from `guess` (NULL: from the bounds, and where that leads nowhere from what the dynamics do
+// with controls off the middle of theirs). Stopped early, the solution is the best iterate, see
 // moray_ipopt_solve. The solution keeps what it needs of the problem but must
 // not outlive it; free with moray_solution_free. A refined mesh starts from the interpolated solution of the last; when
 // one is not solved, the solution is that of the last solved (with the outcome of the failed where interrupted).
@@ -379,8 +380,11 @@ typedef struct moray_mesh_record {
     int seen;               // 0; 1 + the control, counted through the phases, that goes to and fro within a few nodes
     double swing;           // how far it does from turn to turn, of its range, as a mean over its phase
     int ringing;            // 0; that control where the mesh before showed it, too, and the scheme was changed
-    const char *changed_to; // NULL; the scheme of later meshes, because of ringing or, back, because this did no better
+    const char *changed_to; // NULL; the scheme of later meshes, because of ringing, an equation or, back, because this
+                            // did no better
     int dependences; // 0; of the functions on their inputs, found at this solution and new: solved again with them
+    int equation; // 0; 1 + the path constraint, counted through the phases, that is an equation between states alone,
+                  // where this mesh was not solved and the scheme was changed
 } moray_mesh_record;
 
 // What the solver told of its iterations, of all meshes that were tried one after another, each counted from 0; [*n],

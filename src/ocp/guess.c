@@ -56,18 +56,34 @@ static void guess_from_samples(const struct transcription *t, int p, const moray
     }
 }
 
-// The value at one end of a phase; where nothing is known of it, that of the other end.
+static double within(double value, moray_bounds bounds)
+{
+    return fmin(fmax(value, bounds.lower), bounds.upper);
+}
+
+static bool is_boxed(moray_bounds bounds)
+{
+    return bounds.lower > -MORAY_INFINITY && bounds.upper < MORAY_INFINITY;
+}
+
+// The value at one end of a phase; where a limit on one side is all that is known of it, that of the other end.
 static double end_value(moray_bounds end, moray_bounds other)
 {
     const bool known = end.lower > -MORAY_INFINITY || end.upper < MORAY_INFINITY;
+    if (!is_boxed(end) && is_boxed(other))
+        return within(moray_bounds_middle(other), end);
     return moray_bounds_middle(known ? end : other);
 }
 
 static const double no_length = 1e-3; // of what the bounds leave: less is none
 
-static double within(double value, moray_bounds bounds)
+// A phase that may begin at any late time begins where the one before it ends.
+static double start_after(const struct transcription *t, int p, const double *x, double otherwise)
 {
-    return fmin(fmax(value, bounds.lower), bounds.upper);
+    if (p == 0 || t->layout.phase[p].t0 < 0 || t->ocp->phase[p].t0.upper < MORAY_ENDLESS)
+        return otherwise;
+    const int before = t->layout.phase[p - 1].tf;
+    return within(before >= 0 ? x[before] : t->ocp->phase[p - 1].tf.lower, t->ocp->phase[p].t0);
 }
 
 // Middles of the bounds; where those leave no length, the phases share what lies between in turn, or where that is
@@ -77,7 +93,7 @@ static void guess_times(const struct transcription *t, int p, double *x)
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     const double start = phase->t0.lower, width = phase->tf.upper - start;
-    double t0 = moray_bounds_middle(phase->t0), tf = moray_bounds_middle(phase->tf);
+    double t0 = start_after(t, p, x, moray_bounds_middle(phase->t0)), tf = moray_bounds_middle(phase->tf);
     if (phase->tf.upper >= MORAY_ENDLESS)
         tf = fmax(phase->tf.lower, t0 + 1);
     else if (tf <= t0 && start <= -MORAY_ENDLESS)
@@ -114,22 +130,30 @@ static void guess_from_bounds(const struct transcription *t, int p, double *x)
 }
 
 // A final time that nothing bounds: as late as the states need to get to where they must.
+static moray_status guess_endless_time(struct transcription *t, int p, double *x)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_layout *layout = &t->layout.phase[p];
+    const double t0 = start_after(t, p, x, t->phase[p].t0);
+    double *size = calloc((size_t)(phase->nx + phase->nu) + 1, sizeof *size);
+    if (!size)
+        return moray_error(MORAY_MEMORY, "no memory for the guess of phase %s", phase->name);
+    const double needed = moray_needed_duration(t, p, x, size);
+    x[layout->tf] = fmax(phase->tf.lower, t0 + (needed > 0 ? needed : t->phase[p].tf - t->phase[p].t0));
+    if (layout->t0 >= 0)
+        x[layout->t0] = t0;
+    free(size);
+    return moray_ok();
+}
+
 static moray_status guess_endless_times(struct transcription *t, const moray_guess *guess, double *x)
 {
     for (int p = 0; p < t->ocp->phases; p++) {
         const struct phase *phase = &t->ocp->phase[p];
-        const struct phase_layout *layout = &t->layout.phase[p];
         const bool sampled = guess && (guess->from || (guess->phase && guess->phase[p].n != 0));
-        if (sampled || layout->tf < 0 || phase->tf.upper < MORAY_ENDLESS || phase->has_duration ||
-            !moray_transcription_jacobians(t, x))
-            continue;
-        double *size = calloc((size_t)(phase->nx + phase->nu) + 1, sizeof *size);
-        if (!size)
-            return moray_error(MORAY_MEMORY, "no memory for the guess of phase %s", phase->name);
-        const double needed = moray_needed_duration(t, p, x, size), t0 = t->phase[p].t0;
-        if (needed > 0)
-            x[layout->tf] = fmax(phase->tf.lower, t0 + needed);
-        free(size);
+        if (!sampled && t->layout.phase[p].tf >= 0 && phase->tf.upper >= MORAY_ENDLESS && !phase->has_duration &&
+            moray_transcription_jacobians(t, x))
+            MORAY_TRY(guess_endless_time(t, p, x));
     }
     return moray_ok();
 }

@@ -170,7 +170,8 @@ static double largest_control(const struct phase_layout *layout, const double *x
     return largest;
 }
 
-void moray_size_inputs(const struct transcription *t, int p, const double *x, double *size)
+// Those that bounds and the guess tell; 0: they do not.
+static void know_sizes(const struct transcription *t, int p, const double *x, double *size)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
@@ -178,10 +179,40 @@ void moray_size_inputs(const struct transcription *t, int p, const double *x, do
         size[r] = size_of_state(phase, r, largest_in_phase(layout, x, r));
     for (int r = phase->nx; r < phase->nx + phase->nu; r++)
         size[r] = moray_known_size(phase->u[r - phase->nx], largest_control(layout, x, r));
+}
+
+void moray_size_inputs(const struct transcription *t, int p, const double *x, double *size)
+{
+    know_sizes(t, p, x, size);
     derive_sizes(t, p, size);
 }
 
 // ---- Durations ----
+
+// How far the dynamics of the guess move a state over the phase, or what is known does.
+static double pace(const struct transcription *t, int p, const double *size, int state)
+{
+    const struct phase_cache *cache = &t->phase[p];
+    double largest = 0;
+    for (int n = 0; n < t->layout.phase[p].nodes; n++)
+        if (t->layout.phase[p].node[n].collocated)
+            largest = fmax(largest, fabs(cache->out[n * cache->map->n_out + state]));
+    return fmax(largest * fabs(cache->tf - cache->t0), known_reach(t, p, size, state));
+}
+
+// What is known, and states by their causes. What it would take to get somewhere is left out: it says nothing of how
+// long that may last.
+static void size_by_causes(const struct transcription *t, int p, const double *x, double *size)
+{
+    bool found = true;
+    know_sizes(t, p, x, size);
+    while (found) {
+        found = false;
+        for (int r = 0; r < t->ocp->phase[p].nx; r++)
+            if (!(size[r] > 0) && (size[r] = pace(t, p, size, r)) > 0)
+                found = true;
+    }
+}
 
 // Whether every state that is fixed at both ends can have come from one to the other. none: whether none is.
 static bool reaches(const struct transcription *t, int p, const double *size, bool *none)
@@ -194,7 +225,7 @@ static bool reaches(const struct transcription *t, int p, const double *size, bo
         if (!moray_bounds_are_fixed(phase->x0[r]) || !moray_bounds_are_fixed(phase->xf[r]) || !(way > 0))
             continue;
         *none = false;
-        reached = reached && known_reach(t, p, size, r) >= way;
+        reached = reached && pace(t, p, size, r) >= way;
     }
     return reached;
 }
@@ -207,7 +238,7 @@ double moray_needed_duration(struct transcription *t, int p, const double *x, do
     bool none = false;
     for (int k = -4 * magnitudes; k <= 4 * magnitudes && needed <= 0 && !none; k++) {
         cache->tf = cache->t0 + pow(10, k / 4.0);
-        moray_size_inputs(t, p, x, size);
+        size_by_causes(t, p, x, size);
         if (reaches(t, p, size, &none) && !none)
             needed = cache->tf - cache->t0;
     }

@@ -132,7 +132,8 @@ static bool within_limits(const struct campaign *c)
 
 static bool may_refine(const struct campaign *c)
 {
-    return c->tried - c->widenings - c->escapes - c->moves < c->settings->max_refinements;
+    const int aside = c->widenings + c->escapes + c->moves + c->started_again + c->changed_scheme;
+    return c->tried - aside < c->settings->max_refinements;
 }
 
 // Measures the mesh error and, unless it suffices or no more meshes may be tried, leaves finer meshes in c.
@@ -217,7 +218,7 @@ static void keep_best(struct campaign *c, moray_solution **solution)
 
 static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
 {
-    const int room = c->settings->max_refinements + 1 + most_widenings + most_escapes + most_moves;
+    const int room = c->settings->max_refinements + 3 + most_widenings + most_escapes + most_moves;
     c->history = calloc((size_t)room, sizeof *c->history);
     c->iterations = calloc(1, sizeof *c->iterations);
     if (!c->history || !c->iterations)

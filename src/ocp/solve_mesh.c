@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// The solve on one mesh: transcribed with patterns that hold, solved, widened where a function shows more, and away
-// from a saddle.
+// The solve on one mesh: transcribed with patterns that hold, solved, and widened where a function shows more.
 #include "ocp/refinement/campaign.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "ocp/certificate/saddle.h"
 #include "ocp/observe/observed.h"
 #include "ocp/observe/sight.h"
 #include "ocp/solve_again.h"
@@ -164,9 +162,7 @@ void moray_campaign_drop(moray_solution *solution)
     moray_solution_free(solution);
 }
 
-// Solves on the meshes in c, and again from there where a function turns out to depend on more than its patterns know,
-// or data have left their intervals.
-static moray_status solve_widened(struct campaign *c, const moray_guess *guess, moray_solution **result)
+moray_status moray_campaign_solve_widened(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     MORAY_TRY(solve_once(c, guess, result));
     while ((*result)->info.outcome != MORAY_NLP_INTERRUPTED) {
@@ -187,54 +183,6 @@ static moray_status solve_widened(struct campaign *c, const moray_guess *guess, 
         }
         moray_campaign_drop(old);
         MORAY_TRY(status);
-    }
-    return moray_ok();
-}
-
-// Solves again from beside a saddle. Where that fails the saddle is the result, as it was.
-static moray_status solve_beside(struct campaign *c, const double *kept, moray_solution **result)
-{
-    moray_solution *saddle = *result, *next = NULL;
-    const moray_guess beside = moray_guess_from_solution(saddle);
-    moray_campaign_record(c, saddle, NAN, 0);
-    c->escapes++;
-    const moray_status status = solve_widened(c, &beside, &next);
-    if (!moray_failed(status) && moray_is_solved(next)) {
-        *result = next;
-        moray_campaign_drop(saddle);
-        return status;
-    }
-    memcpy(saddle->iterate.x, kept, (size_t)saddle->transcription->nlp.n * sizeof *kept);
-    moray_transcription_jacobians(saddle->transcription, saddle->iterate.x); // accessors read the caches
-    if (next) {
-        if (next->info.outcome == MORAY_NLP_INTERRUPTED)
-            saddle->info.outcome = MORAY_NLP_INTERRUPTED;
-        moray_campaign_drop(next);
-    }
-    return status;
-}
-
-// Where the last step needed no regularisation the Hessian was positive definite on the constraints.
-static bool may_be_saddle(const moray_solution *solution)
-{
-    return moray_is_solved(solution) && solution->info.regularisation != 0;
-}
-
-moray_status moray_campaign_solve(struct campaign *c, const moray_guess *guess, moray_solution **result)
-{
-    MORAY_TRY(solve_widened(c, guess, result));
-    bool moved = !(guess && guess->from);
-    while (moved && c->escapes < most_escapes && may_be_saddle(*result)) {
-        const moray_solution *before = *result;
-        double *kept = calloc((size_t)before->transcription->nlp.n, sizeof *kept);
-        if (!kept)
-            return moray_error(MORAY_MEMORY, "no memory to leave a saddle");
-        moray_status status = moray_leave_saddle(*result, kept, &moved);
-        if (!moray_failed(status) && moved)
-            status = solve_beside(c, kept, result);
-        free(kept);
-        MORAY_TRY(status);
-        moved = *result != before;
     }
     return moray_ok();
 }

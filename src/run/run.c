@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "moray/sim.h"
+#include "ocp/solution.h"
 
 // ---- Options -------------------------------------------------------------------------------------------------------
 
@@ -143,7 +144,7 @@ static moray_status solve(app_run *run)
     moray_interrupt_begin();
     moray_status status = moray_solve(run->ocp, &settings, guess, &run->solution);
     moray_interrupt_end();
-    if (!moray_failed(status) && moray_solution_info(run->solution)->outcome == MORAY_NLP_SOLVED)
+    if (!moray_failed(status) && moray_is_solved(run->solution))
         status = certify(run);
     moray_ticker_end(&run->ticker);
     if (settings.intervals == 0) { // for the results
@@ -159,7 +160,7 @@ static moray_status solve(app_run *run)
 static moray_status judge(const app_run *run)
 {
     const moray_nlp_info *info = moray_solution_info(run->solution);
-    if (info->outcome == MORAY_NLP_SOLVED)
+    if (moray_is_solved(run->solution))
         return moray_ok();
     if (info->outcome == MORAY_NLP_INTERRUPTED)
         return moray_interruption(run->solution, run->kept);
@@ -173,7 +174,8 @@ static void say_failure(const app_run *run)
 {
     const moray_certificate *c = &run->certificate;
     const char *advice =
-        !(c->derivatives <= MORAY_LIMIT_DERIVATIVES && c->directions <= MORAY_LIMIT_DIRECTIONS)
+        isnan(c->mesh_error) ? "bound its duration from below, or give a guess of its times: see --guess"
+        : !(c->derivatives <= MORAY_LIMIT_DERIVATIVES && c->directions <= MORAY_LIMIT_DIRECTIONS)
             ? "the derivatives are wrong at the solution, or it lies on a kink of a function: see --check"
         : !(c->kkt <= MORAY_LIMIT_KKT) ? "the solver stopped short of an optimum: try a smaller tol, or bounds and "
                                          "guesses of the sizes that occur"

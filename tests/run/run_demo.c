@@ -42,10 +42,10 @@ int main(int argc, char **argv)
     const moray_bounds box[] = {moray_between(-5, 5), moray_between(-5, 5)};
     moray_phase_spec phase[2] = {{.name = "to the gate",
                                   .t0 = moray_fixed(0),
-                                  .tf = moray_between(0.1, 1.9),
+                                  .tf = moray_between(0, 1.9),
                                   .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0))},
                                  {.name = "beyond",
-                                  .t0 = moray_between(0.1, 1.9),
+                                  .t0 = moray_between(0, 1.9),
                                   .tf = moray_fixed(2),
                                   .xf = MORAY_BOUNDS(moray_fixed(2), moray_fixed(0))}};
     for (int p = 0; p < 2; p++) {

@@ -135,6 +135,11 @@ check "--check names the wrong one: exit 1" \
 run --json --set mesh_tol=1e-300
 check "certificate failed: exit 3 and a line that says what to try: $(cat err)" \
     eval '[ $code -eq 3 ] && says "certificate failed" && says "try" && grep -q "\"pass\":.false" out'
+run --set gate=0
+check "a phase without length: $(cat err)" eval '[ $code -eq 3 ] && says "no length" && says "bound its duration"'
+run --tol 1e-15 --set ipopt.acceptable_iter=1 --set ipopt.acceptable_tol=1e-7
+check "solved to a looser tolerance, and as good as the certificate asks: exit 0" eval '[ $code -eq 0 ] &&
+    grep -q "looser tolerance" out && grep -q "^Certificate: pass" out'
 run --json --set gate=9 --out unsolved
 check "not solved: exit 1 and a line that names the constraint: $(cat err)" eval '[ $code -eq 1 ] && says "Largest violation"'
 check "not solved: the summary says so, and its certificate is empty" \

@@ -171,6 +171,20 @@ static void say_disagreement(moray_solution *solution)
     }
 }
 
+static void say_equation(moray_solution *solution, const moray_mesh_record *mesh)
+{
+    const moray_ocp *ocp = solution->transcription->ocp;
+    int p = 0, equation = mesh->equation - 1;
+    while (equation >= ocp->phase[p].nc)
+        equation -= ocp->phase[p++].nc;
+    char name[200];
+    moray_phase_output_name(ocp, p, ocp->phase[p].nx + equation, name, sizeof name);
+    moray_diagnosis_say(solution,
+                        "The %s of phase %.100s is an equation in which no control stands, of higher index, for which "
+                        "this scheme is not made; changed to %s.\n",
+                        name, ocp->phase[p].name, mesh->changed_to);
+}
+
 static void say_meshes(moray_solution *solution, const moray_mesh_record *tried)
 {
     say_disagreement(solution);
@@ -178,6 +192,8 @@ static void say_meshes(moray_solution *solution, const moray_mesh_record *tried)
     for (int k = 0; k < solution->meshes; k++)
         if (solution->history[k].ringing > 0)
             say_ringing(solution, &solution->history[k]);
+        else if (solution->history[k].equation > 0)
+            say_equation(solution, &solution->history[k]);
         else if (solution->history[k].changed_to)
             moray_diagnosis_say(solution, "On %d intervals that did no better; back to %.40s.\n",
                                 solution->history[k].intervals, solution->history[k].changed_to);

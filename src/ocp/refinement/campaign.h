@@ -29,15 +29,22 @@ struct campaign {
     moray_mesh_record *history; // becomes the solution's, as does
     struct iterations *iterations;
     int tried, widenings, escapes, moves;
+    bool started_again;   // from another guess than that of the bounds
+    bool changed_scheme;  // of the first mesh, because of an equation
     double spent;         // of the processor, in the solver
     moray_solution *best; // of the solved ones that of the least error; often the last
     double best_error;
     int vain; // meshes since
 };
 
-// Solves on the meshes in c. A start that was not a solution may have led to a saddle, as one of symmetry does: that is
-// left. Error: those of moray_solve.
+// Solves on the meshes in c. A start that was not a solution may lead nowhere: then with another scheme where one is
+// called for, and from another start where no guess was given. Or to a saddle, as one of symmetry does: that is left.
+// Error: those of moray_solve.
 moray_status moray_campaign_solve(struct campaign *c, const moray_guess *guess, moray_solution **result);
+
+// Solves on the meshes in c, and again from there where a function turns out to depend on more than its patterns know,
+// or data have left their intervals. Error: those of moray_solve.
+moray_status moray_campaign_solve_widened(struct campaign *c, const moray_guess *guess, moray_solution **result);
 
 // Notes a mesh with its error in the history, which the solution shows and the campaign owns.
 void moray_campaign_record(struct campaign *c, moray_solution *solution, double error, int dependences);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The family of the scheme changes where a control rings, and back where the other does no better.
+// The family of the scheme changes where a control rings or an equation is not for it, and back where the other does no
+// better.
 #include "ocp/refinement/family.h"
 
 #include <math.h>
@@ -80,6 +81,39 @@ moray_status moray_leave_ringing(struct campaign *c, const moray_solution *solut
         return moray_ok();
     here->ringing = here->seen;
     return change_family(c, other);
+}
+
+// Of a phase whose scheme may change, an equation between states alone, counted from 1 through the phases; 0: none.
+static int find_equation_of_states(const struct campaign *c, const moray_solution *solution)
+{
+    int first = 1;
+    for (int p = 0; p < c->ocp->phases; first += c->ocp->phase[p++].nc) {
+        const struct phase *phase = &c->ocp->phase[p];
+        const moray_pattern *jac = &solution->transcription->phase[p].map->jac;
+        for (int i = 0; i < phase->nc && !(c->own && c->own[p].stages > 0); i++) {
+            bool of_states = false, of_controls = !moray_bounds_are_fixed(phase->c[i]);
+            for (int k = 0; k < jac->nnz; k++)
+                if (jac->row[k] == phase->nx + i) {
+                    of_states = of_states || jac->col[k] < phase->nx;
+                    of_controls = of_controls || (jac->col[k] >= phase->nx && jac->col[k] < phase->nx + phase->nu);
+                }
+            if (of_states && !of_controls)
+                return first + i;
+        }
+    }
+    return 0;
+}
+
+moray_status moray_leave_higher_index(struct campaign *c, moray_solution *failed, bool *changed)
+{
+    const int equation = find_equation_of_states(c, failed);
+    *changed = equation > 0 && c->method.family == MORAY_LOBATTO;
+    if (!*changed)
+        return moray_ok();
+    moray_campaign_record(c, failed, NAN, 0);
+    c->history[c->tried - 1].equation = equation;
+    c->left[c->method.family] = true;
+    return change_family(c, MORAY_RADAU);
 }
 
 bool moray_is_no_better(const struct campaign *c, bool again)

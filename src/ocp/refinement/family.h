@@ -8,6 +8,11 @@
 // meshes again in c, with another family. Error: MORAY_MEMORY.
 moray_status moray_leave_ringing(struct campaign *c, const moray_solution *solution);
 
+// After a first mesh that was not solved: where an equation between states alone, in which no control stands, is asked
+// of a Lobatto scheme, the same mesh in c with Radau's, which holds such of higher index. Notes the mesh. Error:
+// MORAY_MEMORY.
+moray_status moray_leave_higher_index(struct campaign *c, moray_solution *failed, bool *changed);
+
 // Whether the family that took over has failed: more nodes than the one before it had, or no finer meshes (`again`),
 // and the best is from before.
 bool moray_is_no_better(const struct campaign *c, bool again);
