@@ -9,8 +9,8 @@
 A bound is a number (fixed), a pair (low, high) with None for an end that is open, or None (free).
 rates(x, u, s, t) returns the derivatives of the states, or a tuple (derivatives, path constraints, integrands).
 endpoint(phases, s) returns what is minimised, or a tuple (that, events); phases[i] has x0, t0, xf, tf and q.
-Derivatives are differences of these functions, so they should be smooth. The library is found by the loader, or where
-MORAY_LIBRARY says.
+Derivatives are differences of these functions, so they should be smooth. The library is the one that MORAY_LIBRARY
+names, else the one installed, else that of the source tree's folder build.
 """
 import ctypes as c
 import math
@@ -133,8 +133,21 @@ STRUCTURES = {"moray_bounds": _Bounds, "moray_bounds_list": _List, "moray_status
               "moray_certificate": _Certificate}
 
 
+def _open():
+    """The library that MORAY_LIBRARY names, the one that the loader finds, or the source tree's own."""
+    tree = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "libmoray.so.0")
+    named = os.environ.get("MORAY_LIBRARY")
+    try:
+        return c.CDLL(named or "libmoray.so.0")
+    except OSError as error:
+        if not named and os.path.exists(tree):
+            return c.CDLL(tree)
+        raise ImportError(f"moray's library is not to be had: {error}; install it, build it in the source tree, "
+                          "or name it in MORAY_LIBRARY") from None
+
+
 def _load():
-    library = c.CDLL(os.environ.get("MORAY_LIBRARY", "libmoray.so.0"))
+    library = _open()
     solution = c.c_void_p
     for name, result, arguments in (
             ("moray_version", c.c_char_p, []),

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <unistd.h>
+
 #include "moray/app/program.h"
 #include "run/versions.h"
 
@@ -34,8 +36,11 @@ static moray_status write_files(const moray_common *common, const moray_results 
 
 static moray_status show(const moray_common *common, const moray_results *results, const moray_json *json)
 {
-    if (common->output)
+    if (common->output) {
         MORAY_TRY(write_files(common, results, json));
+        if (results->report && !common->quiet && isatty(STDERR_FILENO))
+            fprintf(stderr, "%s: %s/report.html shows it\n", results->name, common->out);
+    }
     if (common->json)
         return moray_json_write(json, stdout);
     if (results->print)

@@ -33,7 +33,7 @@ for header in $(sed 's|^\./||' installed); do
 done
 
 share=$prefix/share/moray
-for file in LICENSE guide.md howto.md sweeps.md template.c robots/paper.ini schedules/turning.csv python/moray.py python/brachistochrone.py; do
+for file in LICENSE guide.md howto.md languages.md sweeps.md template.c robots/paper.ini schedules/turning.csv python/moray.py python/brachistochrone.py; do
     check "share/moray has $file" [ -s "$share/$file" ]
 done
 check "a robot from there swims" eval '"$prefix/bin/moray" simulate --robot "$share/robots/paper.ini" --duration 1 --json --quiet | grep -q v_x_m_s'

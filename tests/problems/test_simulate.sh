@@ -207,6 +207,12 @@ schedule 't_s,delta_deg\n0,40\n0,30\n'
 refuse 's.csv:3: t_s = 0: must lie after that of the line before, 0' --schedule s.csv
 schedule 't_s,a_m,alpha_deg\n0,0.04,10\n'
 refuse 's.csv:2: alpha_deg = 10 contradicts a_m = 0.04' --schedule s.csv
+if command -v script >/dev/null; then # a terminal
+    script -qec "'$program' --duration 1 --out seen" /dev/null >on_terminal </dev/null
+    check "on a terminal the page is told" grep -q "simulate: seen/report.html shows it" on_terminal
+    script -qec "'$program' --duration 1 --quiet --out seen" /dev/null >on_terminal </dev/null
+    check "unless it is to be quiet" eval '! grep -q "shows it" on_terminal'
+fi
 lost --duration 1
 lost --duration 1 --json
 tap_done

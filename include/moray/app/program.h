@@ -51,8 +51,9 @@ typedef struct moray_results {
     const moray_report *report;                                     // with or without the command line
 } moray_results;
 
-// With --out the files, committed; then on standard output the summary (--json) or what `print` does. Error: MORAY_IO,
-// MORAY_MEMORY, those of `write`, and what moray_app_drawn leaves of those of `draw`.
+// With --out the files, committed, and a line that tells the page where standard error is a terminal, unless --quiet;
+// then on standard output the summary (--json) or what `print` does. Error: MORAY_IO, MORAY_MEMORY, those of `write`,
+// and what moray_app_drawn leaves of those of `draw`.
 MORAY_API moray_status moray_app_show(const moray_common *common, const moray_results *results);
 
 // What to make of the status of a figure: one that cannot be drawn is a line on standard error and no error; only
