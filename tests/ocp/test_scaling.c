@@ -155,6 +155,41 @@ static void test_rows(void)
     moray_ocp_free(ocp);
 }
 
+// ---- The objective: divided by its largest slope, as far as a factor of 1e12 either way ----
+
+static void slope_of(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    out->objective = *(const double *)data * at->phase[0].xf[0];
+}
+
+static void test_objective(void)
+{
+    static const double slopes[] = {1, 40, 3e11, 1e14, 1e-3, 2e-11, 1e-14};
+    static const double scales[] = {1, 1 / 40., 1 / 3e11, 1e-12, 1e3, 0.5e11, 1e12};
+    for (unsigned k = 0; k < sizeof slopes / sizeof *slopes; k++) {
+        const moray_phase_spec phase = {.nx = 1,
+                                        .nu = 1,
+                                        .continuous = level,
+                                        .t0 = moray_fixed(0),
+                                        .tf = moray_fixed(1),
+                                        .x = MORAY_BOUNDS(moray_between(-1, 1)),
+                                        .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                        .u = MORAY_BOUNDS(moray_between(-1, 1))};
+        moray_ocp *ocp;
+        moray_solution *solution;
+        moray_settings settings = moray_settings_default();
+        settings.max_iterations = 1;
+        CHECK_OK(moray_ocp_new(
+                     &ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = slope_of, .data = &slopes[k]}),
+                 "an objective");
+        CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "begun");
+        const double scale = solution->transcription->nlp.f_scale;
+        CHECK(fabs(scale / scales[k] - 1) < 1e-12, "a slope of %g has the scale %g: %g", slopes[k], scales[k], scale);
+        moray_solution_free(solution);
+        moray_ocp_free(ocp);
+    }
+}
+
 // ---- Integrals: by their guess, but where that is next to nothing of what they may come to ----
 
 struct effort {
@@ -244,6 +279,7 @@ static void test_many_bounds(void)
 int main(void)
 {
     test_rows();
+    test_objective();
     test_integrals();
     test_many_bounds();
     const struct found reference = solve(&si);
