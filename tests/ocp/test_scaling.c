@@ -126,6 +126,7 @@ static void ends_of(const moray_ends *at, moray_end_values *out, const void *dat
     out->objective = at->phase[0].xf[0];
     out->e[0] = 40 * at->phase[0].xf[0];
     out->e[1] = 0.25 * at->phase[0].xf[0];
+    out->e[2] = 3 * at->phase[0].xf[0] * at->phase[0].xf[0];
 }
 
 static void test_rows(void)
@@ -143,14 +144,17 @@ static void test_rows(void)
     CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1,
                                                    .phase = &phase,
                                                    .endpoint = ends_of,
-                                                   .ne = 2,
-                                                   .e = MORAY_BOUNDS(moray_between(-30, 30), moray_between(-9, 9))}),
+                                                   .ne = 3,
+                                                   .e = MORAY_BOUNDS(moray_between(-30, 30), moray_between(-9, 9),
+                                                                     moray_between(-9, 9))}),
              "rows");
-    const moray_settings settings = moray_settings_default();
-    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    moray_settings settings = moray_settings_default();
+    settings.max_iterations = 1;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "begun");
     const struct transcription *t = solution->transcription;
     CHECK_NEAR(t->nlp.g_scale[t->layout.events], 1 / 40., 1e-12, "a slope of 40");
     CHECK_NEAR(t->nlp.g_scale[t->layout.events + 1], 4, 1e-12, "a slope of 1/4, in any units");
+    CHECK_NEAR(t->nlp.g_scale[t->layout.events + 2], 1, 1e-12, "none at the guess");
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
