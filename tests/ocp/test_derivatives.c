@@ -88,6 +88,86 @@ static void test_real_problem(void)
     CHECK(status.code == MORAY_INPUT && strstr(status.text, "needs an endpoint function"), "%s", status.text);
 }
 
+// ---- Path constraints and integrals, in real numbers and in complex ones: x' = u - s x from 1 to 0.2 in 2 s with the
+//      least integral of u^2 + 3 s x^2, where x u >= -0.1 ----
+
+static void fall_real(const moray_real_node *at, moray_real_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0] - at->s[0] * at->x[0];
+    out->c[0] = at->x[0] * at->u[0];
+    out->g[0] = at->u[0] * at->u[0];
+    out->g[1] = at->x[0] * at->x[0];
+}
+
+static void fallen_real(const moray_real_ends *at, moray_real_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0] + 3 * at->s[0] * at->phase[0].q[1];
+    out->e[0] = at->phase[0].x0[0] * at->phase[0].tf;
+    out->e[1] = at->phase[0].xf[0] - at->phase[0].t0;
+}
+
+static void fall(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0] - at->s[0] * at->x[0];
+    out->c[0] = at->x[0] * at->u[0];
+    out->g[0] = at->u[0] * at->u[0];
+    out->g[1] = at->x[0] * at->x[0];
+}
+
+static void fallen(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0] + 3 * at->s[0] * at->phase[0].q[1];
+    out->e[0] = at->phase[0].x0[0] * at->phase[0].tf;
+    out->e[1] = at->phase[0].xf[0] - at->phase[0].t0;
+}
+
+static void test_real_and_complex(void)
+{
+    double objective[2], x[2], u[2], q[2][2];
+    for (int real = 0; real < 2; real++) {
+        const moray_phase_spec phase = {.name = "fall",
+                                        .nx = 1,
+                                        .nu = 1,
+                                        .nc = 1,
+                                        .nq = 2,
+                                        .continuous = real ? NULL : fall,
+                                        .continuous_real = real ? fall_real : NULL,
+                                        .t0 = moray_fixed(0),
+                                        .tf = moray_fixed(2),
+                                        .x = MORAY_BOUNDS(moray_between(-5, 5)),
+                                        .u = MORAY_BOUNDS(moray_between(-5, 5)),
+                                        .c = MORAY_BOUNDS(moray_at_least(-0.1))};
+        moray_ocp *ocp;
+        moray_solution *solution;
+        const moray_settings settings = moray_settings_default();
+        CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1,
+                                                       .phase = &phase,
+                                                       .ns = 1,
+                                                       .s = MORAY_BOUNDS(moray_fixed(0.7)),
+                                                       .ne = 2,
+                                                       .e = MORAY_BOUNDS(moray_fixed(2), moray_fixed(0.2)),
+                                                       .endpoint = real ? NULL : fallen,
+                                                       .endpoint_real = real ? fallen_real : NULL}),
+                 "a problem");
+        CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+        objective[real] = moray_solution_objective(solution);
+        moray_solution_at(solution, 0, 0.8, &x[real], &u[real]);
+        memcpy(q[real], moray_solution_integrals(solution, 0), sizeof q[real]);
+        moray_solution_free(solution);
+        moray_ocp_free(ocp);
+    }
+    CHECK(fabs(x[0] * u[0] + 0.1) < 1e-6, "the path is at its limit: %.9g", x[0] * u[0]);
+    CHECK_RELATIVE(q[0][0] + 3 * 0.7 * q[0][1], objective[0], 1e-9, "the objective is made of both integrals");
+    CHECK_RELATIVE(objective[1], objective[0], 1e-8, "the same objective in real numbers");
+    CHECK_RELATIVE(x[1], x[0], 1e-6, "state");
+    CHECK_RELATIVE(u[1], u[0], 1e-5, "control");
+    CHECK_RELATIVE(q[1][1], q[0][1], 1e-7, "integral");
+}
+
 // ---- What the check finds: the same by hand, with a slip where asked ----
 
 static int slip;
@@ -217,6 +297,7 @@ static void test_not_finite(void)
 int main(void)
 {
     test_real_problem();
+    test_real_and_complex();
     test_check_names();
     test_check_finds_kinks();
     test_not_finite();

@@ -252,6 +252,29 @@ static void test_averaged(moray_steering_plan *averaged, const moray_reference *
     CHECK(averaged->straight.gait.amplitude > 0.03, "amplitude found %g m", averaged->straight.gait.amplitude);
 }
 
+// Without an iteration a plan is its guess: along the reference at the speed of the straight, carried by the current.
+static void test_guess(const moray_reference *reference)
+{
+    const moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
+    const moray_gait gait = paper_gait(MORAY_CONTROL_ORIENTED);
+    moray_settings settings = settings_of(24);
+    moray_steering_plan plan;
+    double x[MORAY_STEERING_STATES], rate, way[2] = {0, 0};
+    settings.max_iterations = settings.max_refinements = 0;
+    CHECK_OK(moray_heading_plan_make(&plan, &spec, &settings, &gait, NULL), "a guess");
+    enum { n = 1200 };
+    for (int k = 0; k < n; k++) {
+        const double heading = moray_reference_at(reference, HORIZON * (k + 0.5) / n, &rate);
+        way[0] += (plan.straight.speed * cos(heading) + spec.current[0]) * HORIZON / n;
+        way[1] += (plan.straight.speed * sin(heading) + spec.current[1]) * HORIZON / n;
+    }
+    moray_solution_at(plan.solution, 0, HORIZON, x, NULL);
+    const double sample = plan.straight.speed * HORIZON / (16 * 24); // the jump may come a sample late
+    CHECK_NEAR(x[MORAY_STATE_P_X], way[0], sample, "its way along x");
+    CHECK_NEAR(x[MORAY_STATE_P_Y], way[1], sample, "its way along y");
+    moray_steering_plan_free(&plan);
+}
+
 static void test_limits(const moray_reference *reference)
 {
     moray_heading_spec spec = spec_of(MORAY_CONTROL_ORIENTED, reference);
@@ -292,8 +315,8 @@ static void test_tube(const moray_reference *reference)
     moray_steering_plan_free(&plan);
 }
 
-// Three links that turn to a heading they are off: the largest rate of a joint over a stroke, alpha omega + |phi_0'|, and
-// the largest share of what the motors give.
+// Three links that turn to a heading they are off: the largest rate of a joint over a stroke, alpha omega + |phi_0'|,
+// and the largest share of what the motors give.
 static void steer_with(const moray_motor *motor, double rate, double *fastest, double *load)
 {
     moray_reference ahead = read_ok("steps:0=15");
@@ -363,6 +386,7 @@ int main(void)
     test_averaged(&averaged, &step);
     test_plan(MORAY_CONTROL_ORIENTED, &step, &averaged);
     test_plan(MORAY_FIRST_PRINCIPLES, &step, &averaged);
+    test_guess(&step);
     test_limits(&step);
     test_motors();
     test_tube(&step);
