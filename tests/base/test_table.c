@@ -49,6 +49,9 @@ static void test_cubic(void)
     CHECK(value < 1e-13 && first < 1e-12 && second < 1e-11, "a cubic and its derivatives: %.1e, %.1e, %.1e", value,
           first, second);
     CHECK(step < 1e-12, "by complex step: %.1e", step);
+    double range[2];
+    moray_spline_range(spline, range);
+    CHECK(range[0] == -1 && range[1] == 2, "from %g to %g", range[0], range[1]);
     moray_spline_free(spline);
 }
 

@@ -469,6 +469,38 @@ static void test_outliers(void)
           off[0], off[1]);
 }
 
+// Worlds written and read again are the same to the last bit; more than there is room for, and a name that is none, are
+// refused with their line or column.
+static void check_worlds_in_a_file(const found *f, const moray_unknowns *world, int n)
+{
+    char path[] = "/tmp/moray-worlds-XXXXXX";
+    moray_unknowns base = {.robot = moray_robot_paper()}, again[5];
+    moray_world_name name[5];
+    int read;
+    FILE *file = fdopen(mkstemp(path), "w");
+    moray_worlds_write(world, n, f->w.unknown, f->w.n, file);
+    fclose(file);
+    CHECK_OK(moray_worlds_read(path, &base, 5, again, name, &read), "worlds from a file");
+    CHECK(read == n && !strcmp(name[0].text, "identified") && !strcmp(name[1].text, "axis_1-") &&
+              !strcmp(name[4].text, "axis_2+"),
+          "%d worlds: %s, %s, ..., %s", read, name[0].text, name[1].text, name[4].text);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < f->w.n; k++) {
+            moray_unknowns one = world[i];
+            const double written = *moray_unknown_at(f->w.unknown[k], &one);
+            CHECK(*moray_unknown_at(f->w.unknown[k], &again[i]) == written && written != 0, "%s of world %d: %.17g",
+                  moray_unknown_name(f->w.unknown[k]), i, written);
+        }
+    moray_status status = moray_worlds_read(path, &base, 4, again, name, &read);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, ":6: more than 4"), "too many: %s", status.text);
+    file = fopen(path, "w");
+    fputs("c_t,c_m\n1,2\n", file);
+    fclose(file);
+    status = moray_worlds_read(path, &base, 4, again, name, &read);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "column c_m"), "a name that is none: %s", status.text);
+    remove(path);
+}
+
 // The experiment to swim next: swum, it tells what was predicted.
 static void test_design(void)
 {
@@ -511,6 +543,7 @@ static void test_design(void)
     CHECK(moray_identify_worlds(f.identify, &f.at, &f.info, 1, 5, world) == 5, "five worlds of two axes");
     CHECK(world[0].robot.c_n == f.at.value[1] && world[1].robot.c_n != world[2].robot.c_n,
           "the estimate, and the ends of an axis");
+    check_worlds_in_a_file(&f, world, 5);
     found_free(&f);
 }
 

@@ -62,6 +62,25 @@ static void test_refusals(void)
     }
 }
 
+// Without an iteration a plan is its guess: it turns to the side that is asked, all the way.
+static void test_guess(void)
+{
+    moray_settings settings = moray_settings_default();
+    settings.max_iterations = 0;
+    for (int side = -1; side <= 1; side += 2) {
+        moray_turn_spec spec = spec_of(MORAY_CONTROL_ORIENTED, true, 10);
+        const moray_gait gait = moray_gait_paper(&spec.robot);
+        moray_steering_plan plan;
+        double t0, t1, x[MORAY_STEERING_STATES];
+        spec.heading *= side;
+        CHECK_OK(moray_turn_plan_make(&plan, &spec, &settings, &gait, 0.1, NULL, 1), "a guess");
+        moray_solution_times(plan.solution, 0, &t0, &t1);
+        moray_solution_at(plan.solution, 0, t1, x, NULL);
+        CHECK_NEAR(x[MORAY_STATE_THETA], spec.heading, 1 * DEG, "where it turns to");
+        moray_steering_plan_free(&plan);
+    }
+}
+
 // Turns one way and the other on the averaged plant: mirror images in still water, no faster than the offset can be
 // brought to its limit and the robot then turn steadily, at the end as it should be.
 static void test_turn(void)
@@ -133,6 +152,7 @@ int main(void)
         test_derivatives(MORAY_FIRST_PRINCIPLES, false, links);
     }
     test_refusals();
+    test_guess();
     test_turn();
     test_poses();
     return tap_done();
