@@ -85,6 +85,13 @@ static void test_table(void)
     CHECK(moray_water_covers(water, 0, 0, 1) && !moray_water_covers(water, 0, 0, 4) &&
               !moray_water_covers(water, -3.1, 0, 1),
           "its range");
+    double low[3], high[3], middle[3];
+    moray_water_range(water, low, high);
+    moray_water_middle(water, middle);
+    CHECK(low[0] == -3 && high[0] == 4.5 && low[1] == -2 && high[1] == 2 && low[2] == 0 && high[2] == 3.5,
+          "x from %g to %g, y from %g to %g, t from %g to %g", low[0], high[0], low[1], high[1], low[2], high[2]);
+    CHECK(moray_water_covers(water, middle[0], middle[1], middle[2]) && middle[0] != 0 && middle[1] != 0,
+          "in its middle: %g, %g, %g", middle[0], middle[1], middle[2]);
     moray_water_free(water);
 }
 

@@ -582,6 +582,12 @@ static void test_equal_power(void)
     CHECK_NEAR(swum.speed, base->speed, 1e-5 * base->speed, "at the other omega the speed is");
     CHECK_NEAR(gain.power_percent_at_equal_speed, 100 * (swum.power / base->power - 1), 1e-3, "and there the saving");
     CHECK(fabs(trial.steady[model].power / base->power - 1) > 0.3, "far from the power of the gait as it is");
+    // From rest, means over the period before, of 4 s.
+    double time[13], speed[13];
+    CHECK_OK(moray_gait_trial_speeds(&rig, &trial, model, 36, 13, time, speed), "from rest");
+    CHECK_NEAR(time[12], 36, 1e-12, "times up to the horizon");
+    CHECK(speed[0] == 0 && speed[1] > 0 && speed[1] < speed[2], "from 0 on: %g, %g m/s", speed[1], speed[2]);
+    CHECK_NEAR(speed[12], trial.steady[model].speed, 1e-3 * speed[12], "to the steady speed");
     moray_test_rig_free(&rig);
 }
 
