@@ -128,7 +128,8 @@ static void test_values(void)
     CHECK_OK(moray_sweep_values(words, &value, &word, &n), "words");
     CHECK(n == 2 && !value && strcmp(word[0], "a") == 0 && strcmp(word[1], "b:c") == 0, "two words");
     free(word);
-    static const char *const wrong[] = {"1:2", "1:2:0", "1:2:3x", "1:nan:3", "1:2:1", "1:2:1.5", "1:2:3:4", "1,,2", "1,nan", "-Inf,2", ""};
+    static const char *const wrong[] = {"1:2",     "1:2:0", "1:2:3x", "1:nan:3", "1:2:1", "1:2:1.5",
+                                        "1:2:3:4", "1,,2",  "1,nan",  "-Inf,2",  ""};
     for (unsigned k = 0; k < sizeof wrong / sizeof *wrong; k++) {
         char text[20];
         snprintf(text, sizeof text, "%s", wrong[k]);
@@ -457,6 +458,36 @@ static void test_draws(void)
     CHECK(moray_sweep(&spec, &result).code == MORAY_INPUT, "draws of nothing are refused");
 }
 
+// Draws, each at all values of an axis: numbers of the draws alone, of the axis alone, and of all points.
+static void test_draws_and_values(void)
+{
+    enum { draws = 3, values = 4 };
+    static const double c[values] = {10, 20, 40, 80};
+    const moray_sweep_range range = {"a", 2, 3};
+    const moray_sweep_axis axis = {.key = "c", .value = c, .n = values};
+    const moray_sweep_spec spec = {.file = "both.nc",
+                                   .axis = &axis,
+                                   .axes = 1,
+                                   .range = &range,
+                                   .ranges = 1,
+                                   .draws = draws,
+                                   .seed = 7,
+                                   .solve = plain,
+                                   .jobs = 2,
+                                   .quiet = true};
+    moray_sweep_result result;
+    CHECK_OK(moray_sweep(&spec, &result), "draws and values");
+    double *a = numbers("both.nc", "a", draws), *axis_c = numbers("both.nc", "c", values),
+           *sum = numbers("both.nc", "sum", draws * values), worst = 0;
+    for (int k = 0; a && axis_c && sum && k < draws * values; k++)
+        worst =
+            fmax(worst, fabs(sum[k] - a[k / values] - axis_c[k % values]) + fabs(axis_c[k % values] - c[k % values]));
+    CHECK(a && sum && worst == 0 && a[0] != a[1], "every draw meets every value");
+    free(a);
+    free(axis_c);
+    free(sum);
+}
+
 int main(void)
 {
     setvbuf(stdout, NULL, _IOLBF, 0); // processes that are made here have nothing of it to write
@@ -474,6 +505,7 @@ int main(void)
     test_locks();
     test_full_disk();
     test_draws();
+    test_draws_and_values();
     snprintf(command, sizeof command, "rm -rf %s", folder);
     CHECK(chdir("/") == 0 && system(command) == 0, "nothing is left behind");
     return tap_done();
