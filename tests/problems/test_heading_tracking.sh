@@ -78,9 +78,10 @@ if thorough; then
 run $quick --set reference=ramps:5=0,8=60
 check "without a tube the fast reference is told beside the result" \
     eval '[ $code -eq 0 ] && grep -q "turns at up to 20.00 deg/s, beyond that: there the error grows" out'
-run $quick --set reference=steps:5=10 --current 0,0.4
+run $quick --set reference=steps:5=10 --current 0,0.4 --out driven
 check "a current that it cannot stem is told" \
     eval '[ $code -eq 0 ] && grep -q "The current of 0.4 m/s is stronger than the robot" out'
+check "and drawn though it is across" grep -q 'current, 0.4 m/s' driven/path.svg
 fi
 run --set power_W=1e-6 --set reference=steps:5=10 --horizon 16 --set starts=1 --set evaluations=1
 check "no power: $(cat err)" eval '[ $code -eq 1 ] && one_line && grep -q "power" err'

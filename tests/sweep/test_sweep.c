@@ -418,7 +418,8 @@ static void test_full_disk(void)
 static moray_status plain(const moray_sweep_point *point, FILE *summary, void *self)
 {
     (void)self;
-    fprintf(summary, "{\"sum\": %.17g}\n", point->value[0] + (point->n > 1 ? point->value[1] : 0));
+    const double first = point->value[0], second = point->n > 1 ? point->value[1] : 0;
+    fprintf(summary, "{\"sum\": %.17g, \"one\": %.17g, \"other\": %.17g}\n", first + second, first, second);
     return moray_ok();
 }
 
@@ -451,6 +452,17 @@ static void test_draws(void)
     // Five standard errors of the mean of an even distribution, width / sqrt(12 draws).
     CHECK_NEAR(mean[0], 2.5, 5 / sqrt(12. * draws), "mean of a");
     CHECK_NEAR(mean[1], 0, 10 / sqrt(12. * draws), "mean of b");
+    double *least, *most;
+    long n;
+    CHECK_OK(moray_sweep_extremes("draws.nc", "o*", &least, &most, &n), "of two numbers of each point");
+    worst = n == draws ? 0 : INFINITY;
+    for (int k = 0; a && b && k < draws && k < n; k++)
+        worst = fmax(worst, fmax(fabs(least[k] - b[k]), fabs(most[k] - a[k])));
+    CHECK(worst == 0, "the lesser and the greater, point by point");
+    free(least);
+    free(most);
+    const moray_status none = moray_sweep_extremes("draws.nc", "c*", &least, &most, &n);
+    CHECK(none.code == MORAY_INPUT && strstr(none.text, "c*") && !least && !most, "none of that name: %s", none.text);
     free(a);
     free(b);
     free(sum);

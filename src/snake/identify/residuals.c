@@ -98,19 +98,19 @@ static void add_channel(const moray_identify *v, int r, moray_channel_kind kind,
 static void judge(const moray_identify *v, moray_identify_fit *fit)
 {
     double sum = 0;
-    int outliers = 0, worst = 0, counted = 0;
+    int outliers = 0, worst = -1, counted = 0;
     for (int k = 0; k < fit->channels; k++) {
         outliers += fit->channel[k].outliers;
         if (fit->channel[k].rms < small)
             continue;
         sum += fit->channel[k].portmanteau;
         counted++;
-        if (fit->channel[k].portmanteau > fit->channel[worst].portmanteau)
+        if (worst < 0 || fit->channel[k].portmanteau > fit->channel[worst].portmanteau)
             worst = k;
     }
     const double limit = chi_square_limit(LAGS * (counted > 0 ? counted : 1));
-    const moray_channel_fit *at = &fit->channel[worst];
-    const bool large = fit->chi2 > fit->limit, coloured = sum > limit;
+    const bool large = fit->chi2 > fit->limit, coloured = worst >= 0 && sum > limit;
+    const moray_channel_fit *at = coloured ? &fit->channel[worst] : NULL;
     fit->simple = coloured || (large && outliers == 0);
     fit->verdict[0] = 0;
     moray_text_add(fit->verdict, sizeof fit->verdict, "chi^2 %.4g of %d degrees of freedom (by chance at most %.4g); ",

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <tgmath.h>
 
+#include "ocp/certificate/bends.h"
 #include "ocp/certificate/differences.h"
 #include "ocp/solution.h"
 #include "rk4.h"
@@ -436,8 +437,93 @@ static void test_hessian_of_many_nodes(void)
     CHECK(c.curvature == 0 && c.directions < MORAY_LIMIT_DIRECTIONS, "the right one leads away: %.1e", c.directions);
 }
 
+// ---- One wrong entry in the Hessian of the endpoint, whichever it is: least integral of u^2 and squares of the ends
+//      of states that all have the rate u ----
+
+enum { ends_nx = 6, ends_xf = ends_nx + 1, ends_q = ends_xf + ends_nx + 1, ends_in = ends_q + 1 };
+
+static void together(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    for (int i = 0; i < ends_nx; i++)
+        out->f[i] = at->u[0];
+    out->g[0] = at->u[0] * at->u[0];
+}
+
+static void squares_value(void *self, const double *in, double *out)
+{
+    (void)self;
+    out[0] = in[ends_q];
+    for (int i = 0; i < ends_nx; i++)
+        out[0] += in[i] * in[i] + (in[ends_xf + i] - 1) * (in[ends_xf + i] - 1);
+}
+
+static void squares_jacobian(void *self, const double *in, double *values)
+{
+    (void)self;
+    for (int i = 0; i < ends_nx; i++) {
+        values[i] = 2 * in[i];
+        values[ends_nx + i] = 2 * (in[ends_xf + i] - 1);
+    }
+    values[2 * ends_nx] = 1;
+}
+
+static void squares_hessian(void *self, const double *in, const double *weight, double *values)
+{
+    (void)in;
+    for (int i = 0; i < 2 * ends_nx; i++)
+        values[i] = i == *(const int *)self ? 0 : 2 * weight[0];
+}
+
+static void test_hessian_of_ends(void)
+{
+    int row[2 * ends_nx + 1] = {0}, col[2 * ends_nx + 1], wrong;
+    for (int i = 0; i < ends_nx; i++)
+        col[i] = i, col[ends_nx + i] = ends_xf + i;
+    col[2 * ends_nx] = ends_q;
+    const moray_map map = {.n_in = ends_in,
+                           .n_out = 1,
+                           .jac = {.nnz = 2 * ends_nx + 1, .row = row, .col = col},
+                           .hess = {.nnz = 2 * ends_nx, .row = col, .col = col},
+                           .value = squares_value,
+                           .jacobian = squares_jacobian,
+                           .hessian = squares_hessian,
+                           .self = &wrong};
+    const moray_phase_spec phase = {.name = "ends",
+                                    .nx = ends_nx,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = together,
+                                    .tf = moray_fixed(1),
+                                    .x =
+                                        MORAY_BOUNDS(moray_between(-5, 5), moray_between(-5, 5), moray_between(-5, 5),
+                                                     moray_between(-5, 5), moray_between(-5, 5), moray_between(-5, 5))};
+    for (wrong = -1; wrong < 2 * ends_nx; wrong++) {
+        moray_ocp *ocp;
+        moray_solution *solution;
+        const moray_settings settings = moray_settings_default();
+        CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint_map = &map}), "ends");
+        CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+        const moray_certificate c = certify(solution);
+        struct witness w;
+        double at_ends = 0;
+        char where[200] = "";
+        CHECK_OK(moray_witness_new(&w, solution), "witness");
+        CHECK_OK(moray_difference_bends(&w, &at_ends, where, sizeof where), "along directions at the ends");
+        if (wrong < 0)
+            CHECK(c.pass && at_ends < 1e-6, "all right: %.1e %s", at_ends, c.why);
+        else
+            CHECK(!c.pass && at_ends > MORAY_LIMIT_DIRECTIONS && strstr(where, "second derivative of the endpoint"),
+                  "entry %d: %.1e, %s", wrong, at_ends, where);
+        moray_witness_free(&w);
+        moray_solution_free(solution);
+        moray_ocp_free(ocp);
+    }
+}
+
 int main(void)
 {
+    test_hessian_of_ends();
     test_hessian_of_many_nodes();
     test_right_solution();
     test_wrong_derivatives();

@@ -384,6 +384,59 @@ typedef struct found {
     wanted w;
 } found;
 
+// Ljung and Box's sum of so many lags, of residuals cut at 5 sigma, and the correlation of neighbours.
+static double ljung_box(const double *r, int n, double *neighbours)
+{
+    double mean = 0, square = 0, total = 0;
+    for (int k = 0; k < n; k++)
+        mean += r[k] / n;
+    for (int k = 0; k < n; k++)
+        square += (r[k] - mean) * (r[k] - mean);
+    for (int lag = 1; lag <= 10; lag++) {
+        double rho = 0;
+        for (int k = lag; k < n; k++)
+            rho += (r[k] - mean) * (r[k - lag] - mean) / square;
+        if (lag == 1)
+            *neighbours = rho;
+        total += n * (n + 2.) * rho * rho / (n - lag);
+    }
+    return total;
+}
+
+// What is told of channels follows from their points; the verdict names the most coloured of those that are not quiet.
+static void check_fit(const moray_identify_fit *fit)
+{
+    const moray_residual_point *p = fit->point;
+    const moray_channel_fit *coloured = NULL;
+    double chi2 = 0;
+    for (int c = 0; c < fit->channels; c++) {
+        const moray_channel_fit *at = &fit->channel[c];
+        int worst = 0, outliers = 0;
+        double square = 0, r[4000], neighbours;
+        for (int k = 0; k < at->n; k++) {
+            const double residual = (p[k].observed - p[k].predicted) / p[k].sigma;
+            worst = fabs(residual) > fabs((p[worst].observed - p[worst].predicted) / p[worst].sigma) ? k : worst;
+            square += residual * residual;
+            outliers += fabs(residual) > 5;
+            r[k] = fmax(-5, fmin(5, residual));
+        }
+        const double portmanteau = ljung_box(r, at->n, &neighbours);
+        CHECK(at->worst == p[worst].row && at->outliers == outliers, "%s of log %d: the worst row is %d of %d",
+              moray_channel_name(at->kind), at->run, at->worst, p[worst].row);
+        CHECK_RELATIVE(at->rms, sqrt(square / at->n), 1e-9, "root of the mean square");
+        CHECK_RELATIVE(at->lag, neighbours, 1e-9, "correlation of neighbours");
+        CHECK_RELATIVE(at->portmanteau, portmanteau, 1e-9, "Ljung and Box");
+        if (at->rms >= 0.5 && (!coloured || at->portmanteau > coloured->portmanteau))
+            coloured = at;
+        chi2 += square;
+        p += at->n;
+    }
+    CHECK_RELATIVE(fit->chi2, chi2, 1e-9, "sum of squares");
+    char correlated[40];
+    snprintf(correlated, sizeof correlated, "correlated by %.2f.", coloured ? coloured->lag : 0);
+    CHECK(!strstr(fit->verdict, "correlated") || (coloured && strstr(fit->verdict, correlated)), "%s", fit->verdict);
+}
+
 static void find(const story *s, const moray_identify_spec *spec, int logs, found *f)
 {
     swim_logs(s, f->log);
@@ -392,6 +445,7 @@ static void find(const story *s, const moray_identify_spec *spec, int logs, foun
     CHECK_OK(moray_identify_solve(f->identify, &f->at), "solve");
     CHECK_OK(moray_identify_information(f->identify, &f->at, &f->info), "information");
     CHECK_OK(moray_identify_residuals(f->identify, &f->at, &f->fit), "residuals");
+    check_fit(&f->fit);
 }
 
 static void found_free(found *f)
@@ -399,6 +453,35 @@ static void found_free(found *f)
     moray_identify_fit_free(&f->fit);
     moray_identify_free(f->identify);
     free_logs(f->log);
+}
+
+// Through which camera and compass it is seen does not matter to where it starts, in either model.
+static void test_guess(void)
+{
+    for (int model = 0; model < 2; model++) {
+        moray_estimate at[2];
+        for (int seen = 0; seen < 2; seen++) {
+            moray_swim_log log[MOST_LOGS];
+            wanted w;
+            moray_identify *identify;
+            story s = {.model = model, .current = {0.06, -0.04}, .offset = 1 * DEG, .duration = 4, .step = 0.1};
+            memcpy(s.sigma, known, sizeof s.sigma);
+            if (seen)
+                s.noise = (moray_swim_log_noise){.camera = {0.3, -0.2}, .camera_rotation = 0.4, .heading_bias = -0.7};
+            swim_logs(&s, log);
+            moray_identify_spec spec = spec_of(&s, "current_x,current_y", &w);
+            memcpy(spec.start.camera, s.noise.camera, sizeof spec.start.camera);
+            spec.start.camera_rotation = s.noise.camera_rotation;
+            spec.start.heading_bias = s.noise.heading_bias;
+            CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "new");
+            moray_identify_start(identify, 0, &at[seen]);
+            moray_identify_free(identify);
+            free_logs(log);
+        }
+        for (int run = 0; run < MOST_LOGS; run++)
+            for (int i = 0; i < MORAY_BODY_STATES; i++)
+                CHECK_RELATIVE(at[1].first[run][i], at[0].first[run][i], 1e-9, "first state");
+    }
 }
 
 // A compass that is off and a camera that is turned: a world turned as a whole looks the same to both.
@@ -422,11 +505,15 @@ static void test_simple(void)
 {
     static found f;
     story s = noisy((moray_hydrodynamics){.drag = MORAY_DRAG_QUADRATIC});
-    moray_identify_spec spec = spec_of(&s, "c_t,c_n,mu_n,current_x,current_y,heading_bias", &f.w);
-    spec.start.robot.hydro = (moray_hydrodynamics){0};
-    find(&s, &spec, MOST_LOGS, &f);
-    CHECK(f.fit.simple, "a model that is too simple is told: %s", f.fit.verdict);
-    found_free(&f);
+    for (int quiet = 0; quiet < 2; quiet++) {
+        s.sigma[0] = quiet ? 1 : NAN; // a position along x told far worse than it is has no say, however coloured
+        moray_identify_spec spec = spec_of(&s, "c_t,c_n,mu_n,current_x,current_y,heading_bias", &f.w);
+        spec.start.robot.hydro = (moray_hydrodynamics){0};
+        find(&s, &spec, quiet ? 1 : MOST_LOGS, &f);
+        CHECK(f.fit.simple, "a model that is too simple is told: %s", f.fit.verdict);
+        CHECK(!quiet || f.fit.channel[0].rms < 0.1, "%.2g sigma", f.fit.channel[0].rms);
+        found_free(&f);
+    }
 }
 
 // Joint angles with noise, taken by splines.
@@ -557,6 +644,7 @@ int main(int argc, char **argv)
     test_zero();
     test_motors();
     test_refusals();
+    test_guess();
     test_open();
     test_simple();
     test_design();
