@@ -9,6 +9,7 @@
 #include <suitesparse/klu.h>
 
 static const double PIVOT = 0.1; // of its column's largest; KLU's own 0.001 costs orbits six digits
+static const double LOOSE_PIVOT = 0.01;
 static const double WORN = 1e-6; // reciprocal growth of pivots taken over that asks for new ones
 
 struct sparse_lu {
@@ -52,10 +53,12 @@ static moray_status status_of(const sparse_lu *lu)
                        lu->common.numerical_rank);
 }
 
-static moray_status analyse(sparse_lu *lu)
+static moray_status analyse(sparse_lu *lu, bool by_columns)
 {
+    enum { amd, colamd };
     klu_defaults(&lu->common);
-    lu->common.tol = PIVOT;
+    lu->common.tol = by_columns ? LOOSE_PIVOT : PIVOT;
+    lu->common.ordering = by_columns ? colamd : amd;
     lu->symbolic = klu_analyze(lu->n, lu->start, lu->row, &lu->common);
     if (!lu->symbolic)
         return status_of(lu);
@@ -66,7 +69,7 @@ static moray_status analyse(sparse_lu *lu)
 }
 
 // Triplets to compressed columns with the place of each triplet kept, so that new values are one scatter.
-moray_status moray_sparse_lu_new(sparse_lu **result, int n, const moray_pattern *pattern)
+static moray_status make(sparse_lu **result, int n, const moray_pattern *pattern, bool by_columns)
 {
     const size_t rows = (size_t)n, nnz = (size_t)pattern->nnz;
     *result = NULL;
@@ -83,13 +86,23 @@ moray_status moray_sparse_lu_new(sparse_lu **result, int n, const moray_pattern 
         lu->row = lu->start + n + 1;
         lu->place = lu->row + nnz;
         compress(lu, pattern);
-        status = analyse(lu);
+        status = analyse(lu, by_columns);
     }
     if (moray_failed(status))
         moray_sparse_lu_free(lu);
     else
         *result = lu;
     return status;
+}
+
+moray_status moray_sparse_lu_new(sparse_lu **lu, int n, const moray_pattern *pattern)
+{
+    return make(lu, n, pattern, false);
+}
+
+moray_status moray_sparse_lu_new_by_columns(sparse_lu **lu, int n, const moray_pattern *pattern)
+{
+    return make(lu, n, pattern, true);
 }
 
 void moray_sparse_lu_free(sparse_lu *lu)

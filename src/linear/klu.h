@@ -12,6 +12,10 @@ typedef struct sparse_lu sparse_lu;
 // Orders an n x n matrix; the pattern is copied. Error: MORAY_INPUT for an entry outside the matrix, or a pattern that
 // no values can make regular; MORAY_MEMORY.
 moray_status moray_sparse_lu_new(sparse_lu **lu, int n, const moray_pattern *pattern);
+
+// The same for a matrix whose diagonal means nothing: columns are ordered for little fill whatever the rows, and pivots
+// may be smaller. Solutions deserve a look at their residual.
+moray_status moray_sparse_lu_new_by_columns(sparse_lu **lu, int n, const moray_pattern *pattern);
 void moray_sparse_lu_free(sparse_lu *lu);
 
 // Factors the matrix of values[nnz], in the pattern's order: with the pivots of the time before while these stay good.

@@ -31,13 +31,13 @@ static void set_defaults(double *cntl, ipfint *icntl)
 static moray_status find_object(int n, const moray_pattern *pattern, int *number)
 {
     for (int k = 0; k < current->patterns; k++)
-        if (moray_ldl_has_pattern(current->ldl[k], n, pattern)) {
+        if (moray_kkt_factors_has_pattern(current->kkt[k], n, pattern)) {
             *number = k;
             return moray_ok();
         }
     if (current->patterns == ipopt_linear_patterns)
         return moray_error(MORAY_NOT_SOLVED, "Ipopt changes its pattern more than %d times", ipopt_linear_patterns);
-    MORAY_TRY(moray_ldl_new(&current->ldl[current->patterns], n, pattern));
+    MORAY_TRY(moray_kkt_factors_new(&current->kkt[current->patterns], n, pattern));
     *number = current->patterns++;
     return moray_ok();
 }
@@ -76,9 +76,9 @@ static void factor(ipfint *n, ipfint *entries, double *values, double *fact, ipf
     ifact[0] = keep[0];
     if (keep[0] < 0)
         return;
-    moray_ldl *ldl = current->ldl[keep[0]];
-    const moray_status status = moray_ldl_factor(ldl, values, cntl[0]);
-    const moray_ldl_inertia inertia = moray_ldl_inertia_of(ldl);
+    kkt_factors *kkt = current->kkt[keep[0]];
+    const moray_status status = moray_kkt_factors_factor(kkt, values, cntl[0]);
+    const moray_ldl_inertia inertia = moray_kkt_factors_inertia(kkt);
     if (status.code == MORAY_MEMORY || status.code == MORAY_NOT_SOLVED)
         current->failure = status;
     else // what is not finite is as good as singular: Ipopt then shortens its step or gives up
@@ -95,9 +95,9 @@ static void solve(ipfint *job, ipfint *n, double *fact, ipfint *fact_size, ipfin
     (void)job, (void)n, (void)fact, (void)fact_size, (void)ifact_size, (void)B_size, (void)work, (void)work_size;
     (void)iwork, (void)icntl;
     const double start = moray_thread_clock();
-    moray_ldl *ldl = current->ldl[ifact[0]];
-    const moray_status status = moray_ldl_solve(ldl, *columns, B);
-    const double error = moray_ldl_statistics_of(ldl).error;
+    kkt_factors *kkt = current->kkt[ifact[0]];
+    const moray_status status = moray_kkt_factors_solve(kkt, *columns, B);
+    const double error = moray_kkt_factors_error(kkt);
     if (!(error <= current->error)) // a NaN too
         current->error = error;
     info[0] = moray_failed(status) ? no_factors : fine;
@@ -129,7 +129,7 @@ void moray_ipopt_linear_open(struct ipopt_linear *linear)
 void moray_ipopt_linear_close(struct ipopt_linear *linear)
 {
     for (int k = 0; k < linear->patterns; k++)
-        moray_ldl_free(linear->ldl[k]);
+        moray_kkt_factors_free(linear->kkt[k]);
     linear->patterns = 0;
     current = linear->outer;
 }

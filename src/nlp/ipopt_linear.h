@@ -4,12 +4,12 @@
 #ifndef SRC_NLP_IPOPT_LINEAR_H
 #define SRC_NLP_IPOPT_LINEAR_H
 
-#include "linear/ldl.h"
+#include "linear/kkt_factors.h"
 
 // What one solve of Ipopt asks for; Ipopt analyses the same pattern again at each restoration.
 enum { ipopt_linear_patterns = 4 };
 struct ipopt_linear {
-    moray_ldl *ldl[ipopt_linear_patterns];
+    kkt_factors *kkt[ipopt_linear_patterns];
     int patterns;
     double seconds;             // of the processor
     moray_status failure;       // MORAY_NOT_SOLVED: another linear solver may do better; MORAY_MEMORY

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// A programme on which our own factors fill up, and MUMPS takes over: min |x|^2 / 2, STEP x_i + w_i p = w_i, whose
-// pivots can all but one be had only after the last unknown, p. Solved by x = 0, p = 1.
+// A programme on which our own factors fill up, and MUMPS takes over: min |x|^2 / 2 + |y|^2 / 2, STEP x_i + w_i p =
+// w_i, whose pivots can all but one be had only after the last unknown, p. Solved by x = 0, y = 0, p = 1. The y make it
+// one of too many degrees of freedom for the null space, where it would be easy.
 #include "tap.h"
 
 #include <string.h>
 
 #include "moray/nlp.h"
 
-enum { ROWS = 1100 };
+enum { ROWS = 1100, FREE = 40, COLUMNS = ROWS + 1 + FREE }; // x, p, y
 static const double step = 1e-3;
 
 static double weight(int i)
@@ -20,15 +21,15 @@ static bool objective(void *self, const double *x, bool fresh, double *f)
 {
     (void)self, (void)fresh;
     *f = 0;
-    for (int i = 0; i < ROWS; i++)
-        *f += x[i] * x[i] / 2;
+    for (int i = 0; i < COLUMNS; i++)
+        *f += i == ROWS ? 0 : x[i] * x[i] / 2;
     return true;
 }
 
 static bool gradient(void *self, const double *x, bool fresh, double *g)
 {
     (void)self, (void)fresh;
-    memcpy(g, x, ROWS * sizeof *g);
+    memcpy(g, x, COLUMNS * sizeof *g);
     g[ROWS] = 0;
     return true;
 }
@@ -54,24 +55,24 @@ static bool jacobian(void *self, const double *x, bool fresh, double *v)
 static bool hessian(void *self, const double *x, bool fresh, double sigma, const double *lambda, double *v)
 {
     (void)self, (void)x, (void)fresh, (void)lambda;
-    for (int i = 0; i < ROWS; i++)
+    for (int i = 0; i < COLUMNS - 1; i++)
         v[i] = sigma;
     return true;
 }
 
 static moray_status solve(moray_linear_solver solver, double *p, moray_nlp_info *info)
 {
-    static double lower[ROWS + 1], upper[ROWS + 1], right[ROWS];
-    static double x[ROWS + 1], z_lower[ROWS + 1], z_upper[ROWS + 1], g[ROWS], lambda[ROWS];
-    static int jac_row[2 * ROWS], jac_col[2 * ROWS], diagonal[ROWS];
-    const moray_nlp nlp = {.n = ROWS + 1,
+    static double lower[COLUMNS], upper[COLUMNS], right[ROWS];
+    static double x[COLUMNS], z_lower[COLUMNS], z_upper[COLUMNS], g[ROWS], lambda[ROWS];
+    static int jac_row[2 * ROWS], jac_col[2 * ROWS], diagonal[COLUMNS - 1];
+    const moray_nlp nlp = {.n = COLUMNS,
                            .m = ROWS,
                            .x_lower = lower,
                            .x_upper = upper,
                            .g_lower = right,
                            .g_upper = right,
                            .nnz_jac = 2 * ROWS,
-                           .nnz_hess = ROWS,
+                           .nnz_hess = COLUMNS - 1,
                            .jac_row = jac_row,
                            .jac_col = jac_col,
                            .hess_row = diagonal,
@@ -83,7 +84,7 @@ static moray_status solve(moray_linear_solver solver, double *p, moray_nlp_info 
                            .hessian = hessian};
     moray_nlp_settings settings = moray_nlp_settings_default();
     settings.linear_solver = solver;
-    for (int i = 0; i <= ROWS; i++) {
+    for (int i = 0; i < COLUMNS; i++) {
         lower[i] = -MORAY_INFINITY;
         upper[i] = MORAY_INFINITY;
         x[i] = 2;
@@ -93,6 +94,8 @@ static moray_status solve(moray_linear_solver solver, double *p, moray_nlp_info 
         jac_col[2 * i + 1] = ROWS;
         right[i] = weight(i);
     }
+    for (int i = ROWS; i < COLUMNS - 1; i++)
+        diagonal[i] = i + 1;
     const moray_status status =
         moray_ipopt_solve(&nlp, &settings, &(moray_iterate){x, z_lower, z_upper, g, lambda, 0}, info);
     *p = x[ROWS];

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: MIT
+//
+// With B the basic columns of A, N the others and Z = [-B^-1 N; I] every solution of the constraints is a particular
+// one plus Z times something, so that Z' H Z, a few rows large, is all that is left. The inertia of the whole is that
+// of Z' H Z and as many eigenvalues of either sign as there are constraints.
+#include "linear/null_space.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "linear/basis.h"
+
+static const double regular = 1e-15;  // reciprocal condition of a basis, by its pivots
+static const double accurate = 1e-14; // residual that refinement would hardly better
+enum { refinements = 3, most_freedom = 24, most_vain = 3 };
+
+struct null_space {
+    int n, m, variables, freedom; // rows; constraints, which come last; n - m; variables - m
+    moray_pattern pattern;        // as given
+    int hessian, *source, *i, *j; // entries of H, in the pattern, and where they stand; [hessian] each
+    int vain;                     // matrices for which there was no basis, after some of which none is sought
+    bool planned, factored;       // the basis is chosen; and factored with the values at hand
+    struct basis basis;
+    moray_ldl *reduced;                // of Z' H Z, full lower triangle
+    double *block;                     // holds the arrays below
+    double *values;                    // [nnz] as factored
+    double *H;                         // [hessian]
+    double *Z, *HZ;                    // [variables x freedom], by rows
+    double *columns;                   // [m x freedom], by columns
+    double *R, *r;                     // [freedom x (freedom + 1) / 2]; [freedom]
+    double *largest;                   // [n] entry of each row
+    double *rhs, *x, *step, *residual; // [n]
+};
+
+static moray_status no_memory(int n)
+{
+    return moray_error(MORAY_MEMORY, "no memory for a sparse symmetric matrix of %d rows", n);
+}
+
+// ---- Form ----------------------------------------------------------------------------------------------------------
+
+// The last rows that meet none of each other off the diagonal.
+static int count_constraints(int n, const moray_pattern *pattern)
+{
+    int last = -1;
+    for (int k = 0; k < pattern->nnz; k++)
+        if (pattern->row[k] != pattern->col[k]) {
+            const int lower = pattern->row[k] < pattern->col[k] ? pattern->row[k] : pattern->col[k];
+            last = lower > last ? lower : last;
+        }
+    return n - 1 - last;
+}
+
+static moray_status allocate(null_space *ns)
+{
+    const size_t n = (size_t)ns->n, m = (size_t)ns->m, f = (size_t)ns->freedom, v = (size_t)ns->variables;
+    const size_t nnz = (size_t)ns->pattern.nnz;
+    ns->source = malloc((3 * (size_t)ns->hessian + 1) * sizeof *ns->source);
+    ns->block =
+        calloc(nnz + (size_t)ns->hessian + (2 * v + m) * f + f * (f + 1) / 2 + f + 5 * n + 1, sizeof *ns->block);
+    if (!ns->block || !ns->source)
+        return no_memory(ns->n);
+    ns->i = ns->source + ns->hessian;
+    ns->j = ns->i + ns->hessian;
+    ns->values = ns->block;
+    ns->H = ns->values + nnz;
+    ns->Z = ns->H + ns->hessian;
+    ns->HZ = ns->Z + v * f;
+    ns->columns = ns->HZ + v * f;
+    ns->R = ns->columns + m * f;
+    ns->r = ns->R + f * (f + 1) / 2;
+    ns->largest = ns->r + f;
+    ns->rhs = ns->largest + n;
+    ns->x = ns->rhs + n;
+    ns->step = ns->x + n;
+    ns->residual = ns->step + n;
+    return moray_ok();
+}
+
+static moray_status make_reduced(null_space *ns)
+{
+    const int f = ns->freedom;
+    moray_pattern full;
+    MORAY_TRY(moray_pattern_new(&full, f * (f + 1) / 2));
+    for (int i = 0, k = 0; i < f; i++)
+        for (int j = 0; j <= i; j++, k++) {
+            full.row[k] = i;
+            full.col[k] = j;
+        }
+    const moray_status status = moray_ldl_new(&ns->reduced, f, &full);
+    moray_pattern_free(&full);
+    return status;
+}
+
+static bool is_hessian(const null_space *ns, int k)
+{
+    return ns->pattern.row[k] < ns->variables && ns->pattern.col[k] < ns->variables;
+}
+
+static void list_hessian(null_space *ns)
+{
+    for (int k = 0, e = 0; k < ns->pattern.nnz; k++)
+        if (is_hessian(ns, k)) {
+            ns->source[e] = k;
+            ns->i[e] = ns->pattern.row[k];
+            ns->j[e++] = ns->pattern.col[k];
+        }
+}
+
+static moray_status make(null_space *ns, const moray_pattern *pattern)
+{
+    const size_t size = (size_t)pattern->nnz * sizeof *pattern->row;
+    MORAY_TRY(moray_pattern_new(&ns->pattern, pattern->nnz));
+    memcpy(ns->pattern.row, pattern->row, size);
+    memcpy(ns->pattern.col, pattern->col, size);
+    for (int k = 0; k < pattern->nnz; k++)
+        ns->hessian += is_hessian(ns, k);
+    MORAY_TRY(allocate(ns));
+    list_hessian(ns);
+    return make_reduced(ns);
+}
+
+moray_status moray_null_space_new(null_space **result, int n, const moray_pattern *pattern)
+{
+    const int m = count_constraints(n, pattern), freedom = n - 2 * m;
+    *result = NULL;
+    if (m <= 0 || freedom < 0 || freedom > most_freedom)
+        return moray_ok();
+    null_space *ns = calloc(1, sizeof *ns);
+    if (!ns)
+        return no_memory(n);
+    ns->n = n;
+    ns->m = m;
+    ns->variables = n - m;
+    ns->freedom = freedom;
+    const moray_status status = make(ns, pattern);
+    if (moray_failed(status))
+        moray_null_space_free(ns);
+    else
+        *result = ns;
+    return status;
+}
+
+void moray_null_space_free(null_space *ns)
+{
+    if (!ns)
+        return;
+    moray_basis_free(&ns->basis);
+    moray_ldl_free(ns->reduced);
+    moray_pattern_free(&ns->pattern);
+    free(ns->source);
+    free(ns->block);
+    free(ns);
+}
+
+// ---- Factors -------------------------------------------------------------------------------------------------------
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+// Whether the values are finite, and the constraints have nothing on the diagonal; notes the largest entry of each row.
+static bool look_through(null_space *ns, bool *finite)
+{
+    const int *row = ns->pattern.row, *col = ns->pattern.col;
+    double check = 0, corner = 0;
+    memset(ns->largest, 0, (size_t)ns->n * sizeof *ns->largest);
+    for (int k = 0; k < ns->pattern.nnz; k++) {
+        const int i = row[k], j = col[k];
+        const double size = fabs(ns->values[k]);
+        check += size - size;
+        corner += i >= ns->variables && j >= ns->variables ? size : 0;
+        ns->largest[i] = larger(ns->largest[i], size);
+        ns->largest[j] = larger(ns->largest[j], size);
+    }
+    for (int e = 0; e < ns->hessian; e++)
+        ns->H[e] = ns->values[ns->source[e]];
+    *finite = check == 0;
+    return corner == 0;
+}
+
+// y[i][c] += sum over j of H[i][j] x[j][c], c < columns.
+static inline __attribute__((always_inline)) void multiply(const null_space *ns, int columns, const double *x,
+                                                           double *y)
+{
+    for (int e = 0; e < ns->hessian; e++) {
+        const int i = ns->i[e], j = ns->j[e];
+        const double h = ns->H[e], mirrored = i == j ? 0 : h;
+        for (int c = 0; c < columns; c++)
+            y[i * columns + c] += h * x[j * columns + c];
+        for (int c = 0; c < columns; c++)
+            y[j * columns + c] += mirrored * x[i * columns + c];
+    }
+}
+
+static void multiply_hessian(const null_space *ns, int columns, const double *x, double *y)
+{
+    switch (columns) { // loops of known length
+    case 1:
+        multiply(ns, 1, x, y);
+        break;
+    case 2:
+        multiply(ns, 2, x, y);
+        break;
+    case 3:
+        multiply(ns, 3, x, y);
+        break;
+    case 4:
+        multiply(ns, 4, x, y);
+        break;
+    default:
+        multiply(ns, columns, x, y);
+    }
+}
+
+// Z by rows of variables, from the basis.
+static moray_status find_null_space(null_space *ns)
+{
+    const int f = ns->freedom, m = ns->m;
+    moray_basis_others(&ns->basis, ns->values, ns->columns);
+    MORAY_TRY(moray_sparse_lu_solve(ns->basis.lu, f, ns->columns));
+    for (int i = 0; i < ns->variables; i++)
+        for (int c = 0; c < f; c++) {
+            const int basic = ns->basis.place[i];
+            ns->Z[i * f + c] = basic >= 0 ? -ns->columns[c * m + basic] : basic == -1 - c;
+        }
+    return moray_ok();
+}
+
+static moray_status reduce(null_space *ns)
+{
+    const int f = ns->freedom;
+    MORAY_TRY(find_null_space(ns));
+    memset(ns->HZ, 0, (size_t)(ns->variables * f) * sizeof *ns->HZ);
+    memset(ns->R, 0, (size_t)(f * (f + 1) / 2) * sizeof *ns->R);
+    multiply_hessian(ns, f, ns->Z, ns->HZ);
+    for (int i = 0; i < ns->variables; i++)
+        for (int a = 0, k = 0; a < f; a++)
+            for (int b = 0; b <= a; b++, k++)
+                ns->R[k] += ns->Z[i * f + a] * ns->HZ[i * f + b];
+    return f > 0 ? moray_ldl_factor(ns->reduced, ns->R, 0.1) : moray_ok();
+}
+
+// With the values at hand. planned <- false where they make the basis singular.
+static moray_status try_basis(null_space *ns)
+{
+    const moray_status status = moray_basis_factor(&ns->basis, ns->values);
+    ns->planned = !moray_failed(status) && moray_sparse_lu_condition(ns->basis.lu) >= regular;
+    return status.code == MORAY_NUMERIC ? moray_ok() : status;
+}
+
+// The basis of the time before, or another one that is regular; planned <- false where there is none.
+static moray_status factor_basis(null_space *ns)
+{
+    if (ns->planned)
+        MORAY_TRY(try_basis(ns));
+    for (int view = 0; view < MORAY_BASIS_VIEWS && !ns->planned; view++) {
+        bool found;
+        moray_basis_free(&ns->basis);
+        MORAY_TRY(moray_basis_choose(&ns->basis, ns->variables, ns->m, &ns->pattern, ns->values, view, &found));
+        if (found)
+            MORAY_TRY(try_basis(ns));
+    }
+    return moray_ok();
+}
+
+moray_status moray_null_space_factor(null_space *ns, const double *values, bool *fits)
+{
+    bool finite;
+    *fits = ns->factored = false;
+    memcpy(ns->values, values, (size_t)ns->pattern.nnz * sizeof *values);
+    const bool suitable = look_through(ns, &finite);
+    if (!finite)
+        return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows is not finite", ns->n);
+    if (!suitable || ns->vain == most_vain)
+        return moray_ok();
+    MORAY_TRY(factor_basis(ns));
+    if (!ns->planned) {
+        ns->vain++;
+        return moray_ok();
+    }
+    const moray_status status = reduce(ns);
+    if (status.code == MORAY_NUMERIC) // what is left is not finite
+        return moray_ok();
+    *fits = ns->factored = !moray_failed(status);
+    return status;
+}
+
+moray_ldl_inertia moray_null_space_inertia(const null_space *ns)
+{
+    if (!ns->factored)
+        return (moray_ldl_inertia){0};
+    moray_ldl_inertia inertia = ns->freedom > 0 ? moray_ldl_inertia_of(ns->reduced) : (moray_ldl_inertia){0};
+    inertia.positive += ns->m;
+    inertia.negative += ns->m;
+    return inertia;
+}
+
+// ---- Solutions -----------------------------------------------------------------------------------------------------
+
+// What constraints ask of the basis, what is left to the others in the null space, and the multipliers that balance it:
+// step <- the solution for `residual`, which is overwritten.
+static moray_status solve_once(null_space *ns)
+{
+    const int f = ns->freedom, v = ns->variables, m = ns->m;
+    double *p = ns->step, *s = ns->step + v, *left = ns->residual;
+    memcpy(s, left + v, (size_t)m * sizeof *s);
+    MORAY_TRY(moray_sparse_lu_solve(ns->basis.lu, 1, s));
+    for (int i = 0; i < v; i++)
+        p[i] = ns->basis.place[i] >= 0 ? -s[ns->basis.place[i]] : 0;
+    multiply_hessian(ns, 1, p, left); // with its sign turned, so that it comes off
+    for (int c = 0; c < f; c++) {
+        ns->r[c] = 0;
+        for (int i = 0; i < v; i++)
+            ns->r[c] += ns->Z[i * f + c] * left[i];
+    }
+    if (f > 0)
+        MORAY_TRY(moray_ldl_solve(ns->reduced, 1, ns->r));
+    for (int i = 0; i < v; i++) {
+        p[i] = -p[i];
+        for (int c = 0; c < f; c++) {
+            p[i] += ns->Z[i * f + c] * ns->r[c];
+            left[i] -= ns->HZ[i * f + c] * ns->r[c];
+        }
+    }
+    for (int i = 0; i < v; i++)
+        if (ns->basis.place[i] >= 0)
+            s[ns->basis.place[i]] = left[i];
+    return moray_sparse_lu_solve_transposed(ns->basis.lu, 1, s);
+}
+
+// residual <- rhs - matrix x. Returns its largest entry, each over what its row makes of the largest of the solution.
+static double find_residual(null_space *ns)
+{
+    const int *row = ns->pattern.row, *col = ns->pattern.col;
+    double *r = ns->residual, worst = 0, size = 0;
+    const double *x = ns->x;
+    memcpy(r, ns->rhs, (size_t)ns->n * sizeof *r);
+    for (int k = 0; k < ns->pattern.nnz; k++) {
+        const int i = row[k], j = col[k];
+        const double value = ns->values[k];
+        r[i] -= value * x[j];
+        r[j] -= (i == j ? 0 : value) * x[i];
+    }
+    for (int i = 0; i < ns->n; i++)
+        size = larger(size, fabs(x[i]));
+    for (int i = 0; i < ns->n; i++) {
+        const double least = ns->largest[i] * size + fabs(ns->rhs[i]), here = fabs(r[i]);
+        const double share = least > 0 ? here / least : here;
+        worst = share <= worst ? worst : share; // keeps a NaN
+    }
+    return worst;
+}
+
+moray_status moray_null_space_solve(null_space *ns, double *b, double *error)
+{
+    if (!ns->factored)
+        return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", ns->n);
+    double before = INFINITY;
+    memcpy(ns->rhs, b, (size_t)ns->n * sizeof *b);
+    memcpy(ns->residual, b, (size_t)ns->n * sizeof *b);
+    memset(ns->x, 0, (size_t)ns->n * sizeof *ns->x);
+    *error = INFINITY;
+    for (int k = 0; k <= refinements && *error > accurate && (k < 2 || *error < before / 2); k++) {
+        MORAY_TRY(solve_once(ns));
+        for (int i = 0; i < ns->n; i++)
+            ns->x[i] += ns->step[i];
+        before = *error;
+        *error = find_residual(ns);
+    }
+    memcpy(b, ns->x, (size_t)ns->n * sizeof *b);
+    return moray_ok();
+}
