@@ -120,6 +120,18 @@ static void print(const void *found, const moray_report *report)
     printf("%s", report->text);
 }
 
+static moray_status draw(const void *found, moray_output *output)
+{
+    const ladder *run = found;
+    const moray_ladder_row *ladders[GAITS];
+    const char *names[GAITS];
+    for (int g = 1; g < run->n; g++) {
+        ladders[g - 1] = of_gait(run, g);
+        names[g - 1] = run->name[g];
+    }
+    return moray_ladder_draw(output, ladders, names, NULL, run->n - 1);
+}
+
 // Of the paper's gait what it makes, of the others what they gain.
 static moray_status report(ladder *run)
 {
@@ -142,10 +154,15 @@ static moray_status report(ladder *run)
     tables[1].rows = gains;
     tables[1].n_rows = moray_ladder_rows(ladders, run->n - 1, gains);
     say(run, text);
-    const moray_report page = {.title = "ladder", .text = text, .tables = tables, .n_tables = run->n > 1 ? 2 : 1};
+    const moray_report page = {.title = "ladder: gaits on the ladder of models",
+                               .text = text,
+                               .tables = tables,
+                               .n_tables = run->n > 1 ? 2 : 1,
+                               .words = moray_ladder_words()};
     return moray_app_show(
         &run->common,
-        &(moray_results){.name = "ladder", .found = run, .summary = summarise, .print = print, .report = &page});
+        &(moray_results){
+            .name = "ladder", .found = run, .summary = summarise, .print = print, .draw = draw, .report = &page});
 }
 
 int main(int argc, char **argv)

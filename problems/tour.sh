@@ -14,6 +14,11 @@ while [ $# -gt 0 ]; do
     --out=*) out=${1#--out=}; shift ;;
     --brief) brief=yes; shift ;;
     --quiet) shift ;;
+    --help)
+        echo "Usage: sh problems/run.sh tour [--out DIR] [--brief]"
+        sed -n '3,/^root=/s/^# //p' "$0"
+        exit 0
+        ;;
     *) echo "tour: unknown option $1; problems/tour.sh [--out DIR] [--brief]" >&2; exit 2 ;;
     esac
 done

@@ -146,8 +146,10 @@ moray_status export_report(const export_found *found)
             job->name);
     else
         moray_text_add(text, sizeof text, "Nothing is written: --out DIR says where the files are to go.");
-    const moray_report report = {
-        .title = "export", .text = text, .tables = tables, .n_tables = found->law == EXPORT_NONE ? 1 : 2};
+    const moray_report report = {.title = "export: a controller to take home",
+                                 .text = text,
+                                 .tables = tables,
+                                 .n_tables = found->law == EXPORT_NONE ? 1 : 2};
     return moray_app_show(&job->common, &(moray_results){.name = "export",
                                                          .found = found,
                                                          .summary = summarise,

@@ -208,7 +208,7 @@ moray_status identify_report(const identify *run)
     fill_held(run, s);
     fill_next(run, s);
     describe(run, s);
-    const moray_report report = {.title = "identify",
+    const moray_report report = {.title = "identify: a robot from logs of its swimming",
                                  .text = s->text,
                                  .judged = s->judged,
                                  .judgement = identify_certified(run) ? MORAY_JUDGED_PASS : MORAY_JUDGED_FAIL,

@@ -80,7 +80,7 @@ moray_status paper_report(const paper *p, const paper_chapter *chapters, int n)
 {
     const moray_snake_options *snake = &p->settings->snake;
     moray_section section[PAPER_STUDIES];
-    char title[PAPER_STUDIES][80], failed[PAPER_STUDIES][400], text[200], judged[60];
+    char title[PAPER_STUDIES][200], failed[PAPER_STUDIES][400], text[200], judged[60];
     moray_swim_scene scene = {0};
     for (int i = 0; i < n; i++) {
         const paper_chapter *chapter = &chapters[i];

@@ -227,7 +227,7 @@ moray_status simulate_report(const simulate_results *results)
             &results->track, results->swimmer));
     scene.scene.title = "The robot swimming";
     const moray_report report = {
-        .title = "simulate", .text = text, .scene = &scene.scene, .tables = t.table, .n_tables = 2};
+        .title = "simulate: a gait swum", .text = text, .scene = &scene.scene, .tables = t.table, .n_tables = 2};
     const moray_status status = moray_app_show(&run->common, &(moray_results){.name = "simulate",
                                                                               .found = results,
                                                                               .summary = summarise,

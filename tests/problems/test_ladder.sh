@@ -30,6 +30,9 @@ check "in words" grep -q '^20, 51.3 deg: wins on all 15, from +0.2[0-9] to +4.7[
 run --json --set gait_6=26,43 --jobs 1 --out results
 check "a gait of one's own, as JSON and files" eval '[ $code -eq 0 ] && cmp -s out results/summary.json && [ -s results/report.html ]'
 check "seven ladders of 15 rungs" [ "$(grep -c '"model":' out)" -eq $((7 * 15 + 1)) ]
+check "the figure has the six gaits and every rung" eval '[ "$(grep -cE ">[0-9.]+, [0-9.]+ deg<" results/ladder.svg)" -eq 6 ] &&
+    [ "$(grep -cE ">(c_n|c_t|mu_n|lambda)[+-]20<" results/ladder.svg)" -eq 8 ]'
+check "the page says what rungs stand for" grep -q "<dt>c_n+20, c_n-20</dt>" results/report.html
 refuse 'gait_1 = 200,40' --set gait_1=200,40
 lost
 tap_done

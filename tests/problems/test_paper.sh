@@ -86,6 +86,7 @@ check "the summary says why" eval 'balanced printed/summary.json &&
     [ "$(grep -c "\"done\":.false" printed/summary.json)" -eq 1 ] &&
     [ "$(grep -c "\"done\":.true" printed/summary.json)" -eq 2 ] &&
     grep -q "\"why\":.\"not steady after 200 periods" printed/summary.json'
+check "headings are whole" eval '! grep -E "<h2[^>]*>[^<]*\([^)<]*</h2>" printed/report.html'
 check "so does the report" grep -q "Not done: not steady" printed/report.html
 check "what was asked for is recorded" grep -q '"reading":.*"printed"' printed/summary.json
 

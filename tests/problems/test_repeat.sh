@@ -74,9 +74,20 @@ cp simulate.one/run.ini other.ini
 program=$programs/max_speed
 run --config other.ini
 check "a run of another program is refused: $(cat err)" eval '[ $code -eq 2 ] && grep -q "are settings of that program" err'
-program=$programs/max_speed
-run --model control --set power_W=1e-9 --quiet --out failed
-check "a run that fails: exit $code: $(head -1 err)" [ $code -eq 1 ]
-check "leaves its reason and its settings" eval '[ "$(ls -A failed | tr "\n" " ")" = "run.ini summary.json " ] &&
-    grep -q "\"status\":.*not solved" failed/summary.json && grep -q "\"reason\":" failed/summary.json'
+# fails NAME ARGUMENTS: a run that ends without a result.
+fails() {
+    program=$programs/$1
+    shift
+    rm -rf failed
+    run "$@" --quiet --out failed
+    check "$(basename "$program") fails: exit $code: $(head -1 err)" [ $code -eq 1 ]
+    check "and leaves its reason and its settings" eval '[ "$(ls -A failed | tr "\n" " ")" = "run.ini summary.json " ] &&
+        grep -q "\"status\":.*not solved" failed/summary.json && grep -q "\"reason\":" failed/summary.json'
+}
+fails max_speed --model control --set power_W=1e-9
+for name in min_energy search_gait pareto free_gait sensitivity; do
+    fails $name --model control --links 6 --current=-0.9,0
+done
+fails path_following --current=-0.9,0
+fails sea_trials --time 1
 tap_done

@@ -18,8 +18,10 @@ sys.exit(any(cost[of] > cost[less] * (1 + 1e-6) for less, of in pairs))
 END
 check "every trial is in the file" eval '[ "$(grep -vc "^#" done.txt)" -eq 22 ]'
 head -9 done.txt >half.txt && printf '2 3 0.1' >>half.txt
-run --json $few --set results=half.txt
+run --json $few --set results=half.txt --out drawn
 check "a run that was cut off goes on to the same" eval '[ $code -eq 0 ] && cmp -s out first'
+check "its page draws every law and tells the names" eval '[ "$(grep -c ">receding, \|>PID<\|>robust plan<" drawn/trials.svg)" -eq 5 ] &&
+    grep -q "<dt>receding</dt>" drawn/report.html'
 run --json $few --set results=half.txt --set spread=0.1
 check "trials of other settings are told apart: $(cat err)" eval '[ $code -eq 2 ] && one_line && grep -q "other settings" err'
 if thorough; then

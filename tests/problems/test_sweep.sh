@@ -26,7 +26,7 @@ run simulate --grid links=4,7 --file a.nc
 check "another sweep may not have the file: $(cat err)" eval '[ $code -eq 2 ] && grep -q "another sweep" err'
 
 run simulate --grid links=4,6 --grid current_x=-0.1:0.1:3 --file cold.nc --quiet --out drawn --show robot.links
-check "a figure of a number: $(cat err)" eval '[ $code -eq 0 ] && [ -s drawn/robot_links_1.svg ] && [ -s drawn/report.html ]'
+check "a figure of a number: $(cat err)" eval '[ $code -eq 0 ] && [ -s drawn/robot_links_1.svg ] && grep -q "<h1>sweep: simulate at 6 points</h1>" drawn/report.html'
 check "the numbers of every point: $(sed -n 2p drawn/points.csv)" [ "$(sed -n 2p drawn/points.csv)" = "4,-0.10000000000000001,4" ]
 run simulate --grid current_speed=0.1 --grid current_deg=-90,0,90,180 --file turned.nc --page turned.html --quiet \
     --keep 'simulated.*' --keep 'current_m_s.*' --show simulated.speed_m_s --show 'current_m_s.*' --mirror current_deg --quantiles

@@ -82,6 +82,12 @@ MORAY_API void moray_ladder_to_json(moray_json *json, const moray_ladder_row row
 // What the names of the rungs stand for, for a report; up to one without a name.
 MORAY_API const moray_meaning *moray_ladder_words(void);
 
+// ladder.svg: gains of n gaits, at most MORAY_LADDER_DRAWN, rung by rung; nothing where there are none. `colours`: of
+// each, or NULL. Error: those of moray_output_figure.
+#define MORAY_LADDER_DRAWN 8
+MORAY_API moray_status moray_ladder_draw(moray_output *output, const moray_ladder_row *const *ladders,
+                                         const char *const *names, const moray_colour *colours, int n);
+
 // Rows of a table of gains, one gait a column; returns how many.
 MORAY_API int moray_ladder_rows(const moray_ladder_row *const *ladders, int n, moray_table_row rows[MORAY_RUNGS]);
 

@@ -71,36 +71,15 @@ static moray_status draw_ladder(const gait_job *job, moray_output *output)
 {
     const stage *at[GAIT_STAGES];
     const int n = gait_job_stages(job, at);
-    double gain[GAIT_STAGES][MORAY_RUNGS], row[MORAY_RUNGS];
-    const char *names[MORAY_RUNGS];
-    moray_curve curves[GAIT_STAGES];
-    bool any = false;
-    for (int r = 0; r < MORAY_RUNGS; r++) {
-        row[r] = r;
-        names[r] = n > 0 ? at[0]->ladder[r].model : NULL;
-    }
+    const moray_ladder_row *ladders[GAIT_STAGES];
+    const char *names[GAIT_STAGES];
+    moray_colour colours[GAIT_STAGES];
     for (int k = 0; k < n; k++) {
-        for (int r = 0; r < MORAY_RUNGS; r++) {
-            gain[k][r] = at[k]->ladder[r].gain_percent;
-            any = any || isfinite(gain[k][r]);
-        }
-        curves[k] = (moray_curve){.label = gait_job_kind(job, at[k]),
-                                  .x = gain[k],
-                                  .y = row,
-                                  .n = MORAY_RUNGS,
-                                  .style = MORAY_CURVE_POINTS,
-                                  .colour = gait_job_colour(job, at[k])};
+        ladders[k] = at[k]->ladder;
+        names[k] = gait_job_kind(job, at[k]);
+        colours[k] = gait_job_colour(job, at[k]);
     }
-    if (!any)
-        return moray_ok();
-    return moray_output_figure(output, &(moray_figure){.name = "ladder",
-                                                       .title = "Gain on the ladder of models",
-                                                       .x_label = "gain in speed at the power of the paper's gait [%]",
-                                                       .y_label = "",
-                                                       .y_names = names,
-                                                       .n_y_names = MORAY_RUNGS,
-                                                       .curves = curves,
-                                                       .n_curves = n});
+    return moray_ladder_draw(output, ladders, names, colours, n);
 }
 
 static moray_status draw_period(gait_period *v)

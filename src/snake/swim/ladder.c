@@ -53,25 +53,6 @@ int moray_rung_named(const char *name)
     return -1;
 }
 
-const moray_meaning *moray_ladder_words(void)
-{
-    static const moray_meaning words[] = {
-        {"control opt.", "the gait optimised on the control-oriented model"},
-        {"first-pr. opt.", "the gait optimised on the first-principles model"},
-        {"ladder opt.", "the gait optimised for its worst gain over several models of the ladder"},
-        {"paper", "the paper's first-principles model"},
-        {"split2, split3, split5", "the same with every link cut into 2, 3 or 5 rigid pieces"},
-        {"strip", "drag and added mass distributed along the link, so that its rotation meets them too"},
-        {"quadratic", "drag by the square of the speed"},
-        {"consistent", "strips, both drags, and added mass in a form that does not depend on who looks"},
-        {"c_n+20, c_n-20", "the coefficient of drag across the link 20 % up, down"},
-        {"c_t+20, c_t-20", "that of drag along the link"},
-        {"mu_n+20, mu_n-20", "added mass across the link"},
-        {"lambda+20, lambda-20", "the torques of the water on a rotating link"},
-        {NULL, NULL}};
-    return words;
-}
-
 static int pieces(const moray_hydrodynamics *hydro)
 {
     return hydro->pieces > 1 ? hydro->pieces : 1;

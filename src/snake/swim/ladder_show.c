@@ -93,3 +93,57 @@ int moray_ladder_rows(const moray_ladder_row *const *ladders, int n, moray_table
     }
     return MORAY_RUNGS;
 }
+
+moray_status moray_ladder_draw(moray_output *output, const moray_ladder_row *const *ladders, const char *const *names,
+                               const moray_colour *colours, int n)
+{
+    double gain[MORAY_LADDER_DRAWN][MORAY_RUNGS], row[MORAY_RUNGS];
+    const char *rungs[MORAY_RUNGS];
+    moray_curve curves[MORAY_LADDER_DRAWN];
+    bool any = false;
+    if (n > MORAY_LADDER_DRAWN)
+        return moray_error(MORAY_INPUT, "a figure of %d gaits on the ladder: at most %d", n, MORAY_LADDER_DRAWN);
+    for (int k = 0; k < n; k++) {
+        for (int r = 0; r < MORAY_RUNGS; r++) {
+            row[r] = r;
+            rungs[r] = ladders[0][r].model;
+            gain[k][r] = ladders[k][r].gain_percent;
+            any = any || isfinite(gain[k][r]);
+        }
+        curves[k] = (moray_curve){.label = names[k],
+                                  .x = gain[k],
+                                  .y = row,
+                                  .n = MORAY_RUNGS,
+                                  .style = MORAY_CURVE_POINTS,
+                                  .colour = colours ? colours[k] : MORAY_COLOUR_BY_NUMBER};
+    }
+    if (!any)
+        return moray_ok();
+    return moray_output_figure(output, &(moray_figure){.name = "ladder",
+                                                       .title = "Gain on the ladder of models",
+                                                       .x_label = "gain in speed at the power of the paper's gait [%]",
+                                                       .y_label = "",
+                                                       .y_names = rungs,
+                                                       .n_y_names = MORAY_RUNGS,
+                                                       .curves = curves,
+                                                       .n_curves = n});
+}
+
+const moray_meaning *moray_ladder_words(void)
+{
+    static const moray_meaning words[] = {
+        {"control opt.", "the gait optimised on the control-oriented model"},
+        {"first-pr. opt.", "the gait optimised on the first-principles model"},
+        {"ladder opt.", "the gait optimised for its worst gain over several models of the ladder"},
+        {"paper", "the paper's first-principles model"},
+        {"split2, split3, split5", "the same with every link cut into 2, 3 or 5 rigid pieces"},
+        {"strip", "drag and added mass distributed along the link, so that its rotation meets them too"},
+        {"quadratic", "drag by the square of the speed"},
+        {"consistent", "strips, both drags, and added mass in a form that does not depend on who looks"},
+        {"c_n+20, c_n-20", "the coefficient of drag across the link 20 % up, down"},
+        {"c_t+20, c_t-20", "that of drag along the link"},
+        {"mu_n+20, mu_n-20", "added mass across the link"},
+        {"lambda+20, lambda-20", "the torques of the water on a rotating link"},
+        {NULL, NULL}};
+    return words;
+}
