@@ -10,6 +10,7 @@ static const double least_size = 1e-15; // that is derived from others
 enum { trial_nodes = 8 };               // at which integrands are looked at, about
 enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
+static const double solved = 1e-6;      // part of a size that may be what a solver leaves
 static const double noise = 1e-9;       // part of a size that may be rounding
 static const double rest = 1e-6;        // of what an integral may come to, its guess where there is nothing to do
 static const double small = 1e-8;       // a guess as small as this may be rounding,
@@ -18,6 +19,11 @@ static const double digits = 1e-13;     // an end that is asked for only where i
 bool moray_is_rounding(double value, double size)
 {
     return !(fabs(value) > noise * size);
+}
+
+bool moray_is_far_below(double value, double size)
+{
+    return value * wide < size && value > solved * size;
 }
 
 double moray_known_size(moray_bounds bounds, double guess)
@@ -32,17 +38,20 @@ static double fixed_to(moray_bounds bounds)
     return moray_bounds_are_fixed(bounds) ? fabs(bounds.lower) : 0;
 }
 
-// Of a state: that of its box, unless it is fixed at both ends to far less. What an end is fixed to is no rounding.
-static double size_of_state(const struct phase *phase, int r, double guess)
+// Of a state: that of its box, unless it is fixed at both ends to far less, or was found to be. What an end is fixed to
+// is no rounding.
+static double size_of_state(const struct phase *phase, int r, double guess, bool found)
 {
     const bool asked = fmax(fixed_to(phase->x0[r]), fixed_to(phase->xf[r])) > digits;
     const double alone = asked && guess < MORAY_INFINITY ? guess : moray_known_size(moray_free(), guess);
     const double known = moray_known_size(phase->x[r], guess);
     const bool fixed = moray_bounds_are_fixed(phase->x0[r]) && moray_bounds_are_fixed(phase->xf[r]);
-    return known == 0 || (fixed && guess * wide < known) ? alone : known;
+    return known == 0 || (fixed && guess * wide < known) ? alone
+           : found && moray_is_far_below(guess, known)   ? guess
+                                                         : known;
 }
 
-static double largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
+double moray_largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
 {
     double largest = 0;
     for (int n = 0; n < layout->nodes; n++)
@@ -171,19 +180,19 @@ static double largest_control(const struct phase_layout *layout, const double *x
 }
 
 // Those that bounds and the guess tell; 0: they do not.
-static void know_sizes(const struct transcription *t, int p, const double *x, double *size)
+static void know_sizes(const struct transcription *t, int p, const double *x, bool found, double *size)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     for (int r = 0; r < phase->nx; r++)
-        size[r] = size_of_state(phase, r, largest_in_phase(layout, x, r));
+        size[r] = size_of_state(phase, r, moray_largest_in_phase(layout, x, r), found);
     for (int r = phase->nx; r < phase->nx + phase->nu; r++)
         size[r] = moray_known_size(phase->u[r - phase->nx], largest_control(layout, x, r));
 }
 
-void moray_size_inputs(const struct transcription *t, int p, const double *x, double *size)
+void moray_size_inputs(const struct transcription *t, int p, const double *x, bool found, double *size)
 {
-    know_sizes(t, p, x, size);
+    know_sizes(t, p, x, found, size);
     derive_sizes(t, p, size);
 }
 
@@ -205,7 +214,7 @@ static double pace(const struct transcription *t, int p, const double *size, int
 static void size_by_causes(const struct transcription *t, int p, const double *x, double *size)
 {
     bool found = true;
-    know_sizes(t, p, x, size);
+    know_sizes(t, p, x, false, size);
     while (found) {
         found = false;
         for (int r = 0; r < t->ocp->phase[p].nx; r++)

@@ -9,8 +9,14 @@ bool moray_is_rounding(double value, double size); // whether it may be, of what
 // Of a quantity: that of its bounds where it has both, else of its guess; 0 where that says nothing.
 double moray_known_size(moray_bounds bounds, double guess);
 
-// size[nx + nu] of the states and controls of phase p at the guess x, in whose caches the slopes are.
-void moray_size_inputs(const struct transcription *t, int p, const double *x, double *size);
+// Whether a quantity is far smaller than that, yet not what a solver leaves of nothing.
+bool moray_is_far_below(double value, double size);
+
+double moray_largest_in_phase(const struct phase_layout *layout, const double *x, int state);
+
+// size[nx + nu] of the states and controls of phase p at the guess x, in whose caches the slopes are; of states that
+// turned out far smaller than their boxes, where x was found, what they are there.
+void moray_size_inputs(const struct transcription *t, int p, const double *x, bool found, double *size);
 
 // What integral m may come to, by its integrand along the guess where its bounds and its guess tell nothing.
 // work[n_in + n_out].

@@ -32,7 +32,7 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
     const struct phase_layout *layout = &t->layout.phase[p];
     double t0, tf;
     moray_layout_span(&t->layout, t->ocp, x, p, &t0, &tf);
-    moray_size_inputs(t, p, x, size);
+    moray_size_inputs(t, p, x, found, size);
     for (int n = 0; n < layout->nodes; n++)
         for (int r = 0; r < phase->nx + (layout->node[n].collocated ? phase->nu : 0); r++)
             x_scale[layout->node[n].x + r] = 1 / size[r];

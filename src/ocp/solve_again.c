@@ -11,6 +11,7 @@
 #include "ocp/transcription.h"
 
 static const double out_of_scale = 1e-3; // of what a duration was scaled by
+static const double loose = 1e-6;        // of a state: what defects in it may be
 static const double far_inside = 0.3;    // of the gap that the certificate allows
 static const double closer = 0.1;        // of the tolerance before
 
@@ -45,8 +46,28 @@ static bool is_small(double scaled)
     return fabs(scaled) < out_of_scale && !moray_is_rounding(scaled, 1);
 }
 
-// Whether a duration or an integral that was found is far smaller than what it was scaled by: a guess of one unit of
-// time, where nothing better is known; bounds of controls that are far from what is used of them.
+static double largest_defect(const moray_solution *solution, int p, int state)
+{
+    const struct phase_layout *layout = &solution->transcription->layout.phase[p];
+    const int nx = solution->transcription->ocp->phase[p].nx;
+    double largest = 0;
+    for (int k = 0; k < layout->mesh.intervals; k++)
+        for (int i = 0; i < layout->interval[k].scheme->points - 1; i++)
+            largest = fmax(largest, fabs(solution->iterate.g[layout->interval[k].defect + i * nx + state]));
+    return largest;
+}
+
+// Whether a state is far smaller than what it was scaled by, and its dynamics hold to that alone.
+static bool is_loose(const moray_solution *solution, int p, int state)
+{
+    const struct phase_layout *layout = &solution->transcription->layout.phase[p];
+    const double largest = moray_largest_in_phase(layout, solution->iterate.x, state);
+    return moray_is_far_below(largest, 1 / solution->transcription->nlp.x_scale[layout->node[0].x + state]) &&
+           largest_defect(solution, p, state) > loose * largest;
+}
+
+// Whether a duration, an integral or a state that was found is far smaller than what it was scaled by: a guess of one
+// unit of time, where nothing better is known; bounds that are far from what is used of them.
 static bool is_out_of_scale(const moray_solution *solution)
 {
     const struct transcription *t = solution->transcription;
@@ -58,6 +79,9 @@ static bool is_out_of_scale(const moray_solution *solution)
             return true;
         for (int m = layout->q; m < layout->q + t->ocp->phase[p].nq; m++)
             if (is_small(solution->iterate.x[m] * t->nlp.x_scale[m]))
+                return true;
+        for (int r = 0; r < t->ocp->phase[p].nx; r++)
+            if (is_loose(solution, p, r))
                 return true;
     }
     return false;

@@ -103,7 +103,7 @@ static moray_status question_witness(struct verdict *v, const struct witness *w,
     MORAY_TRY(moray_measure_curvature(w, &v->c->curvature, NULL));
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
         MORAY_TRY(question_hamiltonian(v, w, p));
-    MORAY_TRY(moray_difference_solution(v->solution, &v->c->directions));
+    MORAY_TRY(moray_difference_solution(w, &v->c->directions));
     MORAY_TRY(moray_difference_bends(w, &v->c->directions, v->second, sizeof v->second));
     for (int p = 0; p < v->solution->transcription->ocp->phases; p++)
         MORAY_TRY(examine_phase(v, w, p, integrator));

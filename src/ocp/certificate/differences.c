@@ -20,7 +20,7 @@ static const double step_part = 0.05; // of a variable's size: the largest step 
 struct ray {
     const moray_solution *solution;
     const moray_nlp *nlp;
-    double *direction, *x, *gradient, *jac, *hess; // [n], [n], [n], [nnz], [nnz]
+    double *size, *direction, *x, *gradient, *jac, *hess; // [n], [n], [n], [n], [nnz], [nnz]
 };
 
 static void move_to(struct ray *ray, double step)
@@ -37,11 +37,6 @@ static double g_scale(const struct ray *ray, int i)
 static double f_scale(const struct ray *ray)
 {
     return ray->nlp->f_scale > 0 ? ray->nlp->f_scale : 1;
-}
-
-static double x_size(const struct ray *ray, int j)
-{
-    return ray->nlp->x_scale ? 1 / ray->nlp->x_scale[j] : 1 + fabs(ray->solution->iterate.x[j]);
 }
 
 static void fill_nan(double *out, int n)
@@ -93,7 +88,7 @@ static void lagrangian_at(void *self, const double *in, double *out)
     for (int k = 0; k < nlp->nnz_jac; k++)
         out[nlp->jac_col[k]] += ray->solution->iterate.lambda[nlp->jac_row[k]] * ray->jac[k];
     for (int j = 0; j < nlp->n; j++)
-        out[j] *= f_scale(ray) * x_size(ray, j);
+        out[j] *= f_scale(ray) * ray->size[j];
 }
 
 static void lagrangian_slopes_at(void *self, const double *in, double *values)
@@ -109,9 +104,9 @@ static void lagrangian_slopes_at(void *self, const double *in, double *values)
     for (int k = 0; k < nlp->nnz_hess; k++) {
         const int r = nlp->hess_row[k], c = nlp->hess_col[k];
         const double value = f_scale(ray) * ray->hess[k];
-        values[r] += value * x_size(ray, r) * ray->direction[c];
+        values[r] += value * ray->size[r] * ray->direction[c];
         if (r != c)
-            values[c] += value * x_size(ray, c) * ray->direction[r];
+            values[c] += value * ray->size[c] * ray->direction[r];
     }
 }
 
@@ -123,7 +118,7 @@ static void set_direction(struct ray *ray, int which)
     const moray_nlp *nlp = ray->nlp;
     for (int j = 0; j < nlp->n; j++) {
         const double entry = moray_dense_entry(j, MORAY_DENSE_COLUMNS + which);
-        const double step = step_part * fabs(entry) * x_size(ray, j), x = ray->solution->iterate.x[j];
+        const double step = step_part * fabs(entry) * ray->size[j], x = ray->solution->iterate.x[j];
         const bool low = x - 0.02 * step<nlp->x_lower[j], high = x + 0.02 * step> nlp->x_upper[j];
         const double inwards = which > 0 || (low && high) ? 0 : low ? 1 : -1;
         ray->direction[j] = step * (low || high ? inwards : copysign(1, entry));
@@ -186,20 +181,25 @@ static moray_status check_all(struct ray *ray, double *worst)
     return status;
 }
 
-moray_status moray_difference_solution(const moray_solution *solution, double *worst)
+moray_status moray_difference_solution(const struct witness *w, double *worst)
 {
+    const moray_solution *solution = w->solution;
     struct transcription *t = solution->transcription;
     const moray_nlp *nlp = &t->nlp;
     const moray_status failure = t->failure;
     const int failures = t->failures;
     const size_t n = (size_t)nlp->n;
-    double *block = calloc(3 * n + (size_t)(nlp->nnz_jac + nlp->nnz_hess) + 1, sizeof *block);
+    double *block = calloc(4 * n + (size_t)(nlp->nnz_jac + nlp->nnz_hess) + 1, sizeof *block);
     *worst = 0;
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to check %d variables", nlp->n);
     struct ray ray = {.solution = solution, .nlp = nlp, .direction = block, .x = block + n, .gradient = block + 2 * n};
-    ray.jac = block + 3 * n;
+    ray.size = block + 3 * n;
+    ray.jac = block + 4 * n;
     ray.hess = ray.jac + nlp->nnz_jac;
+    moray_witness_columns(w, ray.size);
+    for (int j = 0; j < nlp->n; j++) // a box may be wide beside what the trajectory does of it
+        ray.size[j] = nlp->x_scale ? fmin(ray.size[j], 1 / nlp->x_scale[j]) : ray.size[j];
     const moray_status status = check_all(&ray, worst);
     free(block);
     moray_transcription_jacobians(t, solution->iterate.x); // accessors read the caches

@@ -419,7 +419,10 @@ static moray_certificate sag(bool right_hessian, double *along_all)
     CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = total}), "a chord");
     CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
     const moray_certificate c = certify(solution);
-    CHECK_OK(moray_difference_solution(solution, along_all), "directions through all nodes");
+    struct witness w;
+    CHECK_OK(moray_witness_of_sizes(&w, solution), "sizes");
+    CHECK_OK(moray_difference_solution(&w, along_all), "directions through all nodes");
+    moray_witness_free(&w);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
     return c;
