@@ -9,7 +9,7 @@
 // with --json, on standard output; with --out a report. Error: MORAY_IO, MORAY_MEMORY, MORAY_NOT_SOLVED.
 moray_status sweep_measure(sweep_arguments *a, int argc, char **argv);
 
-enum { REAL_POINTS = 8, SIZES = 3, NUMBERS = 20, ANSWERS = 1000 };
+enum { REAL_POINTS = 16, SIZES = 3, NUMBERS = 20, ANSWERS = 1000 };
 
 // One sweep in a process of its own.
 typedef struct cost {

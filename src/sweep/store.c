@@ -172,7 +172,9 @@ static double objective_of(const struct store *store, const cJSON *found)
     return w.found;
 }
 
-// A solution is better than none, and of two the one with the lower objective.
+static const double rounding = 1e-6; // of objectives, what two solves of the same may differ by
+
+// A solution is better than none, and of two the one whose objective is lower by more than solves of the same differ.
 static bool is_better(const struct store *store, const struct record *record, double objective)
 {
     const long at = record->task.point;
@@ -180,7 +182,9 @@ static bool is_better(const struct store *store, const struct record *record, do
         return true;
     if (record->code != MORAY_OK)
         return false;
-    return store->state[at] != POINT_SOLVED || objective < store->objective[at];
+    const double before = store->objective[at];
+    return store->state[at] != POINT_SOLVED || objective < before - rounding * fabs(before) ||
+           (!isfinite(before) && isfinite(objective));
 }
 
 moray_status moray_store_add(struct store *store, const struct record *record, bool *better)

@@ -194,6 +194,24 @@ static void test_branches(void)
     CHECK(all_same("two.nc", "two_by_one.nc"), "the same, whoever solves it");
 }
 
+// A kink, across which lines promise what is not there: the solve from there differs by rounding.
+static moray_status solve_kink(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    (void)self;
+    const double again = atof(strrchr(point->solution, '.') + 1); // round
+    fprintf(summary, "{\"solver\": {\"objective\": %.17g}}\n", (1 + fabs(point->value[0])) * (1 - 1e-12 * again));
+    return moray_ok();
+}
+
+static void test_rounding(void)
+{
+    moray_sweep_spec spec = spec_of("kink.nc", &no_time);
+    moray_sweep_result result;
+    spec.solve = solve_kink;
+    CHECK_OK(moray_sweep(&spec, &result), "sweep over a kink");
+    CHECK(result.solved == points && result.improved == 0, "%ld points are bettered by rounding", result.improved);
+}
+
 // No start solves x = 1, and x = 4 only its own: every attempt is noted, by the point and what it began with.
 static moray_status solve_some(const moray_sweep_point *point, FILE *summary, void *self)
 {
@@ -509,6 +527,7 @@ int main(void)
     test_values();
     test_closed_form();
     test_branches();
+    test_rounding();
     test_attempts();
     test_misbehaviour();
     test_going_on();
