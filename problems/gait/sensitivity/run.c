@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "moray/parallel.h"
 #include "sensitivity.h"
 
 // ---- What moves ----------------------------------------------------------------------------------------------------
@@ -172,8 +173,9 @@ static void note(char list[SENSITIVITY_LIST], const char *item)
     snprintf(list + used, SENSITIVITY_LIST - used, "%s%s", used > 0 ? "; " : "", item);
 }
 
+// *reached <- whether anything depends on the parameter.
 static moray_status measure(sensitivity *run, moray_sensitivity *slopes, const struct displaced *at, bool limit,
-                            sensitivity_row *row)
+                            sensitivity_row *row, bool *reached)
 {
     const stage *best = last_stage(&run->job);
     const moray_ocp *ocp[SIDES];
@@ -185,43 +187,69 @@ static moray_status measure(sensitivity *run, moray_sensitivity *slopes, const s
     row->up = moray_sensitivity_change(slopes, 1);
     row->down = moray_sensitivity_change(slopes, -1);
     row->unsteady = row->up.step < 2 * row->step || row->down.step > -2 * row->step;
-    if (limit && nothing_moves(run, row)) {
-        note(run->unreached, row->name);
+    *reached = !limit || !nothing_moves(run, row);
+    if (!*reached)
         return moray_ok();
-    }
     MORAY_TRY(fill_again(run, at, row));
-    MORAY_TRY(fill_swum(run, at, &slope, row));
-    run->rows++;
+    return fill_swum(run, at, &slope, row);
+}
+
+// Parameters that apply, dealt to processes.
+struct deal {
+    sensitivity *run;
+    moray_sensitivity *slopes;
+    const sensitivity_parameter *parameter[SENSITIVITY_ROWS];
+    int n;
+};
+
+struct outcome {
+    sensitivity_row row;
+    bool reached;
+    moray_status status;
+};
+
+static void by_parameter(int task, void *result, void *self)
+{
+    const double share = 1e-3; // of the scale
+    const struct deal *deal = self;
+    sensitivity *run = deal->run;
+    const sensitivity_parameter *parameter = deal->parameter[task];
+    struct outcome *outcome = result;
+    struct displaced at = {0};
+    *outcome = (struct outcome){0};
+    sensitivity_row *row = &outcome->row;
+    sensitivity_parameter_describe(parameter, &run->job, last_stage(&run->job)->prediction.course_speed, row);
+    row->step = share * row->scale;
+    moray_ticker_count(&run->job.ticker, task, deal->n, "%s: by %s", run->job.name, row->name);
+    outcome->status = displace(run, parameter, row, &at);
+    if (!moray_failed(outcome->status))
+        outcome->status =
+            measure(run, deal->slopes, &at, sensitivity_parameter_is_limit(parameter), row, &outcome->reached);
+    for (int k = 0; k < SIDES; k++)
+        moray_gait_problem_free(at.problem[k]);
+}
+
+static moray_status take(sensitivity *run, const struct outcome *outcome)
+{
+    const moray_status *status = &outcome->status;
+    if (!moray_failed(*status) && outcome->reached)
+        run->row[run->rows++] = outcome->row;
+    else if (!moray_failed(*status))
+        note(run->unreached, outcome->row.name);
+    if (status->code != MORAY_NUMERIC && status->code != MORAY_INPUT)
+        return *status;
+    char why[sizeof outcome->row.name + sizeof status->text];
+    snprintf(why, sizeof why, "%.39s (%s)", outcome->row.name, status->text);
+    note(run->left_out, why);
     return moray_ok();
 }
 
-static int applying(const sensitivity *run)
+static moray_status by_parameters(sensitivity *run, struct deal *deal)
 {
-    const sensitivity_parameter *parameter;
-    int n = 0;
-    for (int k = 0; (parameter = sensitivity_parameter_at(k)); k++)
-        n += sensitivity_parameter_applies(parameter, &run->job);
-    return n;
-}
-
-static moray_status by_parameter(sensitivity *run, moray_sensitivity *slopes, const sensitivity_parameter *parameter)
-{
-    const double share = 1e-3; // of the scale
-    sensitivity_row *row = &run->row[run->rows];
-    struct displaced at = {0};
-    sensitivity_parameter_describe(parameter, &run->job, last_stage(&run->job)->prediction.course_speed, row);
-    row->step = share * row->scale;
-    moray_ticker_count(&run->job.ticker, run->rows, applying(run), "%s: by %s", run->job.name, row->name);
-    moray_status status = displace(run, parameter, row, &at);
-    if (!moray_failed(status))
-        status = measure(run, slopes, &at, sensitivity_parameter_is_limit(parameter), row);
-    for (int k = 0; k < SIDES; k++)
-        moray_gait_problem_free(at.problem[k]);
-    if (status.code != MORAY_NUMERIC && status.code != MORAY_INPUT)
-        return status;
-    char why[sizeof row->name + sizeof status.text];
-    snprintf(why, sizeof why, "%s (%s)", row->name, status.text);
-    note(run->left_out, why);
+    struct outcome outcome[SENSITIVITY_ROWS];
+    MORAY_TRY(moray_parallel(deal->n, sizeof *outcome, outcome, by_parameter, deal, run->job.jobs));
+    for (int k = 0; k < deal->n; k++)
+        MORAY_TRY(take(run, &outcome[k]));
     return moray_ok();
 }
 
@@ -258,12 +286,14 @@ static moray_status polish(sensitivity *run)
 static moray_status take_all(sensitivity *run, moray_sensitivity *slopes)
 {
     const sensitivity_parameter *parameter;
+    struct deal deal = {.run = run, .slopes = slopes};
     note(run->weak, moray_sensitivity_weak(slopes));
-    for (int k = 0; (parameter = sensitivity_parameter_at(k)); k++)
+    for (int k = 0; (parameter = sensitivity_parameter_at(k)) && deal.n < SENSITIVITY_ROWS; k++)
         if (sensitivity_parameter_applies(parameter, &run->job))
-            MORAY_TRY(by_parameter(run, slopes, parameter));
+            deal.parameter[deal.n++] = parameter;
         else if (sensitivity_parameter_of_each(parameter, &run->job))
             note(run->left_out, "length_m (the links have lengths of their own)");
+    MORAY_TRY(by_parameters(run, &deal));
     return sensitivity_predict(run, slopes);
 }
 
