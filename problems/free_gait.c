@@ -60,23 +60,26 @@ typedef struct start {
 
 enum { STARTS = 5 };
 
+typedef struct way_there {
+    free_gait *run;
+    motion *m;
+    start at[STARTS];
+} way_there;
+
 // The less barrier, the nearer the solver stays to where it begins.
-static moray_status solve_from(free_gait *run, motion *m, const start *at)
+static moray_status solve_from(gait_job *job, stage *at, void *self, int k, moray_solution **solution)
 {
-    moray_settings settings = gait_job_settings(&run->job);
-    moray_solution *solution = NULL;
-    double *s = calloc(MORAY_GAIT_PARAMETERS + 1 + (size_t)coefficients_of(run, m->harmonics), sizeof *s);
+    const way_there *way = self;
+    const start *begin = &way->at[k];
+    moray_settings settings = gait_job_settings(job);
+    double *s = calloc(MORAY_GAIT_PARAMETERS + 1 + (size_t)coefficients_of(way->run, way->m->harmonics), sizeof *s);
     if (!s)
         return moray_error(MORAY_MEMORY, "no memory for a guess");
-    settings.barrier = at->barrier;
-    guess_parameters(run, m, &at->from->prediction.gait, at->share, s);
-    const moray_status status = moray_gait_problem_continue(m->at.problem, &settings, at->from->solution, s, &solution);
+    settings.barrier = begin->barrier;
+    guess_parameters(way->run, way->m, &begin->from->prediction.gait, begin->share, s);
+    const moray_status status = moray_gait_problem_continue(at->problem, &settings, begin->from->solution, s, solution);
     free(s);
-    if (!moray_failed(status))
-        gait_job_keep_best(&m->at, solution);
-    m->at.starts++;
-    return moray_interrupted() ? moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written")
-                               : status;
+    return status;
 }
 
 // Solved, and as good as the motion before, which it may repeat.
@@ -105,14 +108,15 @@ static int starts_of(free_gait *run, const motion *m, start at[STARTS])
 // The best of all starts; one that cannot be computed leaves the others.
 static moray_status solve(free_gait *run, motion *m, bool *found)
 {
-    start at[STARTS];
-    const int n = starts_of(run, m, at);
+    way_there way = {.run = run, .m = m};
+    const int n = starts_of(run, m, way.at);
     MORAY_TRY(make_problem(run, m));
-    for (int k = 0; k < n; k++) {
-        const moray_status status = solve_from(run, m, &at[k]);
-        if (status.code == MORAY_INTERRUPTED || status.code == MORAY_MEMORY)
-            return status;
-    }
+    m->at.starts = n;
+    const moray_status status = gait_job_try_ways(&run->job, &m->at, n, solve_from, &way);
+    if (moray_interrupted())
+        return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");
+    if (status.code == MORAY_MEMORY)
+        return status;
     *found = as_good(m, freest(run));
     return moray_ok();
 }

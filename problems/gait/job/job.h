@@ -180,6 +180,13 @@ moray_status gait_job_solve_from(gait_job *job, const moray_gait_problem *proble
 // gait_job_problem and gait_job_solve.
 moray_status gait_job_continue(gait_job *job, stage *at, const stage *from);
 
+// Solves a stage in the k-th of several ways; the caller owns the solution.
+typedef moray_status gait_job_way(gait_job *job, stage *at, void *self, int k, moray_solution **solution);
+
+// Tries n ways, by several processes, and keeps the best, until interrupted. Error: the first where the stage is left
+// without a solution, MORAY_MEMORY.
+moray_status gait_job_try_ways(gait_job *job, stage *at, int n, gait_job_way *way, void *self);
+
 // Solves a stage in some way from a gait; the caller owns the solution.
 typedef moray_status gait_job_attempt(gait_job *job, stage *at, void *self, const moray_gait *gait,
                                       moray_solution **solution);

@@ -89,9 +89,8 @@ enum { HAND = 8 }; // gaits dealt to each process at a time
 struct hand {
     gait_job *job;
     stage *at;
-    gait_job_attempt *attempt;
+    gait_job_way *way;
     void *self;
-    moray_gait *gait;
 };
 
 struct outcome {
@@ -100,13 +99,13 @@ struct outcome {
     moray_status status;
 };
 
-static void try_gait(int task, void *result, void *self)
+static void try_one(int task, void *result, void *self)
 {
     const struct hand *hand = self;
     struct outcome *outcome = result;
     moray_solution *solution = NULL;
     *outcome = (struct outcome){.iterations = NAN};
-    outcome->status = hand->attempt(hand->job, hand->at, hand->self, &hand->gait[task], &solution);
+    outcome->status = hand->way(hand->job, hand->at, hand->self, task, &solution);
     if (!moray_failed(outcome->status))
         *outcome = (struct outcome){end_of(solution), moray_solution_info(solution)->iterations, moray_ok()};
     moray_solution_free(solution);
@@ -118,10 +117,10 @@ static void note_failure(moray_status status, moray_status *first)
         *first = status;
 }
 
-static void try_alone(const struct hand *hand, const moray_gait *gait, moray_status *first_failure)
+static void try_alone(const struct hand *hand, int task, moray_status *first_failure)
 {
     moray_solution *solution = NULL;
-    const moray_status status = hand->attempt(hand->job, hand->at, hand->self, gait, &solution);
+    const moray_status status = hand->way(hand->job, hand->at, hand->self, task, &solution);
     if (moray_failed(status))
         note_start(hand->at, NAN);
     else
@@ -129,13 +128,13 @@ static void try_alone(const struct hand *hand, const moray_gait *gait, moray_sta
     note_failure(status, first_failure);
 }
 
-// As try_alone on each gait of the hand in turn.
+// As try_alone on each of the hand in turn.
 static moray_status try_hand(struct hand *hand, int n, struct outcome *outcome, moray_status *first_failure)
 {
     stage *at = hand->at;
     struct end best = end_of(at->solution);
     int winner = -1;
-    MORAY_TRY(moray_parallel(n, sizeof *outcome, outcome, try_gait, hand, hand->job->jobs));
+    MORAY_TRY(moray_parallel(n, sizeof *outcome, outcome, try_one, hand, hand->job->jobs));
     for (int k = 0; k < n && !moray_interrupted(); k++) {
         note_start(at, outcome[k].iterations);
         note_failure(outcome[k].status, first_failure);
@@ -147,16 +146,51 @@ static moray_status try_hand(struct hand *hand, int n, struct outcome *outcome, 
     if (winner < 0)
         return moray_ok();
     moray_solution *solution = NULL;
-    MORAY_TRY(hand->attempt(hand->job, at, hand->self, &hand->gait[winner], &solution));
+    MORAY_TRY(hand->way(hand->job, at, hand->self, winner, &solution));
     keep(at, true, solution);
     return moray_ok();
 }
 
+static int jobs_of(const gait_job *job)
+{
+    return job->jobs < 1 ? moray_processors() : job->jobs;
+}
+
+moray_status gait_job_try_ways(gait_job *job, stage *at, int n, gait_job_way *way, void *self)
+{
+    enum { most = 16 };
+    moray_status first_failure = moray_ok();
+    struct hand hand = {job, at, way, self};
+    struct outcome outcome[most];
+    if (jobs_of(job) == 1 || n > most)
+        for (int k = 0; k < n && !moray_interrupted(); k++)
+            try_alone(&hand, k, &first_failure);
+    else
+        MORAY_TRY(try_hand(&hand, n, outcome, &first_failure));
+    return at->solution ? moray_ok() : first_failure;
+}
+
+// ---- Gaits to start from -------------------------------------------------------------------------------------------
+
+struct gaits {
+    const moray_gait *gait;
+    gait_job_attempt *attempt;
+    void *self;
+};
+
+static moray_status try_gait(gait_job *job, stage *at, void *self, int k, moray_solution **solution)
+{
+    const struct gaits *gaits = self;
+    return gaits->attempt(job, at, gaits->self, &gaits->gait[k], solution);
+}
+
 static void try_random_alone(const struct hand *hand, int n, moray_status *first_failure)
 {
+    struct gaits *gaits = hand->self;
     for (int k = 0; k < n && !moray_interrupted(); k++) {
         const moray_gait gait = gait_job_random(hand->job, hand->at);
-        try_alone(hand, &gait, first_failure);
+        gaits->gait = &gait;
+        try_alone(hand, 0, first_failure);
     }
 }
 
@@ -164,17 +198,19 @@ static moray_status deal_random(struct hand *hand, int n, int jobs, moray_status
 {
     const int most = jobs * HAND;
     struct outcome *outcome = calloc((size_t)most, sizeof *outcome);
+    struct gaits *gaits = hand->self;
+    moray_gait *gait = calloc((size_t)most, sizeof *gait);
     moray_status status = moray_ok();
-    hand->gait = calloc((size_t)most, sizeof *hand->gait);
-    if (!outcome || !hand->gait)
+    gaits->gait = gait;
+    if (!outcome || !gait)
         status = moray_error(MORAY_MEMORY, "no memory for %d starts", n);
     for (int some; n > 0 && !moray_failed(status) && !moray_interrupted(); n -= some) {
         some = n < most ? n : most;
         for (int i = 0; i < some; i++)
-            hand->gait[i] = gait_job_random(hand->job, hand->at);
+            gait[i] = gait_job_random(hand->job, hand->at);
         status = try_hand(hand, some, outcome, first_failure);
     }
-    free(hand->gait);
+    free(gait);
     free(outcome);
     return status;
 }
@@ -182,12 +218,13 @@ static moray_status deal_random(struct hand *hand, int n, int jobs, moray_status
 moray_status gait_job_try_starts(gait_job *job, stage *at, const gait_starts *known, int random,
                                  gait_job_attempt *attempt, void *self)
 {
-    const int jobs = job->jobs < 1 ? moray_processors() : job->jobs;
+    const int jobs = jobs_of(job);
     moray_status first_failure = moray_ok();
-    struct hand hand = {job, at, attempt, self, NULL};
+    struct gaits gaits = {known->gait, attempt, self};
+    struct hand hand = {job, at, try_gait, &gaits};
     srand48(1);
     for (int k = 0; k < known->n && !moray_interrupted(); k++)
-        try_alone(&hand, &known->gait[k], &first_failure);
+        try_alone(&hand, k, &first_failure);
     if (jobs == 1)
         try_random_alone(&hand, random, &first_failure);
     else
