@@ -406,7 +406,8 @@ MORAY_API const moray_mesh_record *moray_solution_history(const moray_solution *
 // bounds. Owned by the solution.
 MORAY_API const char *moray_solution_diagnosis(const moray_solution *solution);
 
-// The same as an error, MORAY_NOT_SOLVED, with as much in one line as fits.
+// The same as an error, MORAY_NOT_SOLVED, in one line: all of it, or where that does not fit, the outcome, the largest
+// violation and what to try.
 MORAY_API moray_status moray_solution_failure(const moray_solution *solution);
 
 // ---- Certificate ---------------------------------------------------------------------------------------------------

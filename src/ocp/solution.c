@@ -80,9 +80,29 @@ const char *moray_solution_diagnosis(const moray_solution *solution)
     return solution->diagnosis;
 }
 
+// Of the lines of a diagnosis those without which nobody knows what happened and what to do.
+static bool is_needed(const char *line, bool first)
+{
+    return first || strncmp(line, "Largest violation", 17) == 0 || strncmp(line, "Try:", 4) == 0;
+}
+
 moray_status moray_solution_failure(const moray_solution *solution)
 {
+    const char *line = solution->diagnosis;
+    char needed[sizeof solution->diagnosis] = "";
+    size_t used = 0;
+    for (bool first = true; *line; first = false) {
+        const size_t length = strcspn(line, "\n") + (line[strcspn(line, "\n")] == '\n');
+        if (is_needed(line, first)) {
+            memcpy(needed + used, line, length);
+            used += length;
+        }
+        line += length;
+    }
+    needed[used] = 0;
     moray_status failure = moray_error(MORAY_NOT_SOLVED, "%s", solution->diagnosis);
+    if (strlen(solution->diagnosis) >= sizeof failure.text)
+        failure = moray_error(MORAY_NOT_SOLVED, "%s", needed);
     size_t n = strlen(failure.text);
     while (n > 0 && failure.text[n - 1] == ' ')
         failure.text[--n] = 0;

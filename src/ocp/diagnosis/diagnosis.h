@@ -28,6 +28,9 @@ struct evidence {
 bool moray_dependent_constraints(struct evidence *e);
 bool moray_hardest_bound(struct evidence *e);
 
+// Says so where a function has a kink in an input, within what it is along the trajectory.
+bool moray_has_kink(const struct evidence *e);
+
 // Signed scaled amount by which row i is outside its bounds.
 double moray_scaled_violation(const moray_solution *solution, int i);
 

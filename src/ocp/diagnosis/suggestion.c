@@ -131,6 +131,7 @@ static void choose(struct evidence *e)
         moray_diagnosis_say(e->solution, "Try: go on, with this solution as the guess.\n");
     else if (!too_few_variables(e) && !wrong_derivative(e) && !not_finite(e) &&
              !(violated && moray_dependent_constraints(e)) && !runaway(e) &&
+             !(outcome != MORAY_NLP_INFEASIBLE && moray_has_kink(e)) &&
              !(violated && gave_up && moray_hardest_bound(e)))
         say_otherwise(e);
 }

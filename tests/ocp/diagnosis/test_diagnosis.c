@@ -131,6 +131,7 @@ static void check_suggestion(const moray_ocp_spec *spec, moray_settings settings
     CHECK(failure.code == MORAY_NOT_SOLVED && !strchr(failure.text, '\n') &&
               strncmp(failure.text, moray_solution_diagnosis(solution), 20) == 0,
           "as an error it is one line: %s", failure.text);
+    CHECK(strstr(failure.text, "Try: ") != NULL, "which says what to try: %s", failure.text);
     CHECK(lines_with(moray_solution_diagnosis(solution), "Try: ") == 1 &&
               lines_with(moray_solution_diagnosis(solution), "Furthest from the guess: ") == 1,
           "one thing to try");
