@@ -3,35 +3,14 @@
 // With B the basic columns of A, N the others and Z = [-B^-1 N; I] every solution of the constraints is a particular
 // one plus Z times something, so that Z' H Z, a few rows large, is all that is left. The inertia of the whole is that
 // of Z' H Z and as many eigenvalues of either sign as there are constraints.
-#include "linear/null_space.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "linear/basis.h"
+#include "linear/null_space_parts.h"
 
-static const double regular = 1e-15;  // reciprocal condition of a basis, by its pivots
-static const double accurate = 1e-14; // residual that refinement would hardly better
-enum { refinements = 3, most_freedom = 24, most_vain = 3 };
-
-struct null_space {
-    int n, m, variables, freedom; // rows; constraints, which come last; n - m; variables - m
-    moray_pattern pattern;        // as given
-    int hessian, *source, *i, *j; // entries of H, in the pattern, and where they stand; [hessian] each
-    int vain;                     // matrices for which there was no basis, after some of which none is sought
-    bool planned, factored;       // the basis is chosen; and factored with the values at hand
-    struct basis basis;
-    moray_ldl *reduced;                // of Z' H Z, full lower triangle
-    double *block;                     // holds the arrays below
-    double *values;                    // [nnz] as factored
-    double *H;                         // [hessian]
-    double *Z, *HZ;                    // [variables x freedom], by rows
-    double *columns;                   // [m x freedom], by columns
-    double *R, *r;                     // [freedom x (freedom + 1) / 2]; [freedom]
-    double *largest;                   // [n] entry of each row
-    double *rhs, *x, *step, *residual; // [n]
-};
+static const double regular = 1e-15; // reciprocal condition of a basis, by its pivots
+enum { most_freedom = 24, most_vain = 3 };
 
 static moray_status no_memory(int n)
 {
@@ -181,7 +160,6 @@ static bool look_through(null_space *ns, bool *finite)
     return corner == 0;
 }
 
-// y[i][c] += sum over j of H[i][j] x[j][c], c < columns.
 static inline __attribute__((always_inline)) void multiply(const null_space *ns, int columns, const double *x,
                                                            double *y)
 {
@@ -195,7 +173,7 @@ static inline __attribute__((always_inline)) void multiply(const null_space *ns,
     }
 }
 
-static void multiply_hessian(const null_space *ns, int columns, const double *x, double *y)
+void moray_null_space_multiply(const null_space *ns, int columns, const double *x, double *y)
 {
     switch (columns) { // loops of known length
     case 1:
@@ -235,7 +213,7 @@ static moray_status reduce(null_space *ns)
     MORAY_TRY(find_null_space(ns));
     memset(ns->HZ, 0, (size_t)(ns->variables * f) * sizeof *ns->HZ);
     memset(ns->R, 0, (size_t)(f * (f + 1) / 2) * sizeof *ns->R);
-    multiply_hessian(ns, f, ns->Z, ns->HZ);
+    moray_null_space_multiply(ns, f, ns->Z, ns->HZ);
     for (int i = 0; i < ns->variables; i++)
         for (int a = 0, k = 0; a < f; a++)
             for (int b = 0; b <= a; b++, k++)
@@ -296,80 +274,4 @@ moray_ldl_inertia moray_null_space_inertia(const null_space *ns)
     inertia.positive += ns->m;
     inertia.negative += ns->m;
     return inertia;
-}
-
-// ---- Solutions -----------------------------------------------------------------------------------------------------
-
-// What constraints ask of the basis, what is left to the others in the null space, and the multipliers that balance it:
-// step <- the solution for `residual`, which is overwritten.
-static moray_status solve_once(null_space *ns)
-{
-    const int f = ns->freedom, v = ns->variables, m = ns->m;
-    double *p = ns->step, *s = ns->step + v, *left = ns->residual;
-    memcpy(s, left + v, (size_t)m * sizeof *s);
-    MORAY_TRY(moray_sparse_lu_solve(ns->basis.lu, 1, s));
-    for (int i = 0; i < v; i++)
-        p[i] = ns->basis.place[i] >= 0 ? -s[ns->basis.place[i]] : 0;
-    multiply_hessian(ns, 1, p, left); // with its sign turned, so that it comes off
-    for (int c = 0; c < f; c++) {
-        ns->r[c] = 0;
-        for (int i = 0; i < v; i++)
-            ns->r[c] += ns->Z[i * f + c] * left[i];
-    }
-    if (f > 0)
-        MORAY_TRY(moray_ldl_solve(ns->reduced, 1, ns->r));
-    for (int i = 0; i < v; i++) {
-        p[i] = -p[i];
-        for (int c = 0; c < f; c++) {
-            p[i] += ns->Z[i * f + c] * ns->r[c];
-            left[i] -= ns->HZ[i * f + c] * ns->r[c];
-        }
-    }
-    for (int i = 0; i < v; i++)
-        if (ns->basis.place[i] >= 0)
-            s[ns->basis.place[i]] = left[i];
-    return moray_sparse_lu_solve_transposed(ns->basis.lu, 1, s);
-}
-
-// residual <- rhs - matrix x. Returns its largest entry, each over what its row makes of the largest of the solution.
-static double find_residual(null_space *ns)
-{
-    const int *row = ns->pattern.row, *col = ns->pattern.col;
-    double *r = ns->residual, worst = 0, size = 0;
-    const double *x = ns->x;
-    memcpy(r, ns->rhs, (size_t)ns->n * sizeof *r);
-    for (int k = 0; k < ns->pattern.nnz; k++) {
-        const int i = row[k], j = col[k];
-        const double value = ns->values[k];
-        r[i] -= value * x[j];
-        r[j] -= (i == j ? 0 : value) * x[i];
-    }
-    for (int i = 0; i < ns->n; i++)
-        size = larger(size, fabs(x[i]));
-    for (int i = 0; i < ns->n; i++) {
-        const double least = ns->largest[i] * size + fabs(ns->rhs[i]), here = fabs(r[i]);
-        const double share = least > 0 ? here / least : here;
-        worst = share <= worst ? worst : share; // keeps a NaN
-    }
-    return worst;
-}
-
-moray_status moray_null_space_solve(null_space *ns, double *b, double *error)
-{
-    if (!ns->factored)
-        return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", ns->n);
-    double before = INFINITY;
-    memcpy(ns->rhs, b, (size_t)ns->n * sizeof *b);
-    memcpy(ns->residual, b, (size_t)ns->n * sizeof *b);
-    memset(ns->x, 0, (size_t)ns->n * sizeof *ns->x);
-    *error = INFINITY;
-    for (int k = 0; k <= refinements && *error > accurate && (k < 2 || *error < before / 2); k++) {
-        MORAY_TRY(solve_once(ns));
-        for (int i = 0; i < ns->n; i++)
-            ns->x[i] += ns->step[i];
-        before = *error;
-        *error = find_residual(ns);
-    }
-    memcpy(b, ns->x, (size_t)ns->n * sizeof *b);
-    return moray_ok();
 }
