@@ -9,6 +9,7 @@
 #include <tgmath.h>
 #include <unistd.h>
 
+#include "linear/kkt_factors.h"
 #include "linear/ldl.h"
 #include "moray/control/receding_horizon.h"
 #include "moray/snake/gait_problem.h"
@@ -307,6 +308,23 @@ static moray_status factors(void)
     return status;
 }
 
+// Two constraints on three variables, in the null space; then with something on their diagonal, by LDL'.
+static moray_status few_degrees(void)
+{
+    int row[] = {0, 1, 2, 3, 3, 4, 4, 4}, col[] = {0, 1, 2, 0, 2, 1, 2, 4};
+    double value[] = {2, 3, 4, 1, 0.5, 1, -0.5, 0}, x[] = {1, 2, 3, 4, 5};
+    kkt_factors *kkt = NULL;
+    moray_status status = moray_kkt_factors_new(&kkt, 5, &(moray_pattern){8, row, col});
+    for (int k = 0; k < 2 && !moray_failed(status); k++) {
+        value[7] = -0.1 * k;
+        status = moray_kkt_factors_factor(kkt, value, 1e-4);
+        if (!moray_failed(status))
+            status = moray_kkt_factors_solve(kkt, 1, x);
+    }
+    moray_kkt_factors_free(kkt);
+    return status;
+}
+
 // A directory of results.
 static char directory[] = "/tmp/moray_memory_XXXXXX";
 
@@ -369,6 +387,7 @@ int main(void)
     fail_each("gait on the control-oriented model", true, swim_control);
     fail_each("gait on the first-principles model", true, swim_fp);
     fail_each("factors", false, factors);
+    fail_each("factors in the null space", false, few_degrees);
     fail_each("results", false, results);
     remove(strcat(strcpy(summary, directory), "/summary.json"));
     rmdir(directory);
