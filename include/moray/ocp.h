@@ -297,7 +297,7 @@ typedef struct moray_settings {
 MORAY_API moray_settings moray_settings_default(void);
 
 // Transcribes and solves from `guess` (NULL: from the bounds, and where that leads nowhere from what the dynamics do
-// with controls off the middle of theirs). Stopped early, the solution is the best iterate, see
+// with controls off the middle of theirs, then in scales of Ipopt's). Stopped early, the solution is the best iterate, see
 // moray_ipopt_solve. The solution keeps what it needs of the problem but must
 // not outlive it; free with moray_solution_free. A refined mesh starts from the interpolated solution of the last; when
 // one is not solved, the solution is that of the last solved (with the outcome of the failed where interrupted).

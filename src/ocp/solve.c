@@ -132,7 +132,7 @@ static bool within_limits(const struct campaign *c)
 
 static bool may_refine(const struct campaign *c)
 {
-    const int aside = c->widenings + c->escapes + c->moves + c->started_again + c->changed_scheme;
+    const int aside = c->widenings + c->escapes + c->moves + c->restarts;
     return c->tried - aside < c->settings->max_refinements;
 }
 
@@ -218,7 +218,7 @@ static void keep_best(struct campaign *c, moray_solution **solution)
 
 static moray_status run_campaign(struct campaign *c, const moray_guess *guess, moray_solution **solution)
 {
-    const int room = c->settings->max_refinements + 3 + most_widenings + most_escapes + most_moves;
+    const int room = c->settings->max_refinements + 1 + most_widenings + most_escapes + most_moves + most_restarts;
     c->history = calloc((size_t)room, sizeof *c->history);
     c->iterations = calloc(1, sizeof *c->iterations);
     if (!c->history || !c->iterations)

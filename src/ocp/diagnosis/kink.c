@@ -12,6 +12,7 @@
 
 enum { pieces = 16, zooms = 6, places = 5 }; // of a range; of a range, one in another; nodes of a phase
 static const double stays = 0.2;             // of the change of slope between the longest pieces
+static const double grows = 10;              // of the same: beyond that a jump or a pole, no kink
 static const double matters = 0.05;          // of the steepest slope
 
 struct look {
@@ -50,7 +51,7 @@ static bool has_kink(const struct look *l, int input, int output, double low, do
         at_first = z == 0 ? change : at_first;
     }
     *where = (low + high) / 2;
-    return isfinite(change) && change > stays * at_first && change > matters * steepest;
+    return change > stays * at_first && change < grows * at_first && change > matters * steepest;
 }
 
 static void range_of(const struct transcription *t, int p, int input, double *low, double *high)

@@ -61,18 +61,27 @@ static bool is_failed(const moray_solution *solution)
 }
 
 // Bounds alone say little of how things move: a guess by them that leads nowhere is worth another.
-static bool may_start_again(const struct campaign *c, const moray_guess *guess, const moray_solution *failed)
+static bool is_unguessed(const struct campaign *c, const moray_guess *guess)
 {
-    bool from_bounds = !(guess && guess->from) && failed->transcription->nlp.x_scale;
-    for (int p = 0; p < c->ocp->phases && from_bounds && guess && guess->phase; p++)
-        from_bounds = guess->phase[p].n == 0;
-    return from_bounds && !c->started_again && is_failed(failed) && has_time(c);
+    for (int p = 0; p < c->ocp->phases && guess && guess->phase; p++)
+        if (guess->phase[p].n > 0)
+            return false;
+    return true;
 }
 
-// What was tried beside a failed solve, and failed as well, stands before it.
-static moray_status keep_failed(struct campaign *c, moray_solution *next, moray_status status)
+// Solves beside a failed solve. Where that fails too the first is the result, and last in the history.
+static moray_status attempt(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
+    moray_solution *failed = *result, *next = NULL;
+    const moray_status status = moray_campaign_solve_widened(c, guess, &next);
+    if (!moray_failed(status) && moray_is_solved(next)) {
+        *result = next;
+        moray_campaign_drop(failed);
+        return status;
+    }
     if (next) {
+        if (next->info.outcome == MORAY_NLP_INTERRUPTED)
+            failed->info.outcome = MORAY_NLP_INTERRUPTED;
         c->history[c->tried - 1] = moray_record_of(next, NAN);
         moray_campaign_drop(next);
     } else {
@@ -81,56 +90,71 @@ static moray_status keep_failed(struct campaign *c, moray_solution *next, moray_
     return status.code == MORAY_NUMERIC ? moray_ok() : status;
 }
 
-// Solves again from what the dynamics do. Where that fails too the first is the result, and last in the history.
+// From what the dynamics do.
 static moray_status start_again(struct campaign *c, moray_solution **result)
 {
-    moray_solution *failed = *result, *next = NULL;
     moray_guess guess;
-    c->started_again = true;
-    MORAY_TRY(moray_second_start(failed, &guess));
+    MORAY_TRY(moray_second_start(*result, &guess));
     if (!guess.phase)
         return moray_ok();
-    moray_campaign_record(c, failed, NAN, 0);
-    const moray_status status = moray_campaign_solve_widened(c, &guess, &next);
+    moray_campaign_record(c, *result, NAN, 0);
+    c->restarts++;
+    const moray_status status = attempt(c, &guess, result);
     moray_guess_free(&guess);
-    if (!moray_failed(status) && moray_is_solved(next)) {
-        *result = next;
-        moray_campaign_drop(failed);
-        return moray_ok();
-    }
-    return keep_failed(c, next, status);
+    return status;
 }
 
-// Solves again with a scheme that holds what the problem asks. Where that fails too, the first is the result, and last
-// in the history.
+// With scales of the solver's own: ours come from slopes at the guess, which may be nothing beside those elsewhere.
+static moray_status start_unscaled(struct campaign *c, const moray_guess *guess, moray_solution **result)
+{
+    const moray_settings *settings = c->settings;
+    moray_settings unscaled = *settings;
+    unscaled.own_scaling = false;
+    moray_campaign_record(c, *result, NAN, 0);
+    c->restarts++;
+    c->settings = &unscaled;
+    const moray_status status = attempt(c, guess, result);
+    c->settings = settings;
+    (*result)->settings = *settings;
+    return status;
+}
+
+// With a scheme that holds what the problem asks.
 static moray_status change_scheme(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
-    moray_solution *failed = *result, *next = NULL;
     bool changed;
     const struct method method = c->method;
-    MORAY_TRY(moray_leave_higher_index(c, failed, &changed));
+    MORAY_TRY(moray_leave_higher_index(c, *result, &changed));
     if (!changed)
         return moray_ok();
-    const moray_status status = moray_campaign_solve_widened(c, guess, &next);
-    c->changed_scheme = true;
+    c->restarts++;
+    MORAY_TRY(attempt(c, guess, result));
     c->before.nodes = 0;
-    if (!moray_failed(status) && moray_is_solved(next)) {
-        *result = next;
-        moray_campaign_drop(failed);
-        return status;
+    if (!moray_is_solved(*result)) {
+        c->method = method;
+        c->left[method.family] = false;
     }
-    c->method = method;
-    c->left[method.family] = false;
-    return keep_failed(c, next, status);
+    return moray_ok();
+}
+
+// What may be tried where a first mesh was not solved.
+static moray_status try_otherwise(struct campaign *c, const moray_guess *guess, moray_solution **result)
+{
+    const bool unguessed = is_unguessed(c, guess) && (*result)->transcription->nlp.x_scale;
+    if (is_failed(*result) && has_time(c))
+        MORAY_TRY(change_scheme(c, guess, result));
+    if (unguessed && is_failed(*result) && has_time(c))
+        MORAY_TRY(start_again(c, result));
+    if (unguessed && is_failed(*result) && has_time(c))
+        MORAY_TRY(start_unscaled(c, guess, result));
+    return moray_ok();
 }
 
 moray_status moray_campaign_solve(struct campaign *c, const moray_guess *guess, moray_solution **result)
 {
     MORAY_TRY(moray_campaign_solve_widened(c, guess, result));
-    if (!(guess && guess->from) && !c->changed_scheme && is_failed(*result) && has_time(c))
-        MORAY_TRY(change_scheme(c, guess, result));
-    if (may_start_again(c, guess, *result))
-        MORAY_TRY(start_again(c, result));
+    if (!(guess && guess->from) && c->restarts == 0)
+        MORAY_TRY(try_otherwise(c, guess, result));
     bool moved = !(guess && guess->from);
     while (moved && c->escapes < most_escapes && may_be_saddle(*result)) {
         const moray_solution *before = *result;

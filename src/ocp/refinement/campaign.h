@@ -7,6 +7,7 @@
 #include "ocp/solution.h"
 
 enum { most_escapes = 2 };   // from saddles
+enum { most_restarts = 3 };  // of the first mesh: another scheme, another start, other scales
 enum { most_moves = 8 };     // of data into other intervals, in all
 enum { most_widenings = 8 }; // in all: each needs a place where a function depends on what it did not elsewhere
 
@@ -28,9 +29,7 @@ struct campaign {
     struct mesh *meshes;
     moray_mesh_record *history; // becomes the solution's, as does
     struct iterations *iterations;
-    int tried, widenings, escapes, moves;
-    bool started_again;   // from another guess than that of the bounds
-    bool changed_scheme;  // of the first mesh, because of an equation
+    int tried, widenings, escapes, moves, restarts;
     double spent;         // of the processor, in the solver
     moray_solution *best; // of the solved ones that of the least error; often the last
     double best_error;
