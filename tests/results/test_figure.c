@@ -1,20 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "folder.h"
-
-#include <math.h>
-
-static const double t[] = {0, 1, 2, 3}, x[] = {0, 1, NAN, 0.5}, y[] = {1, 2, 3, 4};
-static const moray_curve curves[] = {
-    {.label = "with 'quotes' '' \"and\" `ls`", .x = t, .y = x, .n = 4},
-    {.label = "b_1^2", .x = t, .y = y, .n = 4, .style = MORAY_CURVE_MARKED},
-    {.label = "c", .x = t, .y = y, .n = 2, .stride = 2, .style = MORAY_CURVE_POINTS},
-};
-static const moray_figure figure = {.name = "figure",
-                                    .title = "T'\n!touch pwned\nsystem('touch pwned') <&>",
-                                    .x_label = "time [s]",
-                                    .y_label = "θ [deg]",
-                                    .curves = curves,
-                                    .n_curves = 3};
+#include "drawn.h"
 
 static void test_figure(void)
 {

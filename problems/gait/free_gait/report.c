@@ -209,8 +209,9 @@ static void print(const void *found, const moray_report *report)
     }
 }
 
-static moray_status make_scene(const free_gait *run, moray_swim_scene *scene)
+static moray_status make_scene(const void *found, moray_swim_scene *scene)
 {
+    const free_gait *run = found;
     const gait_job *job = &run->job;
     char baseline[64];
     scene->scene.title = "The freest motion swimming";
@@ -223,47 +224,27 @@ static moray_status make_scene(const free_gait *run, moray_swim_scene *scene)
                               GAIT_SHOWN_SECONDS);
 }
 
-static moray_judgement judge(const free_gait *run, char *text)
-{
-    int passed = 0;
-    for (int k = 0; k < run->n; k++)
-        passed += run->motion[k].at.certificate.pass;
-    return gait_job_judge(passed, run->n, text);
-}
-
-static moray_status show(const free_gait *run, const struct waves *waves, const moray_swim_scene *scene)
-{
-    char text[TEXT] = "", judged[80];
-    moray_table_row rows[ROWS], gains[MORAY_RUNGS];
-    find_words(run, text);
-    const moray_table tables[] = {motions_table(run, rows), ladder_table(run, gains), waves->table};
-    const moray_report report = {.title = "free_gait: what the sinusoid leaves on the table",
-                                 .judgement = judge(run, judged),
-                                 .judged = judged,
-                                 .text = text,
-                                 .scene = &scene->scene,
-                                 .tables = tables,
-                                 .n_tables = waves->table.n_columns > 0 ? 3 : 2,
-                                 .words = moray_ladder_words()};
-    return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
-                                                             .found = run,
-                                                             .summary = free_gait_summary,
-                                                             .print = print,
-                                                             .write = free_gait_write,
-                                                             .draw = free_gait_draw,
-                                                             .report = &report});
-}
+static const gait_job_shown shown = {free_gait_summary, print, free_gait_write, free_gait_draw, make_scene};
 
 moray_status free_gait_report(gait_job *job)
 {
     const free_gait *run = (const free_gait *)job;
     struct waves waves;
-    moray_swim_scene scene = {0};
+    char text[TEXT] = "";
+    moray_table_row rows[ROWS], gains[MORAY_RUNGS];
+    int passed = 0;
     MORAY_TRY(make_waves(run, &waves));
-    moray_status status = job->common.output ? make_scene(run, &scene) : moray_ok();
-    if (!moray_failed(status))
-        status = show(run, &waves, &scene);
-    moray_swim_scene_free(&scene);
+    find_words(run, text);
+    for (int k = 0; k < run->n; k++)
+        passed += run->motion[k].at.certificate.pass;
+    const moray_table tables[] = {motions_table(run, rows), ladder_table(run, gains), waves.table};
+    const moray_status status =
+        gait_job_publish(job, &shown, passed, run->n,
+                         &(moray_report){.title = "free_gait: what the sinusoid leaves on the table",
+                                         .text = text,
+                                         .tables = tables,
+                                         .n_tables = waves.table.n_columns > 0 ? 3 : 2,
+                                         .words = moray_ladder_words()});
     free(waves.rows);
     return status;
 }

@@ -264,6 +264,20 @@ void gait_job_say_stage(const gait_job *job, const stage *at, char *text);
 // The line above a page, "Solved and certified: 3 of 3 gaits pass", into text[80].
 moray_judgement gait_job_judge(int passed, int n, char *text);
 
+// What a program around a job shows: the parts of moray_results, and robots for its page (with --out alone), which get
+// the job, the first of the program's own struct.
+typedef struct gait_job_shown {
+    void (*summary)(const void *found, moray_json *json);
+    void (*print)(const void *found, const moray_report *report);
+    moray_status (*write)(const void *found, moray_output *output);
+    moray_status (*draw)(const void *found, moray_output *output);
+    moray_status (*scene)(const void *found, moray_swim_scene *scene);
+} gait_job_shown;
+
+// Judges `passed` of n certificates in the report, adds its scene, shows it all. Error: those of moray_app_show.
+moray_status gait_job_publish(const gait_job *job, const gait_job_shown *shown, int passed, int n,
+                              const moray_report *report);
+
 // The words of report.html and its scene, the recommended gait beside the paper's; with --out alone. Error:
 // MORAY_MEMORY. Free the scene.
 typedef struct gait_job_page {

@@ -111,3 +111,25 @@ moray_status gait_job_page_new(gait_job *job, gait_job_page *page)
         moray_swim_scene_free(&page->scene);
     return status;
 }
+
+moray_status gait_job_publish(const gait_job *job, const gait_job_shown *shown, int passed, int n,
+                              const moray_report *report)
+{
+    moray_swim_scene scene = {0};
+    char judged[80];
+    moray_report page = *report;
+    page.judgement = gait_job_judge(passed, n, judged);
+    page.judged = judged;
+    page.scene = &scene.scene;
+    moray_status status = job->common.output ? shown->scene(job, &scene) : moray_ok();
+    if (!moray_failed(status))
+        status = moray_app_show(&job->common, &(moray_results){.name = job->name,
+                                                               .found = job,
+                                                               .summary = shown->summary,
+                                                               .print = shown->print,
+                                                               .write = shown->write,
+                                                               .draw = shown->draw,
+                                                               .report = &page});
+    moray_swim_scene_free(&scene);
+    return status;
+}

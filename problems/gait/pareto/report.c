@@ -205,8 +205,9 @@ static void print(const void *found, const moray_report *report)
 }
 
 // Of the last model: the fastest gaits of each kind, the thriftiest lateral one, the paper's.
-static moray_status make_scene(const pareto *run, moray_swim_scene *scene)
+static moray_status make_scene(const void *found, moray_swim_scene *scene)
 {
+    const pareto *run = found;
     const pareto_front *lateral = &run->front[run->fronts - run->fronts / (1 + (int)run->job.snake.model)];
     const pareto_front *eel = lateral + 1;
     const gait_job *job = &run->job;
@@ -230,25 +231,21 @@ static moray_status make_scene(const pareto *run, moray_swim_scene *scene)
                               seconds);
 }
 
-static moray_judgement judge(const pareto *run, char *text)
-{
-    int n = 0, passed = 0;
-    for (int f = 0; f < run->fronts; f++)
-        for (int k = 0; k < run->front[f].n; k++, n++)
-            passed += run->front[f].at[k].certificate.pass;
-    return gait_job_judge(passed, n, text);
-}
+static const gait_job_shown shown = {pareto_summary, print, pareto_write, pareto_draw, make_scene};
 
-static moray_status show(const pareto *run, struct sheet *sheets, const moray_swim_scene *scene)
+static moray_status show(const pareto *run, struct sheet *sheets)
 {
-    char text[text_size] = "", judged[80];
+    char text[text_size] = "";
     moray_table tables[2 * PARETO_FRONTS];
+    int n = 0, passed = 0;
     find_words(run, text);
     for (int f = 0; f < run->fronts; f++) {
         fill_sheet(run, &run->front[f], &sheets[2 * f]);
         fill_ladder(&run->front[f], &sheets[2 * f], &sheets[2 * f + 1]);
         tables[2 * f] = sheets[2 * f].table;
         tables[2 * f + 1] = sheets[2 * f + 1].table;
+        for (int k = 0; k < run->front[f].n; k++, n++)
+            passed += run->front[f].at[k].certificate.pass;
     }
     const moray_section sections[] = {
         {.title = "Fronts", .figures = ""},
@@ -257,34 +254,20 @@ static moray_status show(const pareto *run, struct sheet *sheets, const moray_sw
                  "first-principles model. least, most: of the gains; wins: 1 where all are gains.",
          .tables = tables,
          .n_tables = 2 * run->fronts}};
-    const moray_report report = {.title = "pareto: speed against power",
-                                 .judgement = judge(run, judged),
-                                 .judged = judged,
-                                 .text = text,
-                                 .scene = &scene->scene,
-                                 .sections = sections,
-                                 .n_sections = 2,
-                                 .words = moray_ladder_words()};
-    return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
-                                                             .found = run,
-                                                             .summary = pareto_summary,
-                                                             .print = print,
-                                                             .write = pareto_write,
-                                                             .draw = pareto_draw,
-                                                             .report = &report});
+    return gait_job_publish(&run->job, &shown, passed, n,
+                            &(moray_report){.title = "pareto: speed against power",
+                                            .text = text,
+                                            .sections = sections,
+                                            .n_sections = 2,
+                                            .words = moray_ladder_words()});
 }
 
 moray_status pareto_report(gait_job *job)
 {
-    const pareto *run = (const pareto *)job;
-    moray_swim_scene scene = {0};
     struct sheet *sheets = calloc(2 * PARETO_FRONTS, sizeof *sheets);
-    moray_status status = sheets ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a report");
-    if (!moray_failed(status) && job->common.output)
-        status = make_scene(run, &scene);
-    if (!moray_failed(status))
-        status = show(run, sheets, &scene);
-    moray_swim_scene_free(&scene);
+    if (!sheets)
+        return moray_error(MORAY_MEMORY, "no memory for a report");
+    const moray_status status = show((const pareto *)job, sheets);
     free(sheets);
     return status;
 }

@@ -261,8 +261,9 @@ static moray_status draw(const void *found, moray_output *output)
 }
 
 // The optima beside one another, and the paper's gait.
-static moray_status make_scene(const search_gait *run, moray_swim_scene *scene)
+static moray_status make_scene(const void *found, moray_swim_scene *scene)
 {
+    const search_gait *run = found;
     static const moray_colour colours[] = {MORAY_COLOUR_BEST, MORAY_COLOUR_SECOND, MORAY_COLOUR_THIRD};
     enum { most = sizeof colours / sizeof *colours };
     const int n = run->shown < most ? run->shown : most;
@@ -284,11 +285,18 @@ static moray_status write(const void *found, moray_output *output)
     return gait_job_trajectory(&run->job, &run->optimum[0].at, output);
 }
 
-static moray_status show(search_gait *run, moray_swim_scene *scene)
+static const gait_job_shown shown = {summarise, print, write, draw, make_scene};
+
+moray_status search_gait_report(search_gait *run)
 {
     struct tables t;
-    char text[TEXT] = "", judged[80];
+    char text[TEXT] = "";
     int passed = 0;
+    if (run->job.common.output) {
+        MORAY_TRY(search_gait_ridge(run));
+        MORAY_TRY(search_gait_map_new(run));
+    }
+    moray_ticker_end(&run->job.ticker);
     make_tables(run, &t);
     say_found(run, text);
     moray_text_add(text, TEXT, "\n");
@@ -296,35 +304,10 @@ static moray_status show(search_gait *run, moray_swim_scene *scene)
     say_certificates(run, text);
     for (int k = 0; k < run->shown; k++)
         passed += run->optimum[k].at.certificate.pass;
-    const moray_report report = {.title = "search_gait: all optima within the limits",
-                                 .judgement = gait_job_judge(passed, run->shown, judged),
-                                 .judged = judged,
-                                 .text = text,
-                                 .scene = &scene->scene,
-                                 .tables = t.table,
-                                 .n_tables = TABLES,
-                                 .words = moray_ladder_words()};
-    return moray_app_show(&run->job.common, &(moray_results){.name = "search_gait",
-                                                             .found = run,
-                                                             .summary = summarise,
-                                                             .print = print,
-                                                             .write = write,
-                                                             .draw = draw,
-                                                             .report = &report});
-}
-
-moray_status search_gait_report(search_gait *run)
-{
-    moray_swim_scene scene = {0};
-    moray_status status = moray_ok();
-    if (run->job.common.output) {
-        MORAY_TRY(search_gait_ridge(run));
-        MORAY_TRY(search_gait_map_new(run));
-        status = make_scene(run, &scene);
-    }
-    moray_ticker_end(&run->job.ticker);
-    if (!moray_failed(status))
-        status = show(run, &scene);
-    moray_swim_scene_free(&scene);
-    return status;
+    return gait_job_publish(&run->job, &shown, passed, run->shown,
+                            &(moray_report){.title = "search_gait: all optima within the limits",
+                                            .text = text,
+                                            .tables = t.table,
+                                            .n_tables = TABLES,
+                                            .words = moray_ladder_words()});
 }

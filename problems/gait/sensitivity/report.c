@@ -232,8 +232,9 @@ static void print(const void *found, const moray_report *report)
 }
 
 // In the current that the gait is predicted for, or where there is no prediction in the job's own.
-static moray_status make_scene(const sensitivity *run, moray_swim_scene *scene)
+static moray_status make_scene(const void *found, moray_swim_scene *scene)
 {
+    const sensitivity *run = found;
     const sensitivity_forecast *forecast = &run->forecast;
     gait_job there = run->job; // borrows all
     char baseline[64];
@@ -261,40 +262,23 @@ static moray_status draw(const void *found, moray_output *output)
     return moray_solution_draw(last_stage(&run->job)->solution, GAIT_MESH_TOLERANCE, "s", output);
 }
 
-static moray_status show(const sensitivity *run, sensitivity_findings *found, const moray_swim_scene *scene)
-{
-    char judged[80];
-    sensitivity_tables(run, found);
-    find_words(run, found);
-    const moray_section section = {
-        .title = "Sensitivities", .figures = "", .tables = found->table, .n_tables = found->tables};
-    const moray_report report = {.title = "sensitivity: how the fastest gait moves",
-                                 .judgement = gait_job_judge(last_stage(&run->job)->certificate.pass, 1, judged),
-                                 .judged = judged,
-                                 .text = found->text,
-                                 .scene = &scene->scene,
-                                 .sections = &section,
-                                 .n_sections = 1};
-    return moray_app_show(&run->job.common, &(moray_results){.name = run->job.name,
-                                                             .found = run,
-                                                             .summary = summarise,
-                                                             .print = print,
-                                                             .write = write,
-                                                             .draw = draw,
-                                                             .report = &report});
-}
+static const gait_job_shown shown = {summarise, print, write, draw, make_scene};
 
 moray_status sensitivity_report(gait_job *job)
 {
     const sensitivity *run = (const sensitivity *)job;
-    moray_swim_scene scene = {0};
     sensitivity_findings *found = calloc(1, sizeof *found);
-    moray_status status = found ? moray_ok() : moray_error(MORAY_MEMORY, "no memory for a report");
-    if (!moray_failed(status) && job->common.output)
-        status = make_scene(run, &scene);
-    if (!moray_failed(status))
-        status = show(run, found, &scene);
-    moray_swim_scene_free(&scene);
+    if (!found)
+        return moray_error(MORAY_MEMORY, "no memory for a report");
+    sensitivity_tables(run, found);
+    find_words(run, found);
+    const moray_section section = {
+        .title = "Sensitivities", .figures = "", .tables = found->table, .n_tables = found->tables};
+    const moray_status status = gait_job_publish(job, &shown, last_stage(job)->certificate.pass, 1,
+                                                 &(moray_report){.title = "sensitivity: how the fastest gait moves",
+                                                                 .text = found->text,
+                                                                 .sections = &section,
+                                                                 .n_sections = 1});
     free(found);
     return status;
 }
