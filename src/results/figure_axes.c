@@ -28,22 +28,28 @@ static void range_along(const moray_figure *figure, int axis, double range[2])
 
 // ---- Scales --------------------------------------------------------------------------------------------------------
 
-// The same scale on both axes, and a picture no flatter or slimmer than 4:1 around whatever is drawn.
-static void write_equal_axes(FILE *script, const moray_figure *figure)
+// Middle and half width of either axis: no flatter or slimmer than 4:1 around whatever is drawn. False where nothing
+// is.
+static bool equal_axes(const moray_figure *figure, double middle[2], double half[2])
 {
     double range[2][2];
     for (int axis = 0; axis < 2; axis++)
         range_along(figure, axis, range[axis]);
     const double width = range[0][1] - range[0][0], height = range[1][1] - range[1][0];
-    fputs("set size ratio -1\n", script);
-    if (!(isfinite(width) && isfinite(height)))
-        return;
     for (int axis = 0; axis < 2; axis++) {
-        const double middle = (range[axis][0] + range[axis][1]) / 2, own = axis ? height : width;
-        const double half = fmax(0.53 * own, 0.125 * (axis ? width : height));
-        if (half > 0)
-            fprintf(script, "set %crange [%.17g:%.17g]\n", axis ? 'y' : 'x', middle - half, middle + half);
+        middle[axis] = (range[axis][0] + range[axis][1]) / 2;
+        half[axis] = fmax(0.53 * (axis ? height : width), 0.125 * (axis ? width : height));
     }
+    return isfinite(width) && isfinite(height) && width + height > 0;
+}
+
+static void write_equal_axes(FILE *script, const moray_figure *figure)
+{
+    double middle[2], half[2];
+    fputs("set size ratio -1\n", script);
+    for (int axis = 0; axis < 2 && equal_axes(figure, middle, half); axis++)
+        fprintf(script, "set %crange [%.17g:%.17g]\n", axis ? 'y' : 'x', middle[axis] - half[axis],
+                middle[axis] + half[axis]);
 }
 
 // As much of the axis as is used, not whole decades; within three decades, numbers at 1, 2 and 5 of each.
@@ -150,16 +156,24 @@ static void write_names(FILE *script, const moray_figure *figure)
 
 // ---- Canvas --------------------------------------------------------------------------------------------------------
 
+// Of the frame, which a path fills as far as it may.
+static int frame_height(const moray_figure *figure, double width)
+{
+    const double usual = 298, least = 150, most = 420;
+    double middle[2], half[2];
+    if (!figure->equal_axes || !equal_axes(figure, middle, half))
+        return (int)usual;
+    return (int)fmin(most, fmax(least, width * half[1] / half[0]));
+}
+
 // Narrow enough to be read on a phone, where it is as wide as the screen.
 moray_figure_layout moray_figure_lay_out(const moray_figure *figure)
 {
-    const int key = LINE * moray_figure_key_lines(figure), title = LINE * lines_of(figure->title);
-    return (moray_figure_layout){.width = 600,
-                                 .height = 390 + key + title,
-                                 .left = 96,
-                                 .right = 18,
-                                 .top = 22 + title,
-                                 .bottom = AXIS + 8 + key};
+    moray_figure_layout at = {.width = 600, .left = 96, .right = 18};
+    at.top = 22 + LINE * lines_of(figure->title);
+    at.bottom = AXIS + 8 + LINE * moray_figure_key_lines(figure);
+    at.height = (int)(at.top + at.bottom) + frame_height(figure, at.width - at.left - at.right);
+    return at;
 }
 
 void moray_figure_axes(FILE *script, const moray_figure *figure)

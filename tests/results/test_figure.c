@@ -95,6 +95,30 @@ static void test_layout(void)
     free(other);
 }
 
+// A path is drawn as large as the picture is wide, without empty space above and below it.
+static void test_equal_axes(void)
+{
+    const double along[] = {0, 16}, across[] = {0, 0.5};
+    const moray_curve curve[] = {{.label = "flat", .x = along, .y = across, .n = 2},
+                                 {.label = "tall", .x = across, .y = along, .n = 2}};
+    long height[2] = {0};
+    for (int k = 0; k < 2; k++) {
+        moray_output *output = open_in(curve[k].label);
+        CHECK_OK(
+            moray_output_figure(
+                output,
+                &(moray_figure){.name = "path", .title = "t", .equal_axes = true, .curves = &curve[k], .n_curves = 1}),
+            "drawn");
+        CHECK_OK(moray_output_commit(output), "commit");
+        moray_output_free(output);
+        char *svg = content(k ? "tall/path.svg" : "flat/path.svg");
+        CHECK(sscanf(svg + strcspn(svg, "\n") + 1, "%*[^\n] width=\"%*d\" height=\"%ld\"", &height[k]) == 1,
+              "a height");
+        free(svg);
+    }
+    CHECK(height[0] > 200 && height[0] < 300 && height[1] > 500, "%ld and %ld high", height[0], height[1]);
+}
+
 static double linear(long channel)
 {
     const double c = (double)channel / 255;
@@ -187,6 +211,7 @@ int main(void)
     test_log_axes();
     test_colours_and_field();
     test_layout();
+    test_equal_axes();
     test_contrast();
     test_failed_figure();
     test_bad_gnuplot();
