@@ -8,8 +8,9 @@
 Works on a copy of the source tree with a build of its own, in a folder that is left for the next run. A mutant is one
 sign, factor, index, relation, logical operator, negation, term or statement changed. It is built as far as the tests of
 its room (tests/ROOM for src/ROOM) need it, and these run, quick ones first, until one fails; then, where none does, all
-quick ones of other rooms, or with --whole every test. Survivors are listed by their number in the sample, file, line and change, and
---only NUMBERS plants these again, with --sanitized for the tests of the room under the sanitizers; the last line counts.
+quick ones of other rooms, or with --whole every test. Survivors are listed by their number in the sample, file, line and
+change, and --only NUMBERS plants these again, with --sanitized for the tests of the room under the sanitizers, which see
+reads beyond an end and leaks; the last line counts.
 Runs by name alone: some five seconds a mutant.
 """
 import argparse
@@ -28,7 +29,6 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 QUICK = 2.0  # seconds; what the rooms' own tests let pass faces all programs of tests that are as quick
 # Texts and packaging: no fault in src moves them.
 UNMOVED = {"commands", "doc", "guide", "headers", "install", "ipopt_3_14", "languages", "layers", "names", "package", "prose", "scripts"}
-# The other half of the suite, which finds what a plain build cannot see: reads beyond an end, and leaks.
 SANITIZED = ["-Db_sanitize=address,undefined", "-Doptimization=1"]
 SUPPRESSED = {"LSAN_OPTIONS": "suppressions=%s/tests/lsan.supp:print_suppressions=0" % ROOT, "UBSAN_OPTIONS": "halt_on_error=1"}
 SECONDS = 300  # for a test without a mutant
