@@ -363,6 +363,17 @@ static void test_failures(void)
     settings = moray_sim_settings_default();
     settings.max_step = -1;
     CHECK(moray_sim_settings_check(&settings).code == MORAY_INPUT, "max_step -1");
+    settings = moray_sim_settings_default();
+    settings.max_steps = 0;
+    status = moray_sim_settings_check(&settings);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "max_steps = 0"), "no steps: %s", status.text);
+    settings = moray_sim_settings_paper();
+    CHECK(settings.method == MORAY_SIM_TR_BDF2 && settings.rtol == 1e-4 && settings.atol == 1e-4 &&
+              !moray_failed(moray_sim_settings_check(&settings)),
+          "those of the paper are good");
+    settings.method = MORAY_SIM_TR_BDF2 + 1;
+    status = moray_sim_settings_check(&settings);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "method = 3"), "a method that is none: %s", status.text);
     status = moray_sim_new(&sim, &(moray_ode){.n = 0, .rhs = decay}, &settings);
     CHECK(status.code == MORAY_INPUT && strstr(status.text, "n = 0"), "no states: %s", status.text);
     settings = moray_sim_settings_default();

@@ -1,10 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Other ways of building: compilers and levels, each with the whole suite, and whether the library comes out the same from two
-# folders. Runs by name alone, some minutes a way: sh tests/studies/builds.sh [gcc-O0|gcc-O3|clang-O2|same]...
+# Other ways of building: compilers and levels, each with the whole suite; the rounding of an old processor; and whether the
+# library comes out the same from two folders. Runs by name alone, some minutes a way:
+# sh tests/studies/builds.sh [gcc-O0|gcc-O3|clang-O2|old-processor|same]...
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/../.." && pwd) || exit 1
 . "$root/problems/setup.sh"
-[ $# -gt 0 ] || set -- gcc-O0 gcc-O3 clang-O2 same
+[ $# -gt 0 ] || set -- gcc-O0 gcc-O3 clang-O2 old-processor same
 failed=0
 
 # way NAME COMPILER [MESON OPTIONS]: builds without warnings, tests, prints a line.
@@ -23,6 +24,15 @@ way() {
     fi
     echo "$name: ${counts% *} passed, ${counts#* } failed"
     [ "${counts#* }" -eq 0 ] || failed=1
+}
+
+# The mathematical functions and BLAS choose their code by the processor, and round by it.
+old_processor() {
+    (
+        export GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX512F,-AVX2,-AVX2_Usable,-FMA,-FMA_Usable,-FMA4 OPENBLAS_CORETYPE=Prescott
+        way old-processor gcc
+        exit $failed
+    ) || failed=1
 }
 
 # The library from two copies of the tree, byte by byte.
@@ -52,8 +62,9 @@ for wanted; do
     gcc-O0) way gcc-O0 gcc -Doptimization=0 ;;
     gcc-O3) way gcc-O3 gcc -Doptimization=3 -Dc_args=-march=native ;;
     clang-O2) way clang-O2 clang ;;
+    old-processor) old_processor ;;
     same) same ;;
-    *) say "$wanted: must be gcc-O0, gcc-O3, clang-O2 or same" && exit 2 ;;
+    *) say "$wanted: must be gcc-O0, gcc-O3, clang-O2, old-processor or same" && exit 2 ;;
     esac
 done
 exit $failed
