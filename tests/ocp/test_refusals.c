@@ -189,6 +189,40 @@ static void test_names_of_problems(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Observations ----
+
+static void watch(const moray_node *at, moray_num *y, const void *data)
+{
+    (void)data;
+    y[0] = at->x[0];
+}
+
+static void test_observations(void)
+{
+    const moray_map narrow_map = {.n_in = 3, .n_out = 1};
+    const double time[] = {0.25, 0.75}, value[] = {0.1, -INFINITY}, undefined_time[] = {0.25, NAN}, weight[] = {-1};
+    const moray_observations good = {.n = 2, .ny = 1, .time = time, .value = time, .observe = watch};
+    moray_phase_spec phase = cart();
+    phase.observed = good, phase.observed.ny = 0;
+    phase_refused(phase, "observations of phase cart: n 2, ny 0; need times, values and a channel");
+    phase.observed = good, phase.observed.value = NULL;
+    phase_refused(phase, "need times, values and a channel");
+    phase.observed = good, phase.observed.observe = NULL;
+    phase_refused(phase, "observations of phase cart: need a function or a map, and only one");
+    phase.observed = good, phase.observed.map = &narrow_map;
+    phase_refused(phase, "need a function or a map, and only one");
+    phase.observed.observe = NULL;
+    phase_refused(phase, "observations of phase cart: the map has 3 inputs and 1 outputs, needs 4 and 1");
+    phase.observed = good, phase.observed.loss = MORAY_HUBER;
+    phase_refused(phase, "threshold");
+    phase.observed = good, phase.observed.value = value;
+    phase_refused(phase, "observations of phase cart: value[1][0] is infinite");
+    phase.observed = good, phase.observed.time = undefined_time;
+    phase_refused(phase, "time[1]");
+    phase.observed = good, phase.observed.weight = weight;
+    phase_refused(phase, "weight[0]");
+}
+
 static moray_ocp *make(const moray_ocp_spec *spec)
 {
     moray_ocp *ocp;
@@ -197,6 +231,8 @@ static moray_ocp *make(const moray_ocp_spec *spec)
 }
 
 // ---- Settings and schemes ----
+
+static const double nought_at[] = {0, 0};
 
 static void test_settings(void)
 {
@@ -218,7 +254,13 @@ static void test_settings(void)
     refused(moray_solve(ocp, &settings, NULL, &solution), "max_refinements = -1: must not be negative");
     settings = good, settings.print_level = 99;
     refused(moray_solve(ocp, &settings, NULL, &solution), "print level 99: must lie between 0 and 12");
+    settings = good, settings.scheme = "radau3,gauss2";
+    refused(moray_solve(ocp, &settings, NULL, &solution), "scheme = radau3,gauss2: 2 names for 1 phases");
     CHECK(!solution, "and there is no solution");
+    const double nowhere[] = {0, NAN};
+    refused(moray_ocp_restart(ocp, NAN, 1, nought_at), "start at nan, length 1: must be finite");
+    refused(moray_ocp_restart(ocp, 0, -1, nought_at), "length -1: must be finite, the length not negative");
+    refused(moray_ocp_restart(ocp, 0, 1, nowhere), "start of x[1] is not finite");
     moray_ocp_free(ocp);
 
     moray_scheme scheme;
@@ -255,6 +297,58 @@ static void test_guesses(void)
     s[0] = NAN;
     guess_refused(ocp, &guess, "guess: parameter 0 is not finite");
     moray_ocp_free(ocp);
+}
+
+// A solution of one phase is no guess for two; two cannot be begun anew as one.
+static void test_other_phases(void)
+{
+    moray_phase_spec phase[] = {cart(), cart()};
+    phase[1].name = "again";
+    moray_ocp_spec spec = task(phase);
+    moray_ocp *ocp = make(&spec);
+    spec.phases = 2;
+    moray_ocp *two = make(&spec);
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    const moray_guess guess = moray_guess_from_solution(solution);
+    guess_refused(two, &guess, "guess: the solution has 1 phases");
+    settings.intervals = 0;
+    moray_solution *none;
+    refused(moray_solve(two, &settings, &guess, &none), "guess: the solution has 1 phases");
+    refused(moray_ocp_restart(two, 0, 1, nought_at), "problem task: has 2 phases: must be 1");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    moray_ocp_free(two);
+}
+
+// Files of a guess.
+static void test_guess_files(void)
+{
+    static const struct {
+        const char *text, *expected;
+    } cases[] = {
+        {"t,x[0],x[1],u[0]\n0,0,0,0\n1,1,0,0\n0.5,1,0,0\n", ":4: t = 0.5 comes after 1: times must ascend"},
+        {"phase,t,x[0],x[1],u[0]\n1,0,0,0,0\n2.5,1,1,0,0\n", ":3: phase = 2.5: must be a whole number from 1 to 2"},
+        {"t,x[0],x[1],u[0]\n0,0,zero,0\n", ":2: "},
+        {"t,x[0],u[0]\n0,0,0\n", "x[1]"}};
+    moray_phase_spec phase[] = {cart(), cart()};
+    phase[1].name = "again";
+    moray_ocp_spec spec = task(phase);
+    moray_ocp *single = make(&spec);
+    spec.phases = 2;
+    moray_ocp *two = make(&spec);
+    for (unsigned k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char path[] = "/tmp/moray-guess-XXXXXX";
+        moray_guess guess;
+        FILE *file = fdopen(mkstemp(path), "w");
+        fputs(cases[k].text, file);
+        fclose(file);
+        refused(moray_guess_read(&guess, *cases[k].text == 'p' ? two : single, path), cases[k].expected);
+        remove(path);
+    }
+    moray_ocp_free(single);
+    moray_ocp_free(two);
 }
 
 static void test_simulated_guesses(void)
@@ -321,8 +415,11 @@ int main(void)
     test_problems();
     test_names();
     test_names_of_problems();
+    test_observations();
     test_settings();
     test_guesses();
+    test_other_phases();
+    test_guess_files();
     test_simulated_guesses();
     test_outside_the_domain();
     test_files();
