@@ -14,12 +14,17 @@ case $name in
 '' | */*) known= ;;
 *) [ -f "$root/problems/$name.c" ] && known=yes || known= ;;
 esac
+# about NAME: what README.md says that it does, to its first comma, colon or semicolon.
+about() {
+    [ ! -f "$root/README.md" ] || awk -F '|' -v cell=" \`$1\` " '$2 == cell { gsub(/^ | *([:;,].*)?$/, "", $3); print $3; exit }' "$root/README.md"
+}
 if [ -z "$known" ]; then
     say "Usage: sh problems/run.sh NAME [OPTION]...${name:+ There is no problem $name.} NAME is one of:"
-    for source in "$root"/problems/*.c; do
-        [ -f "$source" ] && say "  $(basename "$source" .c)"
+    for source in "$root"/problems/*.c "$root/problems/tour.sh"; do
+        one=$(basename "${source%.*}")
+        [ ! -f "$source" ] || say "$(printf '  %-17s %s' "$one" "$(about "$one")")"
     done
-    [ ! -f "$root/problems/tour.sh" ] || say "  tour"
+    say "NAME --help tells the options of each."
     exit 2
 fi
 shift

@@ -81,6 +81,9 @@ run problems/run.sh demo
 check "run.sh: does not configure twice" eval '! called "meson setup" && called "ninja -C"'
 BUILD_FAILS=yes run problems/run.sh demo
 check "run.sh: a failed build shows its log" eval 'said "demo.c:1: error: no" && [ $code -eq 1 ] && printed ""'
+printf '| `demo` | shows it: at length |\n' >"$repo/README.md"
+run problems/run.sh
+check "run.sh: the names with what they do" said "  demo              shows it"
 for name in '' nonsense ../tests/run . problems/demo; do
     run problems/run.sh $name
     check "run.sh '$name': exit 2 and the names, nothing else" eval \
