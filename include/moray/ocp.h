@@ -297,13 +297,13 @@ typedef struct moray_settings {
 MORAY_API moray_settings moray_settings_default(void);
 
 // Transcribes and solves from `guess` (NULL: from the bounds, and where that leads nowhere from what the dynamics do
-// with controls off the middle of theirs, then in scales of Ipopt's). Stopped early, the solution is the best iterate, see
-// moray_ipopt_solve. The solution keeps what it needs of the problem but must
-// not outlive it; free with moray_solution_free. A refined mesh starts from the interpolated solution of the last; when
-// one is not solved, the solution is that of the last solved (with the outcome of the failed where interrupted).
-// Returns MORAY_OK with *solution set whenever the solver ran, converged or not: read moray_solution_info(...)->outcome
-// and, when it is not MORAY_NLP_SOLVED, moray_solution_diagnosis. Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY,
-// MORAY_NUMERIC (functions not finite at the guess).
+// with controls off the middle of theirs, then in scales of Ipopt's). Stopped early, the solution is the best iterate,
+// see moray_ipopt_solve. The solution keeps what it needs of the problem but must not outlive it; free with
+// moray_solution_free. A refined mesh starts from the interpolated solution of the last; when one is not solved, the
+// solution is that of the last solved (with the outcome of the failed where interrupted). Returns MORAY_OK with
+// *solution set whenever the solver ran, converged or not: read moray_solution_info(...)->outcome and, when it is not
+// MORAY_NLP_SOLVED, moray_solution_diagnosis. Errors: MORAY_INPUT (settings, guess), MORAY_MEMORY, MORAY_NUMERIC
+// (functions not finite at the guess).
 MORAY_API moray_status moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
                                    moray_solution **solution);
 MORAY_API void moray_solution_free(moray_solution *solution);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "nlp/ipopt_options.h"
 
+#include <math.h>
 #include <string.h>
+
+static const double usual_violation = 1e-4; // Ipopt's own
 
 // Whether several variables stand in a quarter of all constraints or more, as parameters and end times do. work[n].
 static bool has_dense_columns(const moray_nlp *nlp, double *work)
@@ -37,11 +40,24 @@ static bool set_linear_solver(IpoptProblem problem, const moray_nlp *nlp, moray_
     return ok;
 }
 
+// Ipopt's limit of violations in the user's units, 1e-4, is below rounding where those are small ones: of rows that are
+// scaled the tolerance counts.
+static bool set_violation(IpoptProblem problem, const moray_nlp *nlp, double tolerance)
+{
+    double largest = 0;
+    for (int i = 0; i < nlp->m && nlp->g_scale; i++)
+        largest = fmax(largest, tolerance / nlp->g_scale[i]);
+    return largest <= usual_violation ||
+           (AddIpoptNumOption(problem, (char *)"constr_viol_tol", largest) &&
+            AddIpoptNumOption(problem, (char *)"acceptable_constr_viol_tol", fmax(100 * largest, 1e-2)));
+}
+
 bool moray_ipopt_set_options(IpoptProblem problem, const moray_nlp *nlp, const moray_nlp_settings *settings,
                              moray_linear_solver solver, double *work)
 {
     // 3.11 declares its option texts as char * but only reads them.
     bool ok = AddIpoptNumOption(problem, (char *)"tol", settings->tolerance);
+    ok = ok && set_violation(problem, nlp, settings->tolerance);
     ok = ok && AddIpoptIntOption(problem, (char *)"max_iter", settings->max_iterations);
     if (settings->max_cpu_seconds > 0)
         ok = ok && AddIpoptNumOption(problem, (char *)"max_cpu_time", settings->max_cpu_seconds);

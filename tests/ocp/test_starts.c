@@ -267,8 +267,35 @@ static void test_wide_box(void)
     }
 }
 
+// ---- Most utility of 1e12 that bears 5 % a year and is spent in 50 years, at a discount of 3 %: what is spent grows
+// by
+//      2 % a year. Rounding in the fortune is more than 1e-4 in its units ----
+
+static void spend(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = 0.05 * at->x[0] - at->u[0];
+    out->g[0] = -exp(-0.03 * at->t) * log(at->u[0]);
+}
+
+static void test_fortune(void)
+{
+    const double all = 1 - exp(-1.5), first = 0.03 * 1e12 / all;
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = spend,
+                                    .tf = moray_fixed(50),
+                                    .x = MORAY_BOUNDS(moray_at_least(0)),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(1e12)),
+                                    .u = MORAY_BOUNDS(moray_at_least(1e6))};
+    check(&(moray_ocp_spec){.name = "a fortune", .phases = 1, .phase = &phase, .endpoint = first_integral},
+          -(log(first) * all / 0.03 + 0.02 / 0.0009 * (1 - exp(-1.5) * 2.5)), NULL);
+}
+
 int main(void)
 {
+    test_fortune();
     test_wide_box();
     test_endless();
     test_one_sided();
