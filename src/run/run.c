@@ -169,19 +169,33 @@ static moray_status judge(const app_run *run)
 
 static const double doubtful = 1e-4; // difference that rounding does not explain
 
-// What failed, and what to do about it.
-static void say_failure(const app_run *run)
+static const double nonsense = 1; // an error of the dynamics that leaves nothing else to be judged
+
+// What to do about the first number that failed.
+static const char *advice_on(const app_run *run)
 {
     const moray_certificate *c = &run->certificate;
-    const char *advice =
-        isnan(c->mesh_error) ? "bound its duration from below, or give a guess of its times: see --guess"
-        : !(c->derivatives <= MORAY_LIMIT_DERIVATIVES && c->directions <= MORAY_LIMIT_DIRECTIONS)
-            ? "the derivatives are wrong at the solution, or it lies on a kink of a function: see --check"
-        : !(c->kkt <= MORAY_LIMIT_KKT) ? "the solver stopped short of an optimum: try a smaller tol, or bounds and "
-                                         "guesses of the sizes that occur"
-        : !(c->mesh_error <= run->mesh_tol) ? "the mesh is too coarse: try more refinements, intervals or stages"
-                                            : "try more intervals or refinements";
-    fprintf(stderr, "%s: certificate failed: %s. %s\n", run->name, c->why, advice);
+    if (isnan(c->mesh_error))
+        return "bound its duration from below, or give a guess of its times: see --guess";
+    if (!(c->derivatives <= MORAY_LIMIT_DERIVATIVES && c->directions <= MORAY_LIMIT_DIRECTIONS) &&
+        c->mesh_error < nonsense)
+        return "the derivatives are wrong at the solution, or it lies on a kink of a function: see --check";
+    if (!(c->kkt <= MORAY_LIMIT_KKT) && c->mesh_error < nonsense)
+        return "the solver stopped short of an optimum: try a smaller tol, or bounds and guesses of the sizes that "
+               "occur";
+    if (!(c->gap <= MORAY_LIMIT_GAP))
+        return "try a smaller tol";
+    if (c->curvature > MORAY_LIMIT_CURVATURE)
+        return "try another guess";
+    if (!(c->mesh_error <= run->mesh_tol))
+        return "the mesh is too coarse: try more refinements, intervals or stages";
+    return c->unseen > MORAY_LIMIT_UNSEEN ? "try more refinements, or a phase for each side of a jump"
+                                          : "try more intervals or refinements";
+}
+
+static void say_failure(const app_run *run)
+{
+    fprintf(stderr, "%s: certificate failed: %s. %s\n", run->name, run->certificate.why, advice_on(run));
 }
 
 static moray_status check(const app_run *run)

@@ -137,6 +137,8 @@ check "certificate failed: exit 3 and a line that says what to try: $(cat err)" 
     eval '[ $code -eq 3 ] && says "certificate failed" && says "try" && grep -q "\"pass\":.false" out'
 run --set gate=0
 check "a phase without length: $(cat err)" eval '[ $code -eq 3 ] && says "no length" && says "bound its duration"'
+run --set ipopt.mu_target=1e-2 --tol 1e-3
+check "stopped inside the constraints: $(cat err)" eval '[ $code -eq 3 ] && says "stopped inside" && says "try a smaller tol"'
 run --tol 1e-15 --set ipopt.acceptable_iter=1 --set ipopt.acceptable_tol=1e-7
 check "solved to a looser tolerance, and as good as the certificate asks: exit 0" eval '[ $code -eq 0 ] &&
     grep -q "looser tolerance" out && grep -q "^Certificate: pass" out'
