@@ -8,41 +8,7 @@
 #include <string.h>
 
 #include "linear/ldl.h"
-
-extern void dsyev_(const char *job, const char *uplo, const int *n, double *A, const int *lda, double *w, double *work,
-                   const int *lwork, int *info);
-enum { MOST = 60, ROOM = 4 * MOST * MOST };
-
-typedef struct sample {
-    int n, row[ROOM], col[ROOM];
-    moray_pattern pattern;
-    double value[ROOM], A[MOST * MOST];
-    unsigned long long seed;
-} sample;
-
-static int pick(sample *s, int n)
-{
-    return (int)tap_random(&s->seed, 0, n);
-}
-
-static void put(sample *s, int i, int j, double value)
-{
-    const int k = s->pattern.nnz++;
-    const bool turned = pick(s, 2);
-    s->row[k] = turned ? j : i;
-    s->col[k] = turned ? i : j;
-    s->value[k] = value;
-    s->A[i * s->n + j] += value;
-    if (i != j)
-        s->A[j * s->n + i] += value;
-}
-
-static void start(sample *s, int n)
-{
-    s->n = n;
-    s->pattern = (moray_pattern){0, s->row, s->col};
-    memset(s->A, 0, sizeof s->A);
-}
+#include "sample.h"
 
 static double some(sample *s)
 {

@@ -9,34 +9,7 @@
 
 #include "linear/kkt_factors.h"
 #include "linear/null_space.h"
-
-extern void dsyev_(const char *job, const char *uplo, const int *n, double *A, const int *lda, double *w, double *work,
-                   const int *lwork, int *info);
-enum { MOST = 60, ROOM = 8 * MOST * MOST };
-
-typedef struct sample {
-    int n, m, row[ROOM], col[ROOM]; // variables, then m constraints
-    moray_pattern pattern;
-    double value[ROOM], A[MOST * MOST];
-    unsigned long long seed;
-} sample;
-
-static int pick(sample *s, int n)
-{
-    return (int)tap_random(&s->seed, 0, n);
-}
-
-static void put(sample *s, int i, int j, double value)
-{
-    const int k = s->pattern.nnz++;
-    const bool turned = pick(s, 2);
-    s->row[k] = turned ? j : i;
-    s->col[k] = turned ? i : j;
-    s->value[k] = value;
-    s->A[i * s->n + j] += value;
-    if (i != j)
-        s->A[j * s->n + i] += value;
-}
+#include "sample.h"
 
 // A chain of constraints as of dynamics, with parameters that all of them meet, entries in two parts, a Hessian of its
 // own; spread: powers of ten over which rows are scaled.
@@ -45,9 +18,7 @@ static void make(sample *s, unsigned long long seed, double spread)
     s->seed = seed;
     s->m = 1 + pick(s, 24);
     const int freedom = pick(s, 5), variables = s->m + freedom;
-    s->n = variables + s->m;
-    s->pattern = (moray_pattern){0, s->row, s->col};
-    memset(s->A, 0, sizeof s->A);
+    start(s, variables + s->m);
     double scale[MOST];
     for (int i = 0; i < s->n; i++)
         scale[i] = pow(10, spread * tap_random(&s->seed, -0.5, 0.5));

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// A random symmetric matrix, as entries and as a whole.
+#ifndef TESTS_LINEAR_SAMPLE_H
+#define TESTS_LINEAR_SAMPLE_H
+
+#include <string.h>
+
+#include "moray/map.h"
+#include "tap.h"
+
+extern void dsyev_(const char *job, const char *uplo, const int *n, double *A, const int *lda, double *w, double *work,
+                   const int *lwork, int *info);
+enum { MOST = 60, ROOM = 8 * MOST * MOST };
+
+typedef struct sample {
+    int n, m; // rows; those of constraints, which come last, where there are such
+    int row[ROOM], col[ROOM];
+    moray_pattern pattern;
+    double value[ROOM], A[MOST * MOST];
+    unsigned long long seed;
+} sample;
+
+static inline int pick(sample *s, int n)
+{
+    return (int)tap_random(&s->seed, 0, n);
+}
+
+static inline void put(sample *s, int i, int j, double value)
+{
+    const int k = s->pattern.nnz++;
+    const bool turned = pick(s, 2);
+    s->row[k] = turned ? j : i;
+    s->col[k] = turned ? i : j;
+    s->value[k] = value;
+    s->A[i * s->n + j] += value;
+    if (i != j)
+        s->A[j * s->n + i] += value;
+}
+
+static inline void start(sample *s, int n)
+{
+    s->n = n;
+    s->pattern = (moray_pattern){0, s->row, s->col};
+    memset(s->A, 0, sizeof s->A);
+}
+
+#endif
