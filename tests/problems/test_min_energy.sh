@@ -37,6 +37,8 @@ check "no speed to default to: $(cat err)" eval '[ $code -eq 1 ] && grep -q "spe
 run --json --model control --current=-0.3,0 --set speed_m_s=0.05
 check "though the robot can make one, and it pays to: $(number predicted course_speed_m_s) m/s over ground" \
     near "$(number predicted course_speed_m_s)" 0.3 5e-3
+run --model control --current=-2,0
+check "nor with any speed a current that no gait stems: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it" err'
 run --model control --current=-2,0 --set speed_m_s=0.05
 check "a head current it cannot stem: $(cat err)" eval '[ $code -eq 1 ] && grep -q "cannot stem it" err'
 fi

@@ -130,7 +130,10 @@ static moray_status keep_iterate(gait_job *job, const stage *at)
 static moray_status optimise_and_prove(gait_job *job, moray_model model, const gait_starts *known)
 {
     stage *at = &job->stage[model];
-    MORAY_TRY(gait_job_demand(job, model, at));
+    const moray_status demanded = gait_job_demand(job, model, at);
+    if (demanded.code == MORAY_NOT_SOLVED)
+        MORAY_TRY(gait_job_stem(job, at)); // where no gait could, no number to be given helps
+    MORAY_TRY(demanded);
     moray_status status = gait_job_optimise(job, at, known);
     if (status.code == MORAY_INTERRUPTED && at->solution)
         return keep_iterate(job, at);

@@ -241,6 +241,11 @@ static moray_status check_current(gait_job *job, const stage *at, double reserve
     return moray_ok();
 }
 
+moray_status gait_job_stem(gait_job *job, const stage *at)
+{
+    return check_current(job, at, beyond_doubt);
+}
+
 // Why there is no gait that makes way.
 static moray_status explain_no_way(gait_job *job, const stage *at)
 {
@@ -275,7 +280,7 @@ moray_status gait_job_optimise(gait_job *job, stage *at, const gait_starts *know
 {
     MORAY_TRY(gait_job_problem(job, at, job->goal, job->snake.current, &at->problem));
     MORAY_TRY(load(job, at));
-    MORAY_TRY(check_current(job, at, beyond_doubt)); // to find no gait takes a thousand iterations
+    MORAY_TRY(gait_job_stem(job, at)); // to find no gait takes a thousand iterations
     MORAY_TRY(solve_all(job, at, known));
     if (moray_interrupted())
         return moray_error(MORAY_INTERRUPTED, "interrupted while optimising; nothing is written");
