@@ -27,6 +27,7 @@ bool moray_ipopt_log_find(const struct ipopt_log *log, const char *words, char *
 {
     FILE *file = log->path[0] ? fopen(log->path, "r") : NULL;
     bool found = false;
+    line[0] = 0; // of a log in which nothing stands
     if (!file)
         return false;
     while (!found && fgets(line, (int)size, file))

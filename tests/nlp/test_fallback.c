@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "moray/nlp.h"
+#include "nlp/ipopt_log.h"
 
 enum { ROWS = 1100, FREE = 40, COLUMNS = ROWS + 1 + FREE }; // x, p, y
 static const double step = 1e-3;
@@ -102,8 +103,22 @@ static moray_status solve(moray_linear_solver solver, double *p, moray_nlp_info 
     return status;
 }
 
+// In a log in which nothing stands there is no line, and what is beside the room for it stays.
+static void test_empty_log(void)
+{
+    enum { room = 200 };
+    char line[room + 3];
+    struct ipopt_log log;
+    memset(line, 'x', room);
+    memcpy(line + room, "\n?", 3);
+    CHECK(moray_ipopt_log_open(&log), "a log");
+    CHECK(!moray_ipopt_log_find(&log, "words", line, room) && line[0] == 0 && line[room] == '\n', "nothing is found");
+    moray_ipopt_log_close(&log);
+}
+
 int main(void)
 {
+    test_empty_log();
     moray_nlp_info info;
     double p;
     CHECK(moray_nlp_settings_default().linear_solver == MORAY_LINEAR_MORAY, "our own is the default");
