@@ -234,8 +234,8 @@ const char *gait_job_baseline(const gait_job *job, char text[64]);
 enum { GAIT_STAGES = 3 };
 int gait_job_stages(const gait_job *job, const stage *at[GAIT_STAGES]);
 
-// Whether any gait of a stage, whose model, power and taper are set, could stem the current. Error: MORAY_NOT_SOLVED where
-// beyond doubt none can.
+// Whether any gait of a stage, whose model, power and taper are set, could stem the current. Error: MORAY_NOT_SOLVED
+// where beyond doubt none can.
 moray_status gait_job_stem(gait_job *job, const stage *at);
 
 // Problem, best solution from the starts and random ones, and prediction of a stage whose model, power,
