@@ -57,6 +57,29 @@ static void test_derivatives(moray_model model, bool averaged, int links, double
     moray_path_free(&path);
 }
 
+// Line of sight without a plan: towards what lies a lookahead on, and against the current by the integral of what is
+// off.
+static void test_line_of_sight(void)
+{
+    moray_path path;
+    CHECK_OK(moray_path_read(&path, "0,0 10,0", 0.5), "a straight path");
+    moray_guidance guidance = {
+        .path = &path, .lookahead = 2, .ahead = 0.5, .gain = 0.1, .period = 0.25, .along = 1, .integral = 3};
+    moray_swim_sample sample = {.pose = {.p_x = 4, .p_y = 0.7}};
+    double target = moray_guidance_target(&sample, &guidance);
+    CHECK_NEAR(target, -atan(1.0 / 2), 1e-12, "0.7 m off and 0.1 of 3 m");
+    CHECK_NEAR(guidance.along, 4, 1e-9, "where it is on the path");
+    CHECK_NEAR(guidance.integral, 3 + 0.25 * 2 * 0.7 / (1 + 4), 1e-12, "and what is summed up");
+    sample.pose.p_y = -0.7;
+    guidance.integral = 0;
+    target = moray_guidance_target(&sample, &guidance);
+    CHECK_NEAR(target, atan(0.7 / 2), 1e-12, "from the other side");
+    moray_path_seeker seeker = {&path, 9};
+    CHECK(moray_path_seek(&(moray_swim_sample){.pose = {.p_x = 9.5}}, &seeker), "before the end");
+    CHECK(!moray_path_seek(&(moray_swim_sample){.pose = {.p_x = 10.1}}, &seeker), "behind it");
+    moray_path_free(&path);
+}
+
 static void test_refusals(void)
 {
     moray_path path;
@@ -257,6 +280,7 @@ int main(void)
         test_derivatives(MORAY_CONTROL_ORIENTED, true, links, 20, MORAY_INFINITY);
         test_derivatives(MORAY_FIRST_PRINCIPLES, false, links, 20, 0.3);
     }
+    test_line_of_sight();
     test_refusals();
     test_crab();
     test_replanning();

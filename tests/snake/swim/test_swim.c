@@ -368,6 +368,34 @@ static void test_steady(moray_model model, double omega_deg, int settling)
     moray_swimmer_free(swimmer);
 }
 
+// Strokes as long as the links, each followed by a NaN; the first robot and the last about where the track begins and
+// ends.
+static void check_outline(const moray_swimmer *swimmer, const moray_swim_track *track)
+{
+    const double l = moray_swimmer_robot(swimmer)->l;
+    double *x, *y, worst = 0;
+    int n;
+    CHECK_OK(moray_swim_outline(track, swimmer, &x, &y, &n), "outline");
+    CHECK(n >= 2 * 3 * LINKS && n % (3 * LINKS) == 0, "%d points of %d links", n, LINKS);
+    for (int k = 0; k < n; k += 3) {
+        worst = larger(worst, fabs(hypot(x[k + 1] - x[k], y[k + 1] - y[k]) - 2 * l));
+        CHECK(isnan(x[k + 2]) && isnan(y[k + 2]), "a gap");
+    }
+    CHECK(worst < 1e-12, "strokes of a link's length: %.1e", worst);
+    for (int last = 0; last < 2; last++) {
+        const moray_pose *pose = &track->pose[last ? track->n - 1 : 0];
+        const int first = last ? n - 3 * LINKS : 0;
+        double middle[2] = {0, 0};
+        for (int k = first; k < first + 3 * LINKS; k += 3) {
+            middle[0] += (x[k] + x[k + 1]) / (2 * LINKS);
+            middle[1] += (y[k] + y[k + 1]) / (2 * LINKS);
+        }
+        CHECK_NEAR(middle[0], pose->p_x, 1e-9, "about where it is: x");
+        CHECK_NEAR(middle[1], pose->p_y, 1e-9, "y");
+    }
+    free(x);
+}
+
 static void test_orbit(moray_model model)
 {
     enum { points = 26 };
@@ -401,6 +429,7 @@ static void test_orbit(moray_model model)
     CHECK(worst_joint < 1e-8, "the joints are on the gait, in phase: %g", worst_joint);
     CHECK(worst_effort < 1e-9, "the efforts belong to the states: %g", worst_effort);
     CHECK(largest_effort <= steady.peak_effort + 1e-9, "no effort above the peak: %g", largest_effort);
+    check_outline(swimmer, &orbit);
     memcpy(x, orbit.x, STATES * sizeof *x);
     reference_run(swimmer, &gait, 0, T, 4000, x);
     const double end = distance(x, orbit.x + (points - 1) * STATES);
