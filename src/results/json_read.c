@@ -60,6 +60,13 @@ void moray_json_file_free(moray_json_file *json)
     free(json);
 }
 
+static const cJSON *item_of(const cJSON *list, const char *number)
+{
+    char *end;
+    const long at = strtol(number, &end, 10);
+    return *end || end == number || at < 0 || at >= cJSON_GetArraySize(list) ? NULL : cJSON_GetArrayItem(list, (int)at);
+}
+
 static const cJSON *find(const moray_json_file *json, const char *place)
 {
     const cJSON *at = json ? json->root : NULL;
@@ -70,7 +77,7 @@ static const cJSON *find(const moray_json_file *json, const char *place)
             return NULL;
         memcpy(key, place, length);
         key[length] = 0;
-        at = cJSON_IsArray(at) ? cJSON_GetArrayItem(at, atoi(key)) : cJSON_GetObjectItemCaseSensitive(at, key);
+        at = cJSON_IsArray(at) ? item_of(at, key) : cJSON_GetObjectItemCaseSensitive(at, key);
         place += length + (place[length] == '.');
     }
     return at;

@@ -266,8 +266,46 @@ static void test_progress(void)
     fclose(plain);
 }
 
+// Numbers and texts by their places; nothing stands where a list is asked for what is no number.
+static void test_json_places(void)
+{
+    static const char *const bad[] = {"", "{\"a\": ", "no"}, *const why[] = {"it is empty", "is not JSON",
+                                                                             "is not JSON"};
+    char path[] = "/tmp/moray-json-XXXXXX";
+    moray_json_file *json;
+    FILE *file = fdopen(mkstemp(path), "w");
+    fputs(
+        "{\"list\": [{\"a\": 1.5}, {\"a\": 2.5, \"name\": \"two\"}], \"deep\": {\"er\": {\"x\": -3}}, \"none\": null}",
+        file);
+    fclose(file);
+    CHECK_OK(moray_json_read(&json, path), "a file");
+    CHECK(moray_json_number_at(json, "list.1.a") == 2.5 && moray_json_number_at(json, "deep.er.x") == -3, "numbers");
+    CHECK(!strcmp(moray_json_text_at(json, "list.1.name"), "two"), "a text");
+    CHECK(moray_json_count_at(json, "") == 3 && moray_json_count_at(json, "list") == 2 &&
+              moray_json_count_at(json, "list.1") == 2 && moray_json_count_at(json, "list.0.a") == -1,
+          "members and items");
+    static const char *const absent[] = {"list.2.a", "list.-1.a", "list.a", "list.a.a",   "list.1x.a",
+                                         "deep.x",   "none",      "deep",   "list.1.name"};
+    for (unsigned k = 0; k < sizeof absent / sizeof *absent; k++)
+        CHECK(isnan(moray_json_number_at(json, absent[k])), "no number at %s", absent[k]);
+    CHECK(!moray_json_text_at(json, "list.1.a") && !moray_json_text_at(json, "list.name"), "nor a text");
+    moray_json_file_free(json);
+    for (unsigned k = 0; k < sizeof bad / sizeof *bad; k++) {
+        file = fopen(path, "w");
+        fputs(bad[k], file);
+        fclose(file);
+        const moray_status status = moray_json_read(&json, path);
+        CHECK(moray_failed(status) && !json && strstr(status.text, why[k]), "%s", status.text);
+    }
+    remove(path);
+    const moray_status status = moray_json_read(&json, path);
+    CHECK(status.code == MORAY_IO && !json && strstr(status.text, "No such file"), "%s", status.text);
+    moray_json_file_free(NULL);
+}
+
 int main(void)
 {
+    test_json_places();
     test_numbers();
     test_json();
     test_json_depth();
