@@ -55,10 +55,10 @@ static moray_status status_of(const sparse_lu *lu)
 
 static moray_status analyse(sparse_lu *lu, bool by_columns)
 {
-    enum { amd, colamd };
+    enum { with_amd, with_colamd };
     klu_defaults(&lu->common);
     lu->common.tol = by_columns ? LOOSE_PIVOT : PIVOT;
-    lu->common.ordering = by_columns ? colamd : amd;
+    lu->common.ordering = by_columns ? with_colamd : with_amd;
     lu->symbolic = klu_analyze(lu->n, lu->start, lu->row, &lu->common);
     if (!lu->symbolic)
         return status_of(lu);

@@ -65,10 +65,10 @@ enum side { behind = -1, both, ahead };
 static struct told extrapolate(const struct bending *b, enum side at, int level, double noise, double *row)
 {
     struct told told = {NAN, INFINITY};
-    const double h = ldexp(first_step, -2 * level);
+    const double h = ldexp(first_step, -2 * level), middle = (int)at;
     double rounding = noise, above = row[0], power = 1;
-    row[0] = (weighted_at(b, (at + 1) * h, &rounding) - 2 * weighted_at(b, at * h, &rounding) +
-              weighted_at(b, (at - 1) * h, &rounding)) /
+    row[0] = (weighted_at(b, (middle + 1) * h, &rounding) - 2 * weighted_at(b, middle * h, &rounding) +
+              weighted_at(b, (middle - 1) * h, &rounding)) /
              (h * h);
     for (int k = 1; k <= level; k++) {
         const double old = above;
