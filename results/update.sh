@@ -121,7 +121,7 @@ show sea_trials_consistent sea_trials $few --rung consistent
 show sea_trials_control sea_trials $few --model control
 show tour tour
 show paper paper all
-show sweep sweep measure --points 100000 --repeats 2
+show sweep sweep measure --points 100000 --repeats 3
 swept atlas max_speed --grid hydrodynamics=consistent --grid over=none --grid links=4:16:5 --grid current_speed=0.05,0.1 --grid current_deg=-135:180:8 \
     --show gait.delta_deg --show gait.omega_deg_s --show gain.speed_percent_at_equal_power --show 'ladder.*.gain_percent_at_equal_power' \
     --show validated.speed_m_s --show validated.course_speed_m_s --show validated.power_W --show validated.cost_of_transport_J_m \

@@ -117,23 +117,23 @@ static _Noreturn void loop(const moray_sweep_axis *axis, sweep_arguments *a, int
     _exit(failed);
 }
 
-// The same points by n loops at once: what the machine can do without a sweep.
+// The same points by n loops, one or two, at once: what the machine can do without a sweep.
 static moray_status loops(const moray_sweep_axis *axis, sweep_arguments *a, int n, const char *to, plain_loop *best)
 {
     plain_loop now = {0};
+    pid_t pid[2] = {-1, -1};
     bool failed = false;
     fflush(NULL);
     const double begun = moray_clock();
     for (int k = 0; k < n; k++) {
-        const pid_t pid = fork();
-        if (pid == 0)
+        pid[k] = fork();
+        if (pid[k] == 0)
             loop(axis, a, k, n, to);
-        failed = failed || pid < 0;
     }
     for (int k = 0; k < n; k++) {
         int ended = 1;
         struct rusage used = {0};
-        failed = wait4(-1, &ended, 0, &used) < 0 || ended != 0 || failed;
+        failed = pid[k] < 0 || wait4(pid[k], &ended, 0, &used) != pid[k] || ended != 0 || failed;
         now.processor += processor_of(&used);
     }
     now.seconds = moray_clock() - begun;
