@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double least_size = 1e-15; // that is derived from others
+static const double least_size = 1e-11; // that is derived from others, of the largest known: less is what cancelled
 enum { trial_nodes = 8 };               // at which integrands are looked at, about
 enum { magnitudes = 15 };               // of durations, either way
 static const double wide = 1e3;         // a box that large beside the values at its ends is no size
@@ -104,10 +104,11 @@ static double largest_of(const double *size, int n)
     return largest;
 }
 
-// A size far above all others comes from a slope that is rounding: where the guess is at rest or straight, say.
+// A size far above all others comes from a slope that is rounding, where the guess is at rest or straight, say; one far
+// below them is rounding itself, as of what cancels along a body of many links.
 static bool is_size(double derived, double largest_known)
 {
-    return derived > least_size && derived < largest_known / noise;
+    return derived > least_size * largest_known && derived < largest_known / noise;
 }
 
 static void derive_sizes(const struct transcription *t, int p, double *size)

@@ -99,9 +99,10 @@ static moray_status solve_in_scale(moray_solution *solution)
 
 // ---- Slacks --------------------------------------------------------------------------------------------------------
 
+// An absent bound is a large number, not infinite.
 static double product(double multiplier, double slack)
 {
-    return isfinite(slack) && multiplier > 0 && slack > 0 ? multiplier * slack : 0;
+    return slack > 0 && slack < MORAY_ENDLESS && multiplier > 0 ? multiplier * slack : 0;
 }
 
 // What multipliers times slacks hold the objective from, relative to it: the barrier leaves about as much at every

@@ -73,19 +73,6 @@ static double length_of(const moray_dubins *path)
     return path->length[0] + path->length[1] + path->length[2];
 }
 
-bool moray_dubins_shortest(double x, double y, double heading, moray_dubins *path)
-{
-    double least = INFINITY;
-    for (int kind = 0; kind < MORAY_DUBINS_KINDS; kind++) {
-        moray_dubins way;
-        if (!moray_dubins_way(kind, x, y, heading, &way) || length_of(&way) >= least)
-            continue;
-        least = length_of(&way);
-        *path = way;
-    }
-    return isfinite(least);
-}
-
 bool moray_dubins_in_current(int kind, const double end[2], double heading, const double current[2], double speed,
                              double radius, double longest, moray_dubins *path, double *seconds)
 {

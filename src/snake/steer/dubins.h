@@ -15,9 +15,6 @@ enum { MORAY_DUBINS_KINDS = 6 }; // orders of turns; four with a leg in the midd
 // false where no such way turns by that.
 bool moray_dubins_way(int kind, double x, double y, double heading, moray_dubins *path);
 
-// The shortest of all kinds.
-bool moray_dubins_shortest(double x, double y, double heading, moray_dubins *path);
-
 // The way of one kind to `end` over ground [m] at a speed through water that moves [m/s]: the first time, of a row of
 // them up to `longest`, in which it can be made [s]. False where there is none.
 bool moray_dubins_in_current(int kind, const double end[2], double heading, const double current[2], double speed,

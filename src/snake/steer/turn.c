@@ -181,7 +181,8 @@ static void guess_outline(steering_guess *guess, const moray_turn_spec *spec, co
     moray_steering_parameters(&straight->gait, guess->s);
 }
 
-// No turn is much faster than the fastest outline: without a floor Ipopt shortens the time before it minds the end.
+// No averaged way to a pose is much faster than the fastest outline: without that floor Ipopt shortens the time before
+// it minds the end. Small turns of the heading alone are: an outline brings the offset to its limit and back.
 static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spec, double fastest, double slowest)
 {
     double V[2];
@@ -191,7 +192,7 @@ static moray_status pose_problem(moray_steering_plan *plan, moray_turn_spec *spe
         spec->start[MORAY_STATE_THETA] = spec->start[MORAY_STATE_V_THETA] = 0;
     for (int k = 0; k < 2; k++)
         spec->undulation[k] = spec->averaged ? 0 : plan->straight.undulation[k];
-    spec->shortest = 0.5 * fastest;
+    spec->shortest = spec->averaged && spec->to_position ? 0.5 * fastest : 0.1;
     spec->longest = 6 * slowest;
     return moray_turn_new(&plan->problem, spec);
 }

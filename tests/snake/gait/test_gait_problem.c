@@ -82,6 +82,7 @@ static moray_gait_problem_spec default_spec(moray_model model, double power)
 struct outcome {
     moray_gait_prediction prediction;
     moray_certificate certificate;
+    int iterations;
 };
 
 // Solves from the steady orbit of a gait of the control-oriented model.
@@ -110,6 +111,7 @@ static struct outcome solve_from(const moray_gait_problem_spec *spec, const mora
     if (!CHECK(!moray_failed(status), "%s, %d intervals: %s", scheme, intervals, status.text))
         exit(1);
     const moray_nlp_outcome end = moray_solution_info(solution)->outcome;
+    outcome.iterations = moray_solution_info(solution)->iterations;
     CHECK(end == MORAY_NLP_SOLVED, "%s, %d intervals: %s", scheme, intervals, moray_nlp_outcome_text(end));
     outcome.prediction = moray_gait_problem_prediction(problem, solution);
     const moray_integrator integrator = moray_sim_integrator(&rig.settings.sim);
@@ -324,6 +326,21 @@ static void test_power_price(moray_model model)
     CHECK_NEAR(solve(&spec, "lobatto5", 20).prediction.power_price, 0, 0, "no limit, no price");
 }
 
+// A long body: what cancels along it leaves slopes of rounding, by which nothing may be scaled.
+static void test_many_links(void)
+{
+    static const int links[] = {20, 50, 100};
+    for (int k = 0; k < 3; k++) {
+        moray_gait_problem_spec spec = default_spec(MORAY_CONTROL_ORIENTED, MORAY_INFINITY);
+        spec.robot.links = links[k];
+        spec.limits.delta = moray_between(1 * DEG, 90 * DEG);
+        spec.limits.omega = moray_between(30 * DEG, 150 * DEG);
+        const struct outcome end = solve(&spec, "lobatto5", 16);
+        CHECK(end.iterations < 40, "%d links in %d iterations", links[k], end.iterations);
+        CHECK(end.certificate.pass, "%d links: %s", links[k], end.certificate.why);
+    }
+}
+
 static void refuses(moray_gait_problem_spec spec, const char *text)
 {
     moray_gait_problem *problem;
@@ -361,6 +378,7 @@ int main(void)
         test_endpoint(k & 1, k & 2, k & 4 ? MORAY_GAIT_THRIFTIEST : MORAY_GAIT_FASTEST, k & 8, k & 16);
     test_default();
     test_current_and_limits();
+    test_many_links();
     test_first_principles();
     test_goals_agree(MORAY_CONTROL_ORIENTED);
     test_goals_agree(MORAY_FIRST_PRINCIPLES);

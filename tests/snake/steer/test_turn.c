@@ -113,6 +113,30 @@ static void test_turn(void)
     CHECK(took[0] > 0.9 * steady && took[0] < steady + 2 * 1.5 + 2, "%.2f s, of which %.2f s steady", took[0], steady);
 }
 
+// Half a degree: no longer than it takes to bring the offset up and back, on a plant where no floor under the time is
+// needed.
+static void test_small_turn(void)
+{
+    moray_settings settings = moray_settings_default();
+    moray_turn_spec spec = spec_of(MORAY_CONTROL_ORIENTED, true, 10);
+    moray_gait gait = moray_gait_paper(&spec.robot);
+    moray_steering_plan plan;
+    double rate, t0, took;
+    spec.limits.theta_max = moray_fixed(20 * DEG);
+    spec.heading = 0.5 * DEG;
+    settings.scheme = "radau3";
+    settings.intervals = 30;
+    gait.offset = spec.limits.offset;
+    CHECK_OK(moray_turn_rate(&spec.robot, spec.model, &gait, &rate), "turn rate");
+    gait.offset = 0;
+    CHECK_OK(moray_turn_plan_make(&plan, &spec, &settings, &gait, rate, NULL, 1), "plan");
+    CHECK(moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED, "solved");
+    moray_solution_times(plan.solution, 0, &t0, &took);
+    const double outline = spec.heading / fabs(rate) + 2 * spec.limits.offset / spec.limits.offset_rate + 1;
+    CHECK(took < 0.45 * outline, "half a degree in %.3g s, where an outline of full offset takes %.3g s", took, outline);
+    moray_steering_plan_free(&plan);
+}
+
 // Ends beside the start, nearer than the robot's circle is wide, in a current: three arcs lead there. Ends where the
 // shortest outline misleads: it takes less time than the robot can.
 static void test_poses(void)
@@ -154,6 +178,7 @@ int main(void)
     test_refusals();
     test_guess();
     test_turn();
+    test_small_turn();
     test_poses();
     return tap_done();
 }
