@@ -25,6 +25,8 @@ typedef struct on_gait {
     double t, start, y[states];
     swim_current current;
     double deviation[2]; // of the offset from what is commanded, and its rate, at t
+    double slope[states]; // of y at t,
+    bool known;           // where nothing has changed since it was found
     int measurements;
     double *x, *dx, *phi, *v_phi, *ubar, *u;
 } on_gait;
@@ -48,27 +50,32 @@ static moray_offset commanded(const on_gait *r, double t)
     return controller ? controller->offset(t, controller->self) : (moray_offset){.value = r->gait.offset};
 }
 
-// The offset at t, at or after r->t.
-static void set_offset(const on_gait *r, double t, moray_gait *gait)
+// The offset at t, where its deviation is e[].
+static moray_gait gait_at(const on_gait *r, double t, const double e[2])
 {
     const moray_robot *robot = moray_swimmer_robot(r->swimmer);
     const moray_offset wanted = commanded(r, t);
-    double e[2];
-    relax(robot, r->deviation, t - r->t, e);
-    gait->offset = wanted.value + e[0];
-    gait->offset_rate = wanted.rate + e[1];
-    gait->offset_acceleration = wanted.acceleration - robot->k_d * e[1] - robot->k_p * e[0];
+    moray_gait gait = r->gait;
+    gait.offset = wanted.value + e[0];
+    gait.offset_rate = wanted.rate + e[1];
+    gait.offset_acceleration = wanted.acceleration - robot->k_d * e[1] - robot->k_p * e[0];
+    return gait;
+}
+
+static void move_joints(on_gait *r, double t, const double e[2])
+{
+    const moray_gait gait = gait_at(r, t, e);
+    moray_gait_reference(&gait, r->n_joints, t, r->phi, r->v_phi, r->ubar);
 }
 
 // ---- Body ----------------------------------------------------------------------------------------------------------
 
-// Of the gait as it is at t; leaves the full state in x and the efforts in u.
-static bool rates(on_gait *r, const moray_gait *gait, double t, const double *y, double *dy)
+// With the joints moved to where they are at t; leaves the full state in x and the efforts in u.
+static bool rates(on_gait *r, double t, const double *y, double *dy)
 {
     const moray_robot *robot = moray_swimmer_robot(r->swimmer);
     moray_swim_turn(r->swimmer, &r->current, t);
-    moray_gait_reference(gait, r->n_joints, t, r->phi, r->v_phi, r->ubar);
-    moray_swimmer_on_gait(r->swimmer, gait, t, y, r->x);
+    moray_swimmer_with_joints(r->swimmer, r->phi, r->v_phi, y, r->x);
     if (r->plan->water)
         moray_swim_stir(r->swimmer, r->plan->water, t, r->x);
     if (!moray_swimmer_rates(r->swimmer, r->x, r->ubar, r->dx, r->u))
@@ -84,25 +91,33 @@ static void ahead(const double *y, double h, const double *slope, double *at)
         at[i] = y[i] + h * slope[i];
 }
 
+static bool slope_here(on_gait *r)
+{
+    move_joints(r, r->t, r->deviation);
+    return rates(r, r->t, r->y, r->slope);
+}
+
 // A step of the classical Runge-Kutta method.
 static bool step(on_gait *r, double h)
 {
-    double k[4][states], at[states];
-    moray_gait gait = r->gait;
-    set_offset(r, r->t, &gait);
-    bool good = rates(r, &gait, r->t, r->y, k[0]);
-    set_offset(r, r->t + h / 2, &gait);
+    const moray_robot *robot = moray_swimmer_robot(r->swimmer);
+    double k[3][states], at[states], half[2], end[2];
+    bool good = r->known || slope_here(r);
+    relax(robot, r->deviation, h / 2, half);
+    relax(robot, half, h / 2, end);
+    move_joints(r, r->t + h / 2, half);
+    ahead(r->y, h / 2, r->slope, at);
+    good = good && rates(r, r->t + h / 2, at, k[0]);
     ahead(r->y, h / 2, k[0], at);
-    good = good && rates(r, &gait, r->t + h / 2, at, k[1]);
-    ahead(r->y, h / 2, k[1], at);
-    good = good && rates(r, &gait, r->t + h / 2, at, k[2]);
-    set_offset(r, r->t + h, &gait);
-    ahead(r->y, h, k[2], at);
-    good = good && rates(r, &gait, r->t + h, at, k[3]);
+    good = good && rates(r, r->t + h / 2, at, k[1]);
+    move_joints(r, r->t + h, end);
+    ahead(r->y, h, k[1], at);
+    good = good && rates(r, r->t + h, at, k[2]);
     for (int i = 0; i < states; i++)
-        r->y[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
-    relax(moray_swimmer_robot(r->swimmer), (double[]){r->deviation[0], r->deviation[1]}, h, r->deviation);
+        r->y[i] += h / 6 * (r->slope[i] + 2 * k[0][i] + 2 * k[1][i] + k[2][i]);
+    memcpy(r->deviation, end, sizeof end);
     r->t += h;
+    r->known = false;
     return good;
 }
 
@@ -122,10 +137,7 @@ static moray_status advance(on_gait *r, double t)
 
 static moray_swim_sample sample(on_gait *r)
 {
-    double dy[states];
-    moray_gait gait = r->gait;
-    set_offset(r, r->t, &gait);
-    rates(r, &gait, r->t, r->y, dy);
+    r->known = slope_here(r);
     moray_swim_sample shown = {
         .t = r->t, .x = r->x, .u = r->u, .pose = moray_swimmer_pose(r->swimmer, r->x), .energy = r->y[ENERGY]};
     moray_swimmer_current(r->swimmer, shown.current);
@@ -137,13 +149,13 @@ static moray_status measure(on_gait *r)
 {
     const moray_swim_controller *controller = r->plan->controller;
     const moray_swim_sample shown = sample(r);
-    moray_gait gait = r->gait;
-    set_offset(r, r->t, &gait);
+    const moray_gait gait = gait_at(r, r->t, r->deviation);
     MORAY_TRY(moray_swim_afloat(r->plan->water, &shown));
     MORAY_TRY(controller->measure(&shown, controller->self));
     const moray_offset wanted = commanded(r, r->t);
     r->deviation[0] = gait.offset - wanted.value;
     r->deviation[1] = gait.offset_rate - wanted.rate;
+    r->known = false;
     r->measurements++;
     return moray_ok();
 }
