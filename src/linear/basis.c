@@ -206,19 +206,28 @@ static moray_status make_matrix(struct basis *basis, const moray_pattern *patter
     return moray_failed(status) ? status : basis->values ? moray_ok() : no_memory(basis->m);
 }
 
+moray_status moray_basis_remake(struct basis *basis, const moray_pattern *pattern)
+{
+    int *work = calloc((size_t)(2 * basis->m + 1 + basis->entries) + 1, sizeof *work);
+    if (!work)
+        return no_memory(basis->m);
+    moray_sparse_lu_free(basis->lu);
+    free(basis->values);
+    basis->lu = NULL;
+    basis->values = NULL;
+    basis->slots = 0;
+    basis->factored = false;
+    const moray_status status = make_matrix(basis, pattern, work, work + basis->m + 1, work + 2 * (size_t)basis->m + 1);
+    free(work);
+    return status;
+}
+
 static moray_status make(struct basis *basis, const moray_pattern *pattern, const double *values,
                          const struct view *view, bool *found)
 {
     MORAY_TRY(list_entries(basis, pattern));
     MORAY_TRY(choose(basis, pattern, values, view, found));
-    if (!*found)
-        return moray_ok();
-    int *work = calloc((size_t)(2 * basis->m + 1 + basis->entries) + 1, sizeof *work);
-    if (!work)
-        return no_memory(basis->m);
-    const moray_status status = make_matrix(basis, pattern, work, work + basis->m + 1, work + 2 * (size_t)basis->m + 1);
-    free(work);
-    return status;
+    return *found ? moray_basis_remake(basis, pattern) : moray_ok();
 }
 
 moray_status moray_basis_choose(struct basis *basis, int variables, int m, const moray_pattern *pattern,

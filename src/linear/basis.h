@@ -26,6 +26,10 @@ moray_status moray_basis_choose(struct basis *basis, int variables, int m, const
                                 const double *values, int view, bool *found);
 void moray_basis_free(struct basis *basis);
 
+// The basis that place[] tells after it was changed. Error: as moray_basis_choose, MORAY_INPUT where it is singular
+// whatever its values.
+moray_status moray_basis_remake(struct basis *basis, const moray_pattern *pattern);
+
 // Factors the columns of the basis; nothing is done where the values are those of the time before. values: as of the
 // whole pattern. Error: MORAY_NUMERIC where they are singular, MORAY_MEMORY.
 moray_status moray_basis_factor(struct basis *basis, const double *values);

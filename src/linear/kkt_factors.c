@@ -79,20 +79,39 @@ moray_status moray_kkt_factors_factor(kkt_factors *kkt, const double *values, do
     return moray_ldl_factor(kkt->ldl, values, threshold);
 }
 
-// Where the null-space form has lost too many digits the matrix is factored again, and the form counted out.
+// A basis that was chosen for matrices of long before loses digits: another is sought for this one. *good <- false where
+// too many are lost all the same.
+static moray_status solve_in_null_space(kkt_factors *kkt, double *b, bool *good)
+{
+    const size_t size = (size_t)kkt->n * sizeof *b;
+    double error = INFINITY;
+    bool fits = true;
+    memcpy(kkt->kept, b, size);
+    MORAY_TRY(moray_null_space_solve(kkt->ns, b, &error));
+    if (error > accurate) {
+        memcpy(b, kkt->kept, size);
+        moray_null_space_forget(kkt->ns);
+        MORAY_TRY(moray_null_space_factor(kkt->ns, kkt->values, &fits));
+        if (fits)
+            MORAY_TRY(moray_null_space_solve(kkt->ns, b, &error));
+    }
+    *good = error <= accurate;
+    if (!*good)
+        memcpy(b, kkt->kept, size);
+    kkt->error = *good ? fmax(kkt->error, error) : 0;
+    return moray_ok();
+}
+
+// Where the null-space form cannot do it the matrix is factored again, and the form counted out.
 static moray_status solve_one(kkt_factors *kkt, double *b)
 {
     if (kkt->in_null_space) {
-        double error;
-        memcpy(kkt->kept, b, (size_t)kkt->n * sizeof *b);
-        MORAY_TRY(moray_null_space_solve(kkt->ns, b, &error));
-        kkt->error = fmax(kkt->error, error);
-        if (error <= accurate)
+        bool good;
+        MORAY_TRY(solve_in_null_space(kkt, b, &good));
+        if (good)
             return moray_ok();
-        memcpy(b, kkt->kept, (size_t)kkt->n * sizeof *b);
         MORAY_TRY(moray_ldl_factor(kkt->ldl, kkt->values, kkt->threshold));
         count_failure(kkt);
-        kkt->error = 0;
     }
     MORAY_TRY(moray_ldl_solve(kkt->ldl, 1, b));
     kkt->error = fmax(kkt->error, moray_ldl_statistics_of(kkt->ldl).error);

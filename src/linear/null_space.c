@@ -10,7 +10,8 @@
 #include "linear/null_space_parts.h"
 
 static const double regular = 1e-15; // reciprocal condition of a basis, by its pivots
-enum { most_freedom = 24, most_vain = 3 };
+static const double far = 10; // what one of the other variables may move a basic one by
+enum { most_freedom = 24, most_vain = 3, most_exchanges = 8 };
 
 static moray_status no_memory(int n)
 {
@@ -229,6 +230,57 @@ static moray_status try_basis(null_space *ns)
     return status.code == MORAY_NUMERIC ? moray_ok() : status;
 }
 
+// The entry of Z that is largest among the basic variables.
+static double find_largest(const null_space *ns, int *variable, int *column)
+{
+    const int f = ns->freedom;
+    double largest = 0;
+    for (int i = 0; i < ns->variables; i++)
+        for (int c = 0; c < f && ns->basis.place[i] >= 0; c++)
+            if (fabs(ns->Z[i * f + c]) > largest) {
+                largest = fabs(ns->Z[i * f + c]);
+                *variable = i;
+                *column = c;
+            }
+    return largest;
+}
+
+// A basic variable and one of the others take each other's place; Z follows.
+static void exchange(null_space *ns, int variable, int column)
+{
+    const int f = ns->freedom;
+    const double pivot = ns->Z[variable * f + column];
+    int other = 0;
+    while (ns->basis.place[other] != -1 - column)
+        other++;
+    ns->basis.place[other] = ns->basis.place[variable];
+    ns->basis.place[variable] = -1 - column;
+    for (int i = 0; i < ns->variables; i++) {
+        double *row = ns->Z + i * f;
+        row[column] /= pivot;
+        for (int c = 0; c < f && i != variable; c++)
+            row[c] -= c == column ? 0 : row[column] * ns->Z[variable * f + c];
+    }
+    for (int c = 0; c < f; c++)
+        ns->Z[variable * f + c] = c == column;
+}
+
+// Until the other variables move no basic one by far more than themselves: each exchange makes the determinant of the
+// basis larger by the entry of Z (a basis of nearly maximal volume), and Z is then well conditioned.
+static moray_status enlarge_basis(null_space *ns)
+{
+    int variable = 0, column = 0, exchanges = 0;
+    MORAY_TRY(find_null_space(ns));
+    while (exchanges < most_exchanges * ns->freedom && find_largest(ns, &variable, &column) > far) {
+        exchange(ns, variable, column);
+        exchanges++;
+    }
+    if (exchanges == 0)
+        return moray_ok();
+    MORAY_TRY(moray_basis_remake(&ns->basis, &ns->pattern));
+    return try_basis(ns);
+}
+
 // The basis of the time before, or another one that is regular; planned <- false where there is none.
 static moray_status factor_basis(null_space *ns)
 {
@@ -240,8 +292,29 @@ static moray_status factor_basis(null_space *ns)
         MORAY_TRY(moray_basis_choose(&ns->basis, ns->variables, ns->m, &ns->pattern, ns->values, view, &found));
         if (found)
             MORAY_TRY(try_basis(ns));
+        if (ns->planned && ns->freedom > 0)
+            MORAY_TRY(enlarge_basis(ns));
     }
     return moray_ok();
+}
+
+void moray_null_space_forget(null_space *ns)
+{
+    moray_basis_free(&ns->basis);
+    ns->planned = ns->factored = false;
+}
+
+// factored <- false where there is no basis, or what is left is not finite or singular: rounding looks so, too.
+static moray_status reduce_by_basis(null_space *ns)
+{
+    MORAY_TRY(factor_basis(ns));
+    if (!ns->planned) {
+        ns->vain++;
+        return moray_ok();
+    }
+    const moray_status status = reduce(ns);
+    ns->factored = !moray_failed(status) && (ns->freedom == 0 || moray_ldl_inertia_of(ns->reduced).zero == 0);
+    return status.code == MORAY_NUMERIC ? moray_ok() : status;
 }
 
 moray_status moray_null_space_factor(null_space *ns, const double *values, bool *fits)
@@ -254,16 +327,14 @@ moray_status moray_null_space_factor(null_space *ns, const double *values, bool 
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows is not finite", ns->n);
     if (!suitable || ns->vain == most_vain)
         return moray_ok();
-    MORAY_TRY(factor_basis(ns));
-    if (!ns->planned) {
-        ns->vain++;
-        return moray_ok();
+    const bool chosen = ns->planned;
+    MORAY_TRY(reduce_by_basis(ns));
+    if (chosen && !ns->factored) { // by a basis of before: another one may tell
+        moray_null_space_forget(ns);
+        MORAY_TRY(reduce_by_basis(ns));
     }
-    const moray_status status = reduce(ns);
-    if (status.code == MORAY_NUMERIC) // what is left is not finite
-        return moray_ok();
-    *fits = ns->factored = !moray_failed(status);
-    return status;
+    *fits = ns->factored;
+    return moray_ok();
 }
 
 moray_ldl_inertia moray_null_space_inertia(const null_space *ns)

@@ -14,6 +14,33 @@ static const double out_of_scale = 1e-3; // of what a duration was scaled by
 static const double loose = 1e-6;        // of a state: what defects in it may be
 static const double far_inside = 0.3;    // of the gap that the certificate allows
 static const double closer = 0.1;        // of the tolerance before
+static const double far_off = 0.1;       // barrier for a start of which nothing is known
+enum { usual_bounds = 1500 };            // that a barrier less than that is meant for
+
+static bool is_bound(double bound)
+{
+    return fabs(bound) < MORAY_ENDLESS;
+}
+
+static int count_bounds(const double *lower, const double *upper, int n)
+{
+    int count = 0;
+    for (int k = 0; k < n; k++)
+        if (lower[k] < upper[k])
+            count += is_bound(lower[k]) + is_bound(upper[k]);
+    return count;
+}
+
+// A limit along a phase is as many bounds as its mesh has nodes: from a start that is nearly right the barrier of many
+// would lead inside, far away, unless each of them weighs less.
+static double first_barrier(const moray_solution *solution)
+{
+    const moray_nlp *nlp = &solution->transcription->nlp;
+    const double asked = solution->settings.barrier;
+    const int bounds =
+        count_bounds(nlp->x_lower, nlp->x_upper, nlp->n) + count_bounds(nlp->g_lower, nlp->g_upper, nlp->m);
+    return asked < far_off && bounds > usual_bounds ? asked * usual_bounds / bounds : asked;
+}
 
 moray_nlp_settings moray_solver_settings(const moray_solution *solution, bool warm)
 {
@@ -21,7 +48,7 @@ moray_nlp_settings moray_solver_settings(const moray_solution *solution, bool wa
     return (moray_nlp_settings){.tolerance = settings->tolerance,
                                 .max_iterations = settings->max_iterations,
                                 .max_cpu_seconds = settings->max_cpu_seconds,
-                                .barrier = warm ? settings->tolerance : settings->barrier,
+                                .barrier = warm ? settings->tolerance : first_barrier(solution),
                                 .warm = warm,
                                 .print_level = settings->print_level,
                                 .linear_solver = settings->linear_solver,
@@ -37,6 +64,12 @@ static void add(moray_nlp_info *sum, const moray_nlp_info *more)
     sum->iterations += more->iterations;
     sum->seconds += more->seconds;
     sum->cpu_seconds += more->cpu_seconds;
+    sum->evaluation_seconds += more->evaluation_seconds;
+    sum->linear_seconds += more->linear_seconds;
+    for (int k = 0; k < 5; k++) {
+        sum->evaluations[k] += more->evaluations[k];
+        sum->evaluation_by[k] += more->evaluation_by[k];
+    }
 }
 
 // ---- Scales --------------------------------------------------------------------------------------------------------
@@ -102,7 +135,7 @@ static moray_status solve_in_scale(moray_solution *solution)
 // An absent bound is a large number, not infinite.
 static double product(double multiplier, double slack)
 {
-    return slack > 0 && slack < MORAY_ENDLESS && multiplier > 0 ? multiplier * slack : 0;
+    return slack > 0 && is_bound(slack) && multiplier > 0 ? multiplier * slack : 0;
 }
 
 // What multipliers times slacks hold the objective from, relative to it: the barrier leaves about as much at every

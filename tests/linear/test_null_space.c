@@ -203,11 +203,56 @@ static void test_ill(void)
     }
 }
 
+// A chain that fades in one direction and grows in the other, driven by a parameter: x_k+1 = fading x_k + p, or the
+// other way round. A basis that runs against it loses all digits.
+static void make_chain(sample *s, double forward, double backward)
+{
+    s->seed = 19;
+    s->m = 18;
+    start(s, 2 * s->m + 2);
+    for (int i = 0; i < s->m + 2; i++)
+        put(s, i, i, 1 + 0.1 * i);
+    for (int c = 0; c < s->m; c++) {
+        const int row = s->m + 2 + c;
+        put(s, row, c, -forward);
+        put(s, row, c + 1, backward);
+        put(s, row, s->m + 1, -1);
+    }
+}
+
+static double solve_planted(null_space *ns, const sample *s)
+{
+    double x[MOST], b[MOST], error, worst = 0;
+    bool fits;
+    plant(s, x, b);
+    CHECK_OK(moray_null_space_factor(ns, s->value, &fits), "factored");
+    CHECK(fits, "there is a basis");
+    CHECK_OK(moray_null_space_solve(ns, b, &error), "solved");
+    for (int i = 0; i < s->n; i++)
+        worst = fmax(worst, fabs(b[i] / x[i] - 1));
+    return error > 1e-13 ? error : worst;
+}
+
+static void test_direction(void)
+{
+    static sample s;
+    null_space *ns;
+    make_chain(&s, 0.05, 1);
+    CHECK_OK(moray_null_space_new(&ns, s.n, &s.pattern), "made");
+    CHECK(solve_planted(ns, &s) < 1e-11, "a chain that fades");
+    make_chain(&s, 1, 0.05);
+    moray_null_space_forget(ns);
+    CHECK(solve_planted(ns, &s) < 1e-11, "and one that grows, by a basis of its own");
+    moray_null_space_free(ns);
+    check_taken(&s, "one that grows");
+}
+
 int main(void)
 {
     test_random();
     test_again();
     test_unsuited();
     test_ill();
+    test_direction();
     return tap_done();
 }

@@ -341,6 +341,17 @@ static void test_many_links(void)
     }
 }
 
+// Limits along the stroke are as many bounds as a mesh has nodes: more of them do not lead the solver astray.
+static void test_fine_meshes(moray_joints joints)
+{
+    moray_gait_problem_spec spec = default_spec(MORAY_CONTROL_ORIENTED, paper_power(MORAY_CONTROL_ORIENTED));
+    spec.joints = joints;
+    const struct outcome coarse = solve(&spec, "lobatto5", 12), fine = solve(&spec, "lobatto5", 200);
+    CHECK(fine.iterations < 2 * coarse.iterations, "%d iterations on 200 intervals, %d on 12", fine.iterations,
+          coarse.iterations);
+    CHECK(fine.certificate.pass, "certificate: %s", fine.certificate.why);
+}
+
 static void refuses(moray_gait_problem_spec spec, const char *text)
 {
     moray_gait_problem *problem;
@@ -379,6 +390,7 @@ int main(void)
     test_default();
     test_current_and_limits();
     test_many_links();
+    test_fine_meshes(MORAY_JOINTS_ON_GAIT);
     test_first_principles();
     test_goals_agree(MORAY_CONTROL_ORIENTED);
     test_goals_agree(MORAY_FIRST_PRINCIPLES);
