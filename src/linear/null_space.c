@@ -277,6 +277,7 @@ static moray_status enlarge_basis(null_space *ns)
     }
     if (exchanges == 0)
         return moray_ok();
+    ns->planned = false;
     MORAY_TRY(moray_basis_remake(&ns->basis, &ns->pattern));
     return try_basis(ns);
 }
