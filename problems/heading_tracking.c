@@ -55,6 +55,5 @@ int main(int argc, char **argv)
                        .max_error = INFINITY,
                        .gait_evaluations = 12};
     job.steer.weight_steering = 3e-5; // the rivals pay for none
-    job.steer.refinements = 8;
     return steer_main(&program, &heading_steering, argc, argv, &job.steer);
 }

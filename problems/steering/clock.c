@@ -17,6 +17,12 @@ void steer_clock_give(steer_clock *clock, double share)
     clock->until = at + share * fmax(clock->start + clock->limit - at, 0);
 }
 
+void steer_clock_divide(steer_clock *clock, double until)
+{
+    const double at = moray_clock();
+    clock->until = at + fmax(until - at, 0) / 2;
+}
+
 bool steer_clock_up(const steer_clock *clock)
 {
     return moray_clock() >= clock->until;

@@ -41,7 +41,7 @@
 #define STEER_MESH_OPTIONS(settings)                                                                                   \
     STEER_NUMBER(INT, settings, steer.intervals_per_period, "solver", "intervals_per_period", 1, 100, NULL,            \
                  "of the mesh, an undulation"),                                                                        \
-        STEER_NUMBER(INT, settings, steer.refinements, "solver", "refinements", 0, 20, NULL,                           \
+        STEER_NUMBER(INT, settings, steer.refinements, "solver", "refinements", 0, 40, NULL,                           \
                      "finer meshes tried where the first is too coarse"),                                              \
         STEER_TIME_OPTION(settings, steer.clock)
 

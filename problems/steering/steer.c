@@ -14,7 +14,7 @@ steer_job steer_defaults(void)
                                .offset_rate = 0.01,
                                .power = NAN},
                      .intervals_per_period = 5,
-                     .refinements = 4,
+                     .refinements = 20,
                      .replan_periods = 1,
                      .look_ahead_periods = 6,
                      .starts = 12,
@@ -177,7 +177,7 @@ bool steer_alike(const steer_job *job, moray_model model, const moray_steering_p
 moray_status steer_do_without(steer_job *job, moray_status reason)
 {
     if (reason.code != MORAY_NOT_SOLVED || job->snake.model == MORAY_CONTROL_ORIENTED ||
-        !job->plan[MORAY_CONTROL_ORIENTED].solution)
+        !job->plan[MORAY_CONTROL_ORIENTED].solution || !steer_solved(job->plan[MORAY_CONTROL_ORIENTED].solution))
         return reason;
     job->without = moray_error(MORAY_NOT_SOLVED, "no first-principles plan: %s", reason.text);
     job->snake.model = MORAY_CONTROL_ORIENTED;

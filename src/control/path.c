@@ -33,7 +33,7 @@ static void add_piece(moray_path *path, int leg, double x, double y, double cour
 {
     if (length <= 0)
         return;
-    path->piece[path->n++] = (moray_path_piece){leg, path->length, x, y, course, length, curvature};
+    path->piece[path->n++] = (moray_path_piece){leg, path->length, x, y, course, length, curvature, 0};
     path->length += length;
 }
 
@@ -96,7 +96,74 @@ void moray_path_free(moray_path *path)
     *path = (moray_path){0};
 }
 
+// ---- Eased corners -------------------------------------------------------------------------------------------------
+
+// Two clothoids that take as much of the legs on either side as an arc does.
+static void ease(moray_path *path, const moray_path_piece *arc)
+{
+    const double turn = fabs(arc->curvature * arc->length), side = arc->curvature < 0 ? -1 : 1;
+    moray_path_piece unit = {.length = turn, .sharpness = 1 / turn}; // to curvature 1
+    const moray_path_point end = moray_path_at(&(moray_path){1, &unit, turn, 1}, turn);
+    const double taken = tan(turn / 2) / fabs(arc->curvature);
+    const double peak = (creal(end.x) + creal(end.y) * tan(turn / 2)) / taken, length = turn / peak;
+    moray_path_piece half = {arc->leg, path->length, arc->x, arc->y, arc->course, length, 0, side * peak / length};
+    path->piece[path->n++] = half;
+    path->length += length;
+    const moray_path_point middle = moray_path_at(path, path->length);
+    path->piece[path->n++] =
+        (moray_path_piece){arc->leg, path->length, creal(middle.x), creal(middle.y), arc->course + side * turn / 2,
+                           length,   side * peak,  -half.sharpness};
+    path->length += length;
+    path->radius = fmin(path->radius, 1 / peak);
+}
+
+moray_status moray_path_ease(moray_path *path)
+{
+    moray_path eased = {.radius = path->radius, .piece = calloc(2 * (size_t)path->n, sizeof *eased.piece)};
+    if (!eased.piece)
+        return moray_error(MORAY_MEMORY, "no memory for a path of %d pieces", path->n);
+    for (int k = 0; k < path->n; k++) {
+        if (path->piece[k].curvature != 0) {
+            ease(&eased, &path->piece[k]);
+            continue;
+        }
+        eased.piece[eased.n] = path->piece[k];
+        eased.piece[eased.n++].start = eased.length;
+        eased.length += path->piece[k].length;
+    }
+    moray_path_free(path);
+    *path = eased;
+    return moray_ok();
+}
+
 // ---- Points --------------------------------------------------------------------------------------------------------
+
+static moray_num eased_course(const moray_path_piece *piece, moray_num s)
+{
+    return piece->course + s * (piece->curvature + piece->sharpness * s / 2);
+}
+
+// At s behind the start of an eased piece: Fresnel's integrals by Gauss's rule of ten points.
+static moray_path_point eased_at(const moray_path_piece *piece, moray_num s)
+{
+    static const double node[] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
+                                  0.9739065285171717},
+                        weight[] = {0.29552422471475287, 0.2692667193099963, 0.21908636251598204, 0.1494513491505806,
+                                    0.06667134430868814};
+    moray_path_point at = {piece->x, piece->y, eased_course(piece, s), piece->curvature + piece->sharpness * creal(s)};
+    for (int k = 0; k < 10; k++) {
+        const moray_num course = eased_course(piece, s * (1 + (k % 2 ? node[k / 2] : -node[k / 2])) / 2);
+        at.x += s * weight[k / 2] / 2 * cos(course);
+        at.y += s * weight[k / 2] / 2 * sin(course);
+    }
+    return at;
+}
+
+// Straight on from a point.
+static moray_path_point straight_on(moray_path_point at, moray_num s)
+{
+    return (moray_path_point){at.x + s * cos(at.course), at.y + s * sin(at.course), at.course, 0};
+}
 
 moray_path_point moray_path_at(const moray_path *path, moray_num along)
 {
@@ -106,6 +173,10 @@ moray_path_point moray_path_at(const moray_path *path, moray_num along)
         k++;
     const moray_path_piece *piece = &path->piece[k];
     const bool outside = where < 0 || where > path->length; // straight on
+    if (piece->sharpness != 0)
+        return outside
+                   ? straight_on(eased_at(piece, where < 0 ? 0 : piece->length), along - (where < 0 ? 0 : path->length))
+                   : eased_at(piece, along - piece->start);
     const double from = where < 0 ? 0 : outside ? piece->length : 0, kappa = outside ? 0 : piece->curvature;
     const double course = piece->course + piece->curvature * from;
     double x = piece->x, y = piece->y;

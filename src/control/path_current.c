@@ -41,17 +41,18 @@ double moray_path_duration(const moray_path *path, double from, double speed, co
 }
 
 // Courses that can be made good are those near the current's own: within asin(speed / current).
-static moray_status too_strong(const moray_path_piece *piece, double from_start, double speed, const double current[2])
+static moray_status too_strong(const moray_path_piece *piece, double from_start, double course, double speed,
+                               const double current[2])
 {
-    const double degree = M_PI / 180, course = piece->course + piece->curvature * from_start;
-    return moray_error(MORAY_NOT_SOLVED,
-                       "the current is too strong for the path: %s leg %d, %.4g m along the path, its course is %.4g "
-                       "deg, %.4g m/s run across it and %.4g m/s against it, and the speed through the water is %.4g "
-                       "m/s, which makes good courses within %.3g deg of %.4g deg alone",
-                       piece->curvature != 0 ? "in the corner behind" : "on", piece->leg, piece->start + from_start,
-                       course / degree, fabs(across(current, course)), 0.0 - along(current, course), speed,
-                       asin(fmin(speed / hypot(current[0], current[1]), 1)) / degree,
-                       atan2(current[1], current[0]) / degree);
+    const double degree = M_PI / 180;
+    return moray_error(
+        MORAY_NOT_SOLVED,
+        "the current is too strong for the path: %s leg %d, %.4g m along the path, its course is %.4g "
+        "deg, %.4g m/s run across it and %.4g m/s against it, and the speed through the water is %.4g "
+        "m/s, which makes good courses within %.3g deg of %.4g deg alone",
+        piece->curvature != 0 || piece->sharpness != 0 ? "in the corner behind" : "on", piece->leg,
+        piece->start + from_start, course / degree, fabs(across(current, course)), 0.0 - along(current, course), speed,
+        asin(fmin(speed / hypot(current[0], current[1]), 1)) / degree, atan2(current[1], current[0]) / degree);
 }
 
 moray_status moray_path_passable(const moray_path *path, double speed, const double current[2])
@@ -61,10 +62,10 @@ moray_status moray_path_passable(const moray_path *path, double speed, const dou
         for (int i = 0; i < points; i++) {
             const moray_path_piece *piece = &path->piece[k];
             const double from_start = piece->length * i / (points - 1);
-            const double course = piece->course + piece->curvature * from_start;
+            const double course = piece->course + from_start * (piece->curvature + piece->sharpness * from_start / 2);
             if (moray_course_made_good(speed, current, course) > 0)
                 continue;
-            return too_strong(piece, from_start, speed, current);
+            return too_strong(piece, from_start, course, speed, current);
         }
     return moray_ok();
 }

@@ -82,6 +82,40 @@ static void test_continuity(void)
     }
 }
 
+// Corners to both sides, by a right angle and nearly back: clothoids between the ends of the arcs.
+static void test_eased(void)
+{
+    static const char *const texts[] = {"0,0 10,0 10,10 20,10", "0,0 20,0 1,2"};
+    for (int round = 0; round < 2; round++) {
+        moray_path arcs, path;
+        double p[2], kinks = 0, worst = 0;
+        CHECK_OK(moray_path_read(&arcs, texts[round], 0.5), "with arcs");
+        CHECK_OK(moray_path_read(&path, texts[round], 0.5), "the same");
+        CHECK_OK(moray_path_ease(&path), "eased");
+        const moray_path_point arrived = moray_path_at(&arcs, arcs.length), end = moray_path_at(&path, path.length);
+        CHECK_NEAR(creal(end.x), creal(arrived.x), 1e-12, "the same end");
+        CHECK_NEAR(creal(end.y), creal(arrived.y), 1e-12, "the same end");
+        CHECK_NEAR(creal(end.course), creal(arrived.course), 1e-12, "and course there");
+        walk(&path, path.length, p);
+        CHECK(hypot(p[0] - creal(end.x), p[1] - creal(end.y)) < 1e-4, "where the courses lead");
+        for (int k = 1; k < path.n; k++) {
+            const moray_path_piece *piece = &path.piece[k];
+            const moray_path_point a = moray_path_at(&path, piece->start * (1 - 1e-13)),
+                                   b = moray_path_at(&path, piece->start);
+            kinks = fmax(kinks, fabs(a.curvature - b.curvature) + fabs(creal(a.course - b.course)));
+            worst = fmax(worst, hypot(creal(b.x - a.x), creal(b.y - a.y)));
+            const moray_path_point c = moray_path_at(&path, moray_complex(piece->start + piece->length / 3, 1e-30));
+            worst = fmax(worst, fabs(cimag(c.x) / 1e-30 - cos(creal(c.course))));
+            worst = fmax(worst, fabs(cimag(c.course) / 1e-30 - c.curvature));
+        }
+        CHECK(kinks < 1e-8, "neither course nor curvature jumps: %.1e", kinks);
+        CHECK(worst < 1e-9, "one way, with its derivatives: %.1e", worst);
+        CHECK(path.radius < 0.5 && path.radius > 0.1, "a corner between the same ends is narrower in its middle");
+        moray_path_free(&arcs);
+        moray_path_free(&path);
+    }
+}
+
 static void test_projection(void)
 {
     unsigned long long seed = 5;
@@ -223,6 +257,7 @@ int main(void)
 {
     test_corner();
     test_continuity();
+    test_eased();
     test_projection();
     test_units();
     test_reading();

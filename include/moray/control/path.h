@@ -11,19 +11,20 @@
 
 MORAY_BEGIN
 
-// A straight leg (curvature 0) or an arc.
+// A straight leg (curvature and sharpness 0), an arc, or half of an eased corner.
 typedef struct moray_path_piece {
     int leg;                  // from waypoint `leg` to the next, counted from 1; of an arc the leg before it
     double start;             // distance along the path where it begins [m]
     double x, y, course;      // there [m], [rad]
-    double length, curvature; // [m], [1/m], positive to the left
+    double length, curvature; // [m]; where it begins [1/m], positive to the left
+    double sharpness;         // by which the curvature grows along it [1/m2]
 } moray_path_piece;
 
 typedef struct moray_path {
     int n;
     moray_path_piece *piece; // owned
     double length;           // [m]
-    double radius;           // of the arcs [m]
+    double radius;           // of the arcs, or the least of the eased corners [m]
 } moray_path;
 
 // Through n >= 2 waypoints x, y [m]: straight legs joined by arcs of that radius [m] in the corners. Free with
@@ -33,6 +34,10 @@ MORAY_API moray_status moray_path_through(moray_path *path, const double (*waypo
 // The same through waypoints "X,Y X,Y ..." [m], or those of a CSV file of the columns x_m and y_m.
 // Error: those, and MORAY_IO.
 MORAY_API moray_status moray_path_read(moray_path *path, const char *text, double radius);
+
+// Makes of every arc a corner whose curvature grows from 0 and falls back to it evenly, two clothoids in place of the arc
+// between the same ends: nowhere does the curvature jump. Error: MORAY_MEMORY.
+MORAY_API moray_status moray_path_ease(moray_path *path);
 MORAY_API void moray_path_free(moray_path *path); // safe on a zeroed path, and twice
 
 // The point at a distance along the path, which goes on straight before its start and behind its end. Analytic in

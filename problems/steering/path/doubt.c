@@ -10,7 +10,7 @@ static double across_at(const path_job *job, const moray_solution *solution, dou
 {
     double x[MORAY_STEERING_STATES], u[2];
     moray_solution_at(solution, 0, t, x, u);
-    const moray_path_point at = moray_path_at(&job->path, u[1]);
+    const moray_path_point at = moray_path_at(&job->planned, u[1]);
     const double c = cos(creal(at.course)), s = sin(creal(at.course));
     *along = u[1];
     return c * (x[MORAY_STATE_P_Y] - creal(at.y)) - s * (x[MORAY_STATE_P_X] - creal(at.x));
@@ -28,8 +28,8 @@ static const moray_path_piece *cut_corner(const path_job *job, const moray_solut
     for (int k = 0; k <= points; k++) {
         double along;
         const double across = across_at(job, solution, t0 + (t1 - t0) * k / points, &along);
-        for (int i = 0; i < job->path.n; i++) {
-            const moray_path_piece *arc = &job->path.piece[i];
+        for (int i = 0; i < job->planned.n; i++) {
+            const moray_path_piece *arc = &job->planned.piece[i];
             const double reach = 1 / fabs(arc->curvature); // of a leg infinite
             if (arc->curvature * across < nearly || along < arc->start - reach ||
                 along > arc->start + arc->length + reach || (corner && fabs(corner->curvature) > fabs(arc->curvature)))
@@ -54,9 +54,10 @@ static double nearest_node(const path_job *job, const moray_solution *solution, 
     for (int k = 0; k < n; k++) {
         double along;
         across_at(job, solution, time[k], &along);
-        for (int i = 1; i < job->path.n; i++) {
-            const double off = fabs(along - job->path.piece[i].start);
-            if (off >= nearest)
+        for (int i = 1; i < job->planned.n; i++) {
+            const moray_path_piece *piece = &job->planned.piece[i];
+            const double off = fabs(along - piece->start);
+            if (off >= nearest || piece->sharpness != 0 || piece[-1].sharpness != 0)
                 continue;
             nearest = off;
             *t = time[k];

@@ -15,6 +15,7 @@ typedef struct path_job {
     bool find_gait;
     // found along the way
     moray_path path;
+    moray_path planned; // the same, its corners as wide as a plan needs them
     double speed; // straight ahead through the water, by the model of the last plan made [m/s]
 } path_job;
 

@@ -17,9 +17,39 @@ moray_path_spec path_spec(const path_job *job, moray_model model, bool averaged)
                              .weight = {.across = 1 / (across_unit * across_unit * seconds),
                                         .time = job->weight_time / seconds,
                                         .steering = job->steer.weight_steering / seconds},
-                             .path = &job->path,
+                             .path = &job->planned,
                              .tube = fmin(job->tube, MORAY_INFINITY),
                              .reach = job->reach};
+}
+
+// ---- Corners -------------------------------------------------------------------------------------------------------
+
+// How far the arcs of a path pass beside its waypoints at the most [m].
+static double passes_by(const moray_path *path)
+{
+    double most = 0;
+    for (int k = 0; k < path->n; k++)
+        most = fmax(most, path->radius * (1 / cos(path->piece[k].curvature * path->piece[k].length / 2) - 1));
+    return most;
+}
+
+// A plan cuts a narrow corner beyond its centre, where the nearest point of the path jumps and no plan is certified. So
+// it is made for corners of half the circle on which the robot turns, and wider ones where the path hardly changes, as
+// the legs have room for them, and eased; within a tube for those that are asked for.
+static moray_status round_corners(path_job *job, double circle)
+{
+    const double widest = 10 * circle, enough = 0.5 * circle, hardly = 0.1 * across_unit, step = 0.9;
+    if (job->radius >= enough || isfinite(job->tube))
+        return moray_path_read(&job->planned, job->path_text, job->radius);
+    for (double radius = widest; radius > job->radius; radius *= step) {
+        const moray_status status = moray_path_read(&job->planned, job->path_text, radius);
+        if (!moray_failed(status) && (radius <= enough || passes_by(&job->planned) <= hardly))
+            return moray_path_ease(&job->planned);
+        moray_path_free(&job->planned);
+        if (moray_failed(status) && status.code != MORAY_INPUT)
+            return status;
+    }
+    return moray_path_read(&job->planned, job->path_text, job->radius);
 }
 
 // ---- What limits the robot -----------------------------------------------------------------------------------------
@@ -49,19 +79,30 @@ static const moray_path_piece *tightest(const path_job *job)
     return worst;
 }
 
+// A leg of the path in that of the plan; NULL where the arcs leave nothing of it.
+static const moray_path_piece *planned_leg(const path_job *job, const moray_path_piece *leg)
+{
+    for (int k = 0; k < job->planned.n; k++)
+        if (job->planned.piece[k].leg == leg->leg && job->planned.piece[k].curvature == 0 &&
+            job->planned.piece[k].sharpness == 0)
+            return &job->planned.piece[k];
+    return NULL;
+}
+
 void path_crab(const path_job *job, const moray_path_piece *leg, double *asked, double *planned)
 {
     enum { points = 4000 };
     const moray_steering_plan *plan = steer_last_plan(&job->steer);
+    const moray_path_piece *swum = planned_leg(job, leg);
     const double *V = job->steer.snake.current, speed = plan->straight.speed, course = leg->course;
     double t0, tf, x[MORAY_STEERING_STATES], u[2], sum = 0;
     int n = 0;
     *asked = -asin((V[1] * cos(course) - V[0] * sin(course)) / speed);
     moray_solution_times(plan->solution, 0, &t0, &tf);
-    for (int k = 0; k <= points; k++) {
+    for (int k = 0; swum && k <= points; k++) {
         const double t = t0 + (tf - t0) * k / points;
         moray_solution_at(plan->solution, 0, t, x, u);
-        const double part = (u[1] - leg->start) / leg->length;
+        const double part = (u[1] - swum->start) / swum->length;
         if (part < 0.4 || part > 0.8)
             continue;
         sum += remainder(moray_straight_motion_heading(&plan->straight, t, x[MORAY_STATE_THETA]) - course, 2 * M_PI);
@@ -94,6 +135,9 @@ void path_explain(const steer_job *steer, char *text, size_t size)
         moray_text_add(text, size, " That is too slow: ");
         say_corner(job, corner, turn_rate, text, size);
         moray_text_add(text, size, ".");
+        if (job->planned.radius > job->radius)
+            moray_text_add(text, size, " The plans are made for corners eased to a radius of %.3g m.",
+                           job->planned.radius);
     } else if (corner)
         moray_text_add(text, size, " The corners ask for up to %.2f deg/s.", path_turning(job, corner) / DEG);
     moray_text_add(text, size,
@@ -108,10 +152,12 @@ static moray_status why_not(const path_job *job, const moray_steering_plan *plan
     const moray_path_piece *corner = tightest(job);
     const double turn_rate = fabs(job->steer.turn_rate[plan->straight.model]);
     const moray_status told = steer_not_solved(plan->solution);
-    if (told.code != MORAY_NOT_SOLVED || steer_cut_short(plan->solution) || !isfinite(job->tube) || !corner ||
+    if (told.code != MORAY_NOT_SOLVED || steer_cut_short(plan->solution) || !corner ||
         path_turning(job, corner) <= turn_rate)
         return told;
     say_corner(job, corner, turn_rate, text, sizeof text);
+    if (!isfinite(job->tube))
+        return moray_error(MORAY_NOT_SOLVED, "the path is not followed: %s; %s", text, told.text);
     return moray_error(MORAY_NOT_SOLVED, "tube_m = %g cannot be kept: %s", job->tube, text);
 }
 
@@ -173,6 +219,15 @@ static moray_status check_courses(path_job *job, moray_model model, moray_gait *
     return moray_path_passable(&job->path, straight.speed, steer->snake.current);
 }
 
+// The corners of the plans, by the circle of the gait that they begin from.
+static moray_status make_room(path_job *job, const moray_gait *gait)
+{
+    moray_straight_motion straight;
+    MORAY_TRY(moray_straight_motion_find(&straight, &job->steer.snake.robot, MORAY_CONTROL_ORIENTED, gait));
+    MORAY_TRY(steer_find_turn_rate(&job->steer, MORAY_CONTROL_ORIENTED, gait));
+    return round_corners(job, straight.speed / fabs(job->steer.turn_rate[MORAY_CONTROL_ORIENTED]));
+}
+
 moray_status path_make_plans(path_job *job)
 {
     steer_job *steer = &job->steer;
@@ -186,6 +241,7 @@ moray_status path_make_plans(path_job *job)
     MORAY_TRY(check_courses(job, MORAY_CONTROL_ORIENTED, &first));
     if (steer->snake.model == MORAY_FIRST_PRINCIPLES)
         MORAY_TRY(check_courses(job, MORAY_FIRST_PRINCIPLES, &gait));
+    MORAY_TRY(make_room(job, &first));
     MORAY_TRY(solve(job, MORAY_CONTROL_ORIENTED, true, &first, NULL, &steer->plan[STEER_AVERAGED]));
     MORAY_TRY(make_plan(job, MORAY_CONTROL_ORIENTED, &steer->plan[STEER_AVERAGED].straight.gait,
                         &steer->plan[STEER_AVERAGED]));

@@ -22,7 +22,7 @@ static moray_status set_guidance(steer_steersman *h)
     const path_job *job = (const path_job *)h->job;
     const bool planned = h->trial->law->kind == STEER_PLANNED;
     const double *number = h->trial->number;
-    h->own.guidance = (moray_guidance){.path = &job->path,
+    h->own.guidance = (moray_guidance){.path = planned ? &job->planned : &job->path,
                                        .plan = planned ? &job->steer.plan[h->trial->plan] : NULL,
                                        .plan_scale = h->plan.scale,
                                        .lookahead = number[LOOKAHEAD],
@@ -42,7 +42,7 @@ static moray_status set_receding(steer_steersman *h)
                                         .horizon = h->job->look_ahead_periods * 2 * M_PI / straight->gait.omega};
     replanner->spec.tube = MORAY_INFINITY;
     replanner->spec.speed =
-        job->path.length / moray_path_duration(&job->path, 0, straight->speed, h->job->snake.current);
+        job->planned.length / moray_path_duration(&job->planned, 0, straight->speed, h->job->snake.current);
     return steer_set_receding(h, "radau4", moray_path_replan(replanner), &replanner->spec.limits, 0, h->plan.solution);
 }
 
@@ -276,6 +276,7 @@ static moray_status work(steer_job *steer)
 static void release(steer_job *steer)
 {
     moray_path_free(&((path_job *)steer)->path);
+    moray_path_free(&((path_job *)steer)->planned);
 }
 
 static const moray_meaning words[] = {

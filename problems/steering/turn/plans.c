@@ -79,7 +79,7 @@ static double stretch_of(const turn_job *job, moray_model model, const moray_ste
 }
 
 // From the plan `from` on times that end at several parts of a stroke, on longer ones where that does not solve, and at
-// last from nothing; leaves the fastest turn.
+// last from nothing; leaves the fastest turn. A start that leads nowhere takes no more than half of the time left.
 static moray_status solve(turn_job *job, moray_model model, const moray_gait *gait, const moray_steering_plan *from,
                           moray_steering_plan *plan)
 {
@@ -89,14 +89,17 @@ static moray_status solve(turn_job *job, moray_model model, const moray_gait *ga
     const double stretch = from ? stretch_of(job, model, from) : 1;
     const moray_settings settings = settings_of(job, from, period / stretch);
     steer_clock_give(&job->steer.clock, !from ? 0.2 : model < job->steer.snake.model ? 0.3 : 0.5);
+    const double until = job->steer.clock.until;
     for (int k = 0; from && (k < starts || (k < starts + longer && !solved(plan))); k++) {
         const double later = k < starts ? period * (k - 0.5) / starts / steer_duration(from->solution)
                                         : stretch * 0.1 * (k - starts + 1);
         moray_steering_plan next;
+        steer_clock_divide(&job->steer.clock, until);
         MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, from, stretch + later));
         keep_faster(plan, &next);
         MORAY_TRY(steer_interruption());
     }
+    job->steer.clock.until = until;
     if (!plan->solution || !solved(plan)) {
         moray_steering_plan next;
         MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, NULL, 1));

@@ -237,6 +237,34 @@ static moray_status solve_outlines(moray_steering_plan *plan, const moray_turn_s
     return moray_ok();
 }
 
+// How many of the outlines come before the first that takes much longer than the fastest: a whole turn more.
+static int as_fast(const outline *plans, int n)
+{
+    const double much_longer = 2;
+    int k = 1;
+    while (k < n && plans[k].seconds < much_longer * plans[0].seconds)
+        k++;
+    return k;
+}
+
+// Where no averaged way is found, that is since the fastest outlines are a little too narrow for the robot, and longer
+// ones are drawn to them: once more with the floor of the longer ones.
+static moray_status solve_longer(moray_steering_plan *plan, moray_turn_spec *spec, const moray_settings *settings,
+                                 steering_guess *samples, const outline *plans, int n, double turn_rate)
+{
+    for (int first = as_fast(plans, n); first < n && !solved(plan->solution);
+         first += as_fast(plans + first, n - first)) {
+        if (moray_solution_info(plan->solution)->outcome == MORAY_NLP_INTERRUPTED)
+            break;
+        moray_solution_free(plan->solution);
+        moray_steering_problem_free(&plan->problem);
+        plan->solution = NULL;
+        MORAY_TRY(pose_problem(plan, spec, plans[first].seconds, plans[n - 1].seconds));
+        MORAY_TRY(solve_outlines(plan, spec, settings, samples, plans + first, n - first, turn_rate));
+    }
+    return moray_ok();
+}
+
 static moray_status make(moray_steering_plan *plan, moray_turn_spec *spec, const moray_settings *settings,
                          const moray_gait *gait, double turn_rate, const moray_steering_plan *from, double stretch)
 {
@@ -252,6 +280,8 @@ static moray_status make(moray_steering_plan *plan, moray_turn_spec *spec, const
         status = solve(plan, settings, &samples, &plan->solution);
     } else
         status = solve_outlines(plan, spec, settings, &samples, likely, spec->averaged ? n : 1, turn_rate);
+    if (!moray_failed(status) && !from && spec->averaged)
+        status = solve_longer(plan, spec, settings, &samples, likely, n, turn_rate);
     free(samples.time);
     MORAY_TRY(status);
     if (!spec->averaged)

@@ -133,7 +133,8 @@ static void test_small_turn(void)
     CHECK(moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED, "solved");
     moray_solution_times(plan.solution, 0, &t0, &took);
     const double outline = spec.heading / fabs(rate) + 2 * spec.limits.offset / spec.limits.offset_rate + 1;
-    CHECK(took < 0.45 * outline, "half a degree in %.3g s, where an outline of full offset takes %.3g s", took, outline);
+    CHECK(took < 0.45 * outline, "half a degree in %.3g s, where an outline of full offset takes %.3g s", took,
+          outline);
     moray_steering_plan_free(&plan);
 }
 
@@ -141,18 +142,22 @@ static void test_small_turn(void)
 // shortest outline misleads: it takes less time than the robot can.
 static void test_poses(void)
 {
-    static const double ends[][3] = {{0, 2, 180}, {0, 0.5, -180}, {-1, 0, 0}, {3, 1, 90},
-                                     {1, 0, -90}, {2, -2, 30},    {5, 0, 30}}; // [m], [m], [deg]
-    for (int k = 0; k < 7; k++) {
+    static const struct {
+        double end[2], heading, current[2]; // [m], [deg], [m/s]
+    } poses[] = {{{5, 0}, 0, {0.1, -0.1}},   {{0, 2}, 180, {0.05, 0.1}}, {{0, 0.5}, -180, {0.05, 0.1}},
+                 {{-1, 0}, 0, {0.05, 0.1}},  {{3, 1}, 90, {0.05, 0.1}},  {{1, 0}, -90, {0.05, 0.1}},
+                 {{2, -2}, 30, {0.05, 0.1}}, {{5, 0}, 30, {0.05, 0.1}}};
+    for (int k = 0; k < (int)(sizeof poses / sizeof *poses); k++) {
         moray_turn_spec spec = spec_of(MORAY_CONTROL_ORIENTED, true, 10);
         moray_gait gait = moray_gait_paper(&spec.robot);
         moray_settings settings = moray_settings_default();
         moray_steering_plan plan;
         double rate, t0, t1, x[MORAY_STEERING_STATES];
         spec.limits.theta_max = moray_fixed(20 * DEG);
-        spec.heading = ends[k][2] * DEG;
+        spec.heading = poses[k].heading * DEG;
+        memcpy(spec.current, poses[k].current, sizeof spec.current);
         spec.to_position = true;
-        memcpy(spec.position, ends[k], sizeof spec.position);
+        memcpy(spec.position, poses[k].end, sizeof spec.position);
         settings.scheme = "radau3";
         settings.intervals = 30;
         gait.offset = spec.limits.offset;
@@ -162,8 +167,8 @@ static void test_poses(void)
         moray_solution_times(plan.solution, 0, &t0, &t1);
         moray_solution_at(plan.solution, 0, t1, x, NULL);
         CHECK(moray_solution_info(plan.solution)->outcome == MORAY_NLP_SOLVED &&
-                  hypot(x[MORAY_STATE_P_X] - ends[k][0], x[MORAY_STATE_P_Y] - ends[k][1]) < 1e-6,
-              "(%g, %g) m and %g deg in %.3g s", ends[k][0], ends[k][1], ends[k][2], t1);
+                  hypot(x[MORAY_STATE_P_X] - poses[k].end[0], x[MORAY_STATE_P_Y] - poses[k].end[1]) < 1e-6,
+              "(%g, %g) m and %g deg in %.3g s", poses[k].end[0], poses[k].end[1], poses[k].heading, t1);
         moray_steering_plan_free(&plan);
     }
 }
