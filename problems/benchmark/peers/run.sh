@@ -72,6 +72,7 @@ title "S1, processor time from the first line of the problem to the solution: Ca
 if pkg-config --exists casadi 2>/dev/null && compile casadi_s1 $(pkg-config --cflags --libs casadi) "-Wl,-rpath,$(pkg-config --variable=libdir casadi)" &&
     repeat "$work/found" "$work/casadi_s1" "$work/s1/s1_start.csv"; then
     beside "S1, CasADi $(middle version "$work/found") C++" S1 "$work/found"
+    cp "$work/found" "$work/s1_found"
 else
     say "CasADi in C++ is not installed, or failed: left out"
 fi
@@ -79,6 +80,13 @@ if python3 -c 'import casadi' 2>/dev/null && repeat "$work/found" python3 "$here
     beside "S1, CasADi $(middle version "$work/found") Python" S1 "$work/found"
 else
     say "CasADi in Python is not installed, or failed: left out"
+fi
+
+if [ -s "$work/s1_found" ]; then
+    "$moray" --part problems --set repeats="$repeats" --quiet >"$work/moray" || exit 1
+    echo
+    title "The same gait with its joints on it, six states in place of 24: CasADi's S1 beside moray"
+    beside "joints eliminated" "max_speed, control-oriented" "$work/s1_found"
 fi
 
 "$moray" --part classics --set repeats="$repeats" --set most_intervals=30 --quiet >"$work/moray" || exit 1
