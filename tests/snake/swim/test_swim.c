@@ -618,6 +618,15 @@ static void test_equal_power(void)
     CHECK(speed[0] == 0 && speed[1] > 0 && speed[1] < speed[2], "from 0 on: %g, %g m/s", speed[1], speed[2]);
     CHECK_NEAR(speed[12], trial.steady[model].speed, 1e-3 * speed[12], "to the steady speed");
     moray_test_rig_free(&rig);
+    double turned[13];
+    CHECK_OK(moray_test_rig_new(&rig, &robot, still, 60 * DEG), "a rig with another course");
+    CHECK_OK(moray_gait_trial_swim(&rig, model, &trial), "gait");
+    CHECK_OK(moray_gait_trial_speeds(&rig, &trial, model, 36, 13, time, turned), "from rest");
+    double differ = 0;
+    for (int k = 0; k < 13; k++)
+        differ = fmax(differ, fabs(turned[k] - speed[k]));
+    CHECK_NEAR(differ, 0, 1e-6, "as fast on that course, from rest on");
+    moray_test_rig_free(&rig);
 }
 
 int main(void)
