@@ -144,6 +144,11 @@ case $wanted in
 *" fresh "*) by tests/studies/fresh.sh fresh ;;
 esac
 
+# Takes half an hour: by name alone.
+case $wanted in
+*" references "*) by tests/studies/references.sh references build 200 ;;
+esac
+
 # Takes an hour: by name alone.
 case $wanted in
 *" trust "*) by tests/studies/trust.sh trust build ;;
