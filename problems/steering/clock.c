@@ -19,8 +19,8 @@ void steer_clock_give(steer_clock *clock, double share)
 
 void steer_clock_divide(steer_clock *clock, double until)
 {
-    const double at = moray_clock();
-    clock->until = at + fmax(until - at, 0) / 2;
+    const double most = 0.75, at = moray_clock();
+    clock->until = at + most * fmax(until - at, 0);
 }
 
 bool steer_clock_up(const steer_clock *clock)

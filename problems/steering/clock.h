@@ -21,7 +21,7 @@ void steer_clock_start(steer_clock *clock);
 // Gives what follows this share of the time left.
 void steer_clock_give(steer_clock *clock, double share);
 
-// Gives what follows half of what is left until then.
+// Gives what follows most of what is left until then, and what comes behind it the rest.
 void steer_clock_divide(steer_clock *clock, double until);
 
 // Whether what was given is used up.

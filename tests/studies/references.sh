@@ -75,10 +75,10 @@ try path_against path_following --path "0,0 6,0" --current=-0.3,0
 try sharp_corner path_following --path "0,0 5,0 5,5" --set radius_m=0.05
 try tiny_arcs path_following --path "0,0 5,0 5,5 10,5" --set radius_m=0.01
 try spline_in_current path_following --path "$work/spline.csv" --set radius_m=0.2 --current=-0.05,0.1
-try u_turn path_following --path "0,0 8,0 0,1"
+try u_turn path_following --path "0,0 8,0 0,1" --set radius_m=0.2
 try closed_loop path_following --path "0,0 6,0 6,6 0,6 0,0.5" --set radius_m=1 --current=0.05,0.05
 
-wanted three_links && robot three --links 3
+wanted three_links && robot three --links 3 --set delta_deg=60
 wanted fifteen_links && robot fifteen --links 15
 wanted five_links && robot five --links 5
 wanted twenty_links && robot twenty --links 20

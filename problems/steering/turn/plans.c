@@ -58,12 +58,26 @@ static bool solved(const moray_steering_plan *plan)
     return steer_solved(plan->solution);
 }
 
-// Takes the faster turn of the two, if it is one.
-static void keep_faster(moray_steering_plan *plan, moray_steering_plan *next)
+// On a mesh that is fine enough, or on which there was time enough.
+static bool finished(const moray_steering_plan *plan)
 {
-    const bool better =
-        !plan->solution || (solved(next) && (!solved(plan) || moray_solution_objective(next->solution) <
-                                                                  moray_solution_objective(plan->solution)));
+    return moray_solution_info(plan->solution)->outcome == MORAY_NLP_SOLVED;
+}
+
+// Whether a turn is better than another: solved, on its last mesh too, and faster.
+static bool is_better(const moray_steering_plan *next, const moray_steering_plan *plan)
+{
+    if (!plan->solution || solved(next) != solved(plan))
+        return !plan->solution || solved(next);
+    if (!solved(next) || finished(next) != finished(plan))
+        return finished(next);
+    return moray_solution_objective(next->solution) < moray_solution_objective(plan->solution);
+}
+
+// Takes the better turn of the two.
+static void keep_better(moray_steering_plan *plan, moray_steering_plan *next)
+{
+    const bool better = is_better(next, plan);
     moray_steering_plan_free(better ? plan : next);
     if (better)
         *plan = *next;
@@ -79,7 +93,7 @@ static double stretch_of(const turn_job *job, moray_model model, const moray_ste
 }
 
 // From the plan `from` on times that end at several parts of a stroke, on longer ones where that does not solve, and at
-// last from nothing; leaves the fastest turn. A start that leads nowhere takes no more than half of the time left.
+// last from nothing; leaves the fastest turn. A start that leads nowhere leaves time for the next.
 static moray_status solve(turn_job *job, moray_model model, const moray_gait *gait, const moray_steering_plan *from,
                           moray_steering_plan *plan)
 {
@@ -90,20 +104,20 @@ static moray_status solve(turn_job *job, moray_model model, const moray_gait *ga
     const moray_settings settings = settings_of(job, from, period / stretch);
     steer_clock_give(&job->steer.clock, !from ? 0.2 : model < job->steer.snake.model ? 0.3 : 0.5);
     const double until = job->steer.clock.until;
-    for (int k = 0; from && (k < starts || (k < starts + longer && !solved(plan))); k++) {
+    for (int k = 0; from && (k < starts || (k < starts + longer && !finished(plan))); k++) {
         const double later = k < starts ? period * (k - 0.5) / starts / steer_duration(from->solution)
                                         : stretch * 0.1 * (k - starts + 1);
         moray_steering_plan next;
         steer_clock_divide(&job->steer.clock, until);
         MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, from, stretch + later));
-        keep_faster(plan, &next);
+        keep_better(plan, &next);
         MORAY_TRY(steer_interruption());
     }
     job->steer.clock.until = until;
     if (!plan->solution || !solved(plan)) {
         moray_steering_plan next;
         MORAY_TRY(moray_turn_plan_make(&next, &spec, &settings, gait, turn_rate, NULL, 1));
-        keep_faster(plan, &next);
+        keep_better(plan, &next);
         MORAY_TRY(steer_interruption());
     }
     if (!solved(plan))
