@@ -206,18 +206,39 @@ static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known
 
 // ---- Explaining ----------------------------------------------------------------------------------------------------
 
-// What the fastest gait within the same limits makes; speeds are NaN when that cannot be found either.
-static moray_gait_prediction fastest(gait_job *job, const stage *at, const double current[2])
+// What the fastest gait within the same limits makes that is found from one; speeds are NaN where none is.
+static moray_gait_prediction fastest_from(gait_job *job, const stage *at, const double current[2],
+                                          const moray_gait *gait)
 {
     moray_gait_problem *problem = NULL;
     moray_solution *solution = NULL;
     moray_gait_prediction prediction = {.speed = NAN, .course_speed = NAN};
     if (!moray_failed(gait_job_problem(job, at, MORAY_GAIT_FASTEST, current, &problem)) &&
-        !moray_failed(solve_in(job, at, current, problem, &job->paper.gait[at->model], &solution)) && solved(solution))
+        !moray_failed(solve_in(job, at, current, problem, gait, &solution)) && solved(solution))
         prediction = moray_gait_problem_prediction(problem, solution);
     moray_solution_free(solution);
     moray_gait_problem_free(problem);
     return prediction;
+}
+
+// Likewise from the paper's gait and, where that does not make `enough`, from others: one search may end beside all
+// that swims.
+static moray_gait_prediction fastest(gait_job *job, const stage *at, const double current[2], double enough)
+{
+    static const double delta[] = {1, 1.4, 0.7, 1.9};
+    const moray_gait *paper = &job->paper.gait[at->model];
+    const moray_robot *robot = &job->snake.robot;
+    const double theta_max = moray_theta_max_from_amplitude(robot, at->model, paper->amplitude, paper->delta);
+    moray_gait_prediction best = {.speed = NAN, .course_speed = NAN};
+    for (int k = 0; k < 4 && !(best.course_speed > enough); k++) {
+        moray_gait gait = *paper;
+        gait.delta = fmin(fmax(delta[k] * paper->delta, job->delta[0]), job->delta[1]);
+        gait.amplitude = moray_amplitude_from_theta_max(robot, at->model, theta_max, gait.delta);
+        const moray_gait_prediction found = fastest_from(job, at, current, &gait);
+        if (isnan(best.course_speed) || found.course_speed > best.course_speed)
+            best = found;
+    }
+    return best;
 }
 
 // Whether the current could be stemmed at `reserve` times the best speed through still water.
@@ -227,7 +248,8 @@ static moray_status check_current(gait_job *job, const stage *at, double reserve
     const double along = V[0] * c + V[1] * s, across = fabs(V[1] * c - V[0] * s), still[2] = {0, 0};
     if (along >= 0 && across == 0)
         return moray_ok();
-    const double U = fastest(job, at, still).speed, most = reserve * U;
+    const double U = fastest(job, at, still, (along < 0 ? hypot(along, across) : across) / reserve).speed;
+    const double most = reserve * U;
     if (across >= most)
         return moray_error(MORAY_NOT_SOLVED,
                            "current = %g,%g: the robot cannot stem it: %.4f m/s of it run across the course, and "
@@ -261,7 +283,7 @@ static moray_status explain_no_way(gait_job *job, const stage *at)
 // Whether the fastest gait makes the speed that is asked for.
 static moray_status check_speed(gait_job *job, const stage *at)
 {
-    const double most = fastest(job, at, job->snake.current).course_speed;
+    const double most = fastest(job, at, job->snake.current, at->speed).course_speed;
     if (most > 0 && most < at->speed)
         return moray_error(MORAY_NOT_SOLVED,
                            "speed_m_s = %g: within the limits the robot makes %.4f m/s along the course at most",
