@@ -14,8 +14,7 @@ static const double out_of_scale = 1e-3; // of what a duration was scaled by
 static const double loose = 1e-6;        // of a state: what defects in it may be
 static const double far_inside = 0.3;    // of the gap that the certificate allows
 static const double closer = 0.1;        // of the tolerance before
-static const double far_off = 0.1;       // barrier for a start of which nothing is known
-enum { usual_bounds = 1500 };            // that a barrier less than that is meant for
+enum { usual_bounds = 1500 };            // that a barrier is meant for
 
 static bool is_bound(double bound)
 {
@@ -39,7 +38,7 @@ static double first_barrier(const moray_solution *solution)
     const double asked = solution->settings.barrier;
     const int bounds =
         count_bounds(nlp->x_lower, nlp->x_upper, nlp->n) + count_bounds(nlp->g_lower, nlp->g_upper, nlp->m);
-    return asked < far_off && bounds > usual_bounds ? asked * usual_bounds / bounds : asked;
+    return solution->settings.barrier_shared && bounds > usual_bounds ? asked * usual_bounds / bounds : asked;
 }
 
 moray_nlp_settings moray_solver_settings(const moray_solution *solution, bool warm)

@@ -87,7 +87,9 @@ moray_status moray_gait_problem_solve(const moray_gait_problem *problem, const m
     moray_gait_to_parameters(gait, s);
     const moray_samples samples = {.n = orbit->n, .time = orbit->t, .x = x};
     const moray_guess guess = {.phase = &samples, .s = s};
-    moray_status status = moray_solve(problem->ocp, settings, &guess, solution);
+    moray_settings own = *settings;
+    own.barrier_shared = true; // an orbit is right but for its limits, of which a fine mesh has many
+    moray_status status = moray_solve(problem->ocp, &own, &guess, solution);
     free(x);
     return status;
 }
