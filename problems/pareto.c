@@ -113,7 +113,8 @@ static moray_status make_front(pareto *run, moray_model model, int kind)
     return prove(run, front);
 }
 
-// The lateral front of the model asked for is what the program is for; another that cannot be had takes nothing from it.
+// The lateral front of the model asked for is what the program is for; another that cannot be had takes nothing from
+// it.
 static moray_status make_or_leave_out(pareto *run, moray_model model, int kind)
 {
     const moray_status status = make_front(run, model, kind);

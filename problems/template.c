@@ -43,7 +43,7 @@ int main(int argc, char **argv)
         .nq = 1,
         .continuous = push,
         .t0 = moray_fixed(0), // or moray_between(low, high), moray_at_least(low), ...: then the time is found too
-        .tf = moray_fixed(1),   // .duration = moray_at_most(2) bounds tf - t0; .mesh and .intervals: README.md
+        .tf = moray_fixed(1), // .duration = moray_at_most(2) bounds tf - t0; .mesh and .intervals: README.md
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(1)), // x at the start, at the end; .x would be everywhere
         .xf = MORAY_BOUNDS(moray_fixed(0), moray_fixed(-1)),
         .u = MORAY_BOUNDS(moray_free()),

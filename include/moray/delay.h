@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Problems with delays, by the method of steps: what happens from 0 to n h stands as n copies of states and controls side
-// by side in one phase from 0 to h, each beginning where the one before ends.
+// Problems with delays, by the method of steps: what happens from 0 to n h stands as n copies of states and controls
+// side by side in one phase from 0 to h, each beginning where the one before ends.
 #ifndef MORAY_DELAY_H
 #define MORAY_DELAY_H
 

@@ -2,12 +2,12 @@
 //
 // The number type of user functions, and what <tgmath.h> lacks for it. The library finds derivatives by the complex
 // step: it puts a tiny imaginary part into one input and reads the derivative off the imaginary parts of the outputs.
-// That is exact for everything analytic: + - * /, pow of what is positive (else moray_pow), exp, log, sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh,
-// tanh. Not analytic, and silently wrong: fabs (in <tgmath.h> the modulus), cabs, carg, conj, creal and cimag of
-// anything that depends on the inputs. Comparisons need creal(a) < creal(b); the branch taken is the one
-// differentiated. The functions below continue their real namesakes: they choose by the real part, so that value and
-// derivative are those of the real function. Where they have a kink (moray_abs at 0) Newton's method may stall: a
-// smooth form, such as sqrt(x * x + e * e), converges better.
+// That is exact for everything analytic: + - * /, pow of what is positive (else moray_pow), exp, log, sqrt, sin, cos,
+// tan, asin, acos, atan, sinh, cosh, tanh. Not analytic, and silently wrong: fabs (in <tgmath.h> the modulus), cabs,
+// carg, conj, creal and cimag of anything that depends on the inputs. Comparisons need creal(a) < creal(b); the branch
+// taken is the one differentiated. The functions below continue their real namesakes: they choose by the real part, so
+// that value and derivative are those of the real function. Where they have a kink (moray_abs at 0) Newton's method may
+// stall: a smooth form, such as sqrt(x * x + e * e), converges better.
 //
 // In C++ moray_num is std::complex<double>, of the same form in memory; user functions then call the functions of
 // <complex>.

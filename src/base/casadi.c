@@ -30,8 +30,9 @@ static moray_status count(void *object, const char *name, const char *suffix, in
     long long (*get)(void) = (long long (*)(void))find(object, name, suffix);
     const long long found = get ? get() : 1;
     *n = (int)found;
-    return found >= 0 && found < 10000 ? moray_ok()
-                                       : moray_error(MORAY_INPUT, "%s%s is %lld: must be from 0 to 9999", name, suffix, found);
+    return found >= 0 && found < 10000
+               ? moray_ok()
+               : moray_error(MORAY_INPUT, "%s%s is %lld: must be from 0 to 9999", name, suffix, found);
 }
 
 // Compressed columns: rows, columns, the start of every column and its end, the row of every nonzero. A 1 in place of
@@ -122,7 +123,8 @@ moray_status moray_casadi_open(struct casadi_function *f, void *object, const ch
 {
     *f = (struct casadi_function){0};
     if (strlen(name) >= sizeof f->name)
-        return moray_error(MORAY_INPUT, "function %.60s...: must be a name of less than %zu bytes", name, sizeof f->name);
+        return moray_error(MORAY_INPUT, "function %.60s...: must be a name of less than %zu bytes", name,
+                           sizeof f->name);
     strcpy(f->name, name);
     f->evaluate = (int (*)(const double **, double **, long long *, double *, int))find(object, name, "");
     if (!f->evaluate)

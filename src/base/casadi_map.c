@@ -136,8 +136,8 @@ static moray_status set_places(struct casadi_map *m, const moray_casadi_spec *sp
     m->n_out = moray_casadi_entries(m->value.out, m->value.n_out);
     m->n_in = spec->n_in ? spec->n_in : m->entries;
     if (m->n_in < m->entries)
-        return moray_error(MORAY_INPUT, "%s has %d inputs: the map must have as many, and has %d", spec->name, m->entries,
-                           m->n_in);
+        return moray_error(MORAY_INPUT, "%s has %d inputs: the map must have as many, and has %d", spec->name,
+                           m->entries, m->n_in);
     m->place = calloc((size_t)m->entries + 1, sizeof *m->place);
     if (!m->place)
         return moray_error(MORAY_MEMORY, "no memory for %d inputs", m->entries);

@@ -6,7 +6,8 @@
 // Walks over the entries of a matrix of blocks, row by row of blocks, whose columns are those of all arguments.
 typedef void visit(struct casadi_map *m, int row, int col, const double *value, int at);
 
-static int walk(struct casadi_map *m, struct casadi_function *f, int block_rows, int block_cols, bool lower, visit *put_one)
+static int walk(struct casadi_map *m, struct casadi_function *f, int block_rows, int block_cols, bool lower,
+                visit *put_one)
 {
     int n = 0, top = 0;
     for (int i = 0; i < block_rows; i++) {
@@ -55,11 +56,11 @@ static moray_status check_blocks(const struct casadi_map *m, const struct casadi
             const struct casadi_block *block = &f->out[i * per_row + j];
             const int rows = down[i].rows * down[i].cols, cols = m->value.in[j].rows * m->value.in[j].cols;
             if ((block->rows != rows || block->cols != cols) && block->nnz + block->rows * block->cols > 0)
-                return moray_error(MORAY_INPUT, "result %d of %s is %d by %d: must be %d by %d", i * per_row + j, f->name,
-                                   block->rows, block->cols, rows, cols);
+                return moray_error(MORAY_INPUT, "result %d of %s is %d by %d: must be %d by %d", i * per_row + j,
+                                   f->name, block->rows, block->cols, rows, cols);
             if (block->rows != rows || block->cols != cols)
-                return moray_error(MORAY_INPUT, "result %d of %s is empty: must be %d by %d, of no nonzeros", i * per_row + j,
-                                   f->name, rows, cols);
+                return moray_error(MORAY_INPUT, "result %d of %s is empty: must be %d by %d, of no nonzeros",
+                                   i * per_row + j, f->name, rows, cols);
         }
     return moray_ok();
 }
@@ -82,8 +83,8 @@ moray_status moray_casadi_open_jacobian(struct casadi_map *m, const char *name)
     MORAY_TRY(check_arguments(m, f, m->value.n_in + m->value.n_out));
     const bool whole = f->n_out == 1;
     if (whole && (f->out->rows != m->n_out || f->out->cols != m->entries))
-        return moray_error(MORAY_INPUT, "the result of %s is %d by %d: must be %d by %d", name, f->out->rows, f->out->cols,
-                           m->n_out, m->entries);
+        return moray_error(MORAY_INPUT, "the result of %s is %d by %d: must be %d by %d", name, f->out->rows,
+                           f->out->cols, m->n_out, m->entries);
     if (!whole && f->n_out != m->value.n_in * m->value.n_out)
         return moray_error(MORAY_INPUT, "%s has %d results: must be %d, or one", name, f->n_out,
                            m->value.n_in * m->value.n_out);

@@ -217,10 +217,8 @@ static moray_status check(const moray_receding_horizon *r)
 moray_status moray_receding_horizon_new(moray_receding_horizon **result, const moray_receding_horizon_spec *spec)
 {
     *result = NULL;
-    moray_receding_horizon asked = {.spec = *spec,
-                                    .nx = spec->replanner.nx,
-                                    .nu = spec->replanner.nu,
-                                    .ns = spec->replanner.ns};
+    moray_receding_horizon asked = {
+        .spec = *spec, .nx = spec->replanner.nx, .nu = spec->replanner.nu, .ns = spec->replanner.ns};
     if (spec->ocp) {
         moray_ocp_widths(spec->ocp, 0, &asked.nx, &asked.nu);
         asked.ns = spec->ocp->ns;

@@ -22,8 +22,8 @@ typedef struct tuning {
     const moray_tuning_problem *problem;
     const moray_tuning_settings *settings;
     const place *from;
-    double reach;   // half the width of the box that is searched
-    bool polishing; // by a quadratic model
+    double reach;    // half the width of the box that is searched
+    bool polishing;  // by a quadratic model
     bool stopped;    // of one task
     int evaluations; // likewise
 } tuning;

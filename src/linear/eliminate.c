@@ -173,7 +173,8 @@ static void take_empty(struct panel *p)
 static void take_1x1(struct panel *p)
 {
     const int k = p->done;
-    double *restrict column = p->P + (size_t)k * (size_t)p->height, *restrict kept = p->W + (size_t)k * (size_t)p->height;
+    double *restrict column = p->P + (size_t)k * (size_t)p->height, *restrict kept =
+                                                                        p->W + (size_t)k * (size_t)p->height;
     const double inverse = 1 / column[k];
     for (int i = k + 1; i < p->height; i++) {
         kept[i] = column[i];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The inner loops. Tiles of up to three registers by four columns stay in registers while all pivots are subtracted. The
-// registers must be the processor's own: gcc takes wider vectors apart by way of memory, which is several times slower.
+// The inner loops. Tiles of up to three registers by four columns stay in registers while all pivots are subtracted.
+// The registers must be the processor's own: gcc takes wider vectors apart by way of memory, which is several times
+// slower.
 #include <stddef.h>
 #include <string.h>
 

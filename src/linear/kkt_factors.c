@@ -79,8 +79,8 @@ moray_status moray_kkt_factors_factor(kkt_factors *kkt, const double *values, do
     return moray_ldl_factor(kkt->ldl, values, threshold);
 }
 
-// A basis that was chosen for matrices of long before loses digits: another is sought for this one. *good <- false where
-// too many are lost all the same.
+// A basis that was chosen for matrices of long before loses digits: another is sought for this one. *good <- false
+// where too many are lost all the same.
 static moray_status solve_in_null_space(kkt_factors *kkt, double *b, bool *good)
 {
     const size_t size = (size_t)kkt->n * sizeof *b;

@@ -10,7 +10,8 @@
 #include "linear/null_space_parts.h"
 
 static const double regular = 1e-15; // reciprocal condition of a basis, by its pivots
-static const double far = 1e3; // what one of the other variables may move a basic one by, a little of which costs no digits
+static const double far =
+    1e3; // what one of the other variables may move a basic one by, a little of which costs no digits
 enum { most_freedom = 24, most_vain = 3, most_exchanges = 8 };
 
 static moray_status no_memory(int n)

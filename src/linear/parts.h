@@ -114,8 +114,8 @@ void moray_ldl_front_eliminate(moray_ldl *ldl, int node);
 // C[i + j ldc] -= sum over k < depth of L[i + k ldl] W[j + k ldw], for j < columns and j <= i < rows.
 void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, int ldl, const double *W, int ldw,
                              double *C, int ldc);
-// x <- L^-1 x, and x[pivots] <- L^-T x with what stands below: unit lower triangle of the first `pivots` columns, height
-// rows.
+// x <- L^-1 x, and x[pivots] <- L^-T x with what stands below: unit lower triangle of the first `pivots` columns,
+// height rows.
 void moray_ldl_kernel_forward(int height, int pivots, const double *L, int ldl, double *x);
 void moray_ldl_kernel_backward(int height, int pivots, const double *L, int ldl, double *x);
 

@@ -10,10 +10,10 @@
 typedef struct moray_options {
     const moray_option *row;
     int n;
-    const moray_words *words; // NULL: none
-    const char *program;      // its name
+    const moray_words *words;   // NULL: none
+    const char *program;        // its name
     const char *const *without; // as of moray_program
-    moray_option *own;        // the rows, where they were put together
+    moray_option *own;          // the rows, where they were put together
 } moray_options;
 
 // Error: MORAY_MEMORY. Free own with free().

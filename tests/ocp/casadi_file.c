@@ -28,9 +28,15 @@ static int slide(const double **arg, double **res)
 // What every function of the file has.
 #define FUNCTION(name, ins, outs)                                                                                      \
     EXPORT integer name##_n_in(void);                                                                                  \
-    EXPORT integer name##_n_in(void) { return ins; }                                                                   \
+    EXPORT integer name##_n_in(void)                                                                                   \
+    {                                                                                                                  \
+        return ins;                                                                                                    \
+    }                                                                                                                  \
     EXPORT integer name##_n_out(void);                                                                                 \
-    EXPORT integer name##_n_out(void) { return outs; }                                                                 \
+    EXPORT integer name##_n_out(void)                                                                                  \
+    {                                                                                                                  \
+        return outs;                                                                                                   \
+    }                                                                                                                  \
     EXPORT const integer *name##_sparsity_in(integer i);                                                               \
     EXPORT const integer *name##_sparsity_out(integer i);                                                              \
     EXPORT int name(const double **arg, double **res, integer *iw, double *w, int mem)
@@ -40,23 +46,37 @@ static int slide(const double **arg, double **res)
         const integer *const all[] = {__VA_ARGS__};                                                                    \
         return i >= 0 && i < (integer)(sizeof all / sizeof *all) ? all[i] : 0;                                         \
     }
-#define BODY(name)                                                                                                     \
-    EXPORT int name(const double **arg, double **res, integer *iw, double *w, int mem)
+#define BODY(name) EXPORT int name(const double **arg, double **res, integer *iw, double *w, int mem)
 
 // ---- All that there may be
 FUNCTION(wire, 2, 1);
 SPARSITY(wire, in, state, control)
 SPARSITY(wire, out, state)
 EXPORT void wire_incref(void);
-EXPORT void wire_incref(void) { holders++; }
+EXPORT void wire_incref(void)
+{
+    holders++;
+}
 EXPORT void wire_decref(void);
-EXPORT void wire_decref(void) { holders--; }
+EXPORT void wire_decref(void)
+{
+    holders--;
+}
 EXPORT int wire_checkout(void);
-EXPORT int wire_checkout(void) { return memories++; }
+EXPORT int wire_checkout(void)
+{
+    return memories++;
+}
 EXPORT void wire_release(int mem);
-EXPORT void wire_release(int mem) { memories -= mem >= 0; }
+EXPORT void wire_release(int mem)
+{
+    memories -= mem >= 0;
+}
 EXPORT int wire_balance(void);
-EXPORT int wire_balance(void) { return 100 * holders + memories; }
+EXPORT int wire_balance(void)
+{
+    return 100 * holders + memories;
+}
 EXPORT int wire_work(integer *args, integer *results, integer *integers, integer *numbers);
 EXPORT int wire_work(integer *args, integer *results, integer *integers, integer *numbers)
 {
@@ -109,7 +129,10 @@ BODY(jac_adj1_wire)
 FUNCTION(half, 2, 1);
 SPARSITY(half, in, state, control)
 SPARSITY(half, out, state)
-BODY(half) { return (void)iw, (void)w, (void)mem, slide(arg, res); }
+BODY(half)
+{
+    return (void)iw, (void)w, (void)mem, slide(arg, res);
+}
 FUNCTION(jac_half, 3, 1);
 SPARSITY(jac_half, in, state, control, nothing)
 SPARSITY(jac_half, out, by_both)
@@ -127,23 +150,38 @@ BODY(jac_half)
 FUNCTION(bare, 2, 1);
 SPARSITY(bare, in, state, control)
 SPARSITY(bare, out, state)
-BODY(bare) { return (void)iw, (void)w, (void)mem, slide(arg, res); }
+BODY(bare)
+{
+    return (void)iw, (void)w, (void)mem, slide(arg, res);
+}
 
 // ---- Not even that: one scalar in, one out
 BODY(square);
-BODY(square) { return (void)iw, (void)w, (void)mem, res[0][0] = arg[0][0] * arg[0][0], arg[0][0] < -9; }
+BODY(square)
+{
+    return (void)iw, (void)w, (void)mem, res[0][0] = arg[0][0] * arg[0][0], arg[0][0] < -9;
+}
 
 // ---- What breaks the convention
 static const integer unsound[] = {3, 1, 0, 2, 1, 7};
 FUNCTION(crooked, 1, 1);
 SPARSITY(crooked, in, unsound)
 SPARSITY(crooked, out, state)
-BODY(crooked) { return (void)arg, (void)res, (void)iw, (void)w, (void)mem, 1; }
+BODY(crooked)
+{
+    return (void)arg, (void)res, (void)iw, (void)w, (void)mem, 1;
+}
 FUNCTION(odd, 2, 1);
 SPARSITY(odd, in, state, control)
 SPARSITY(odd, out, state)
-BODY(odd) { return (void)iw, (void)w, (void)mem, slide(arg, res); }
+BODY(odd)
+{
+    return (void)iw, (void)w, (void)mem, slide(arg, res);
+}
 FUNCTION(jac_odd, 3, 2);
 SPARSITY(jac_odd, in, state, control, nothing)
 SPARSITY(jac_odd, out, by_control, by_state)
-BODY(jac_odd) { return (void)arg, (void)res, (void)iw, (void)w, (void)mem, 1; }
+BODY(jac_odd)
+{
+    return (void)arg, (void)res, (void)iw, (void)w, (void)mem, 1;
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions of a shared object after CasADi's C convention: derivatives, a textbook problem, errors. Argument: the object.
+// Functions of a shared object after CasADi's C convention: derivatives, a textbook problem, errors. Argument: the
+// object.
 #include "tap.h"
 
 #include <dlfcn.h>
@@ -108,7 +109,8 @@ static void test_scalar(void)
     const moray_casadi_spec spec = {.path = object, .name = "square"};
     moray_map map;
     double out, slope;
-    CHECK(!moray_failed(moray_map_from_casadi(&map, &spec)) && map.n_in == 1, "a function without any more: a scalar of one");
+    CHECK(!moray_failed(moray_map_from_casadi(&map, &spec)) && map.n_in == 1,
+          "a function without any more: a scalar of one");
     map.value(map.self, (double[]){-3}, &out);
     map.jacobian(map.self, (double[]){-3}, &slope);
     CHECK(out == 9 && fabs(slope + 6) < 1e-8, "its value %g and slope %g", out, slope);

@@ -21,7 +21,8 @@ static moray_solution *solve(const moray_ocp *ocp, const char *scheme, int inter
     return solution;
 }
 
-// ---- Durations: x' = u, least u^2 over two phases from 0 to 1 and on to 3, each of a given length ---------------------
+// ---- Durations: x' = u, least u^2 over two phases from 0 to 1 and on to 3, each of a given length
+// ---------------------
 
 static void walk(const moray_node *at, moray_rates *out, const void *data)
 {
@@ -48,8 +49,8 @@ static moray_ocp *walks(moray_bounds t0, moray_bounds tf, moray_bounds first, mo
     phase[0].x0 = (moray_bounds_list){zero, 1}, phase[0].xf = (moray_bounds_list){one, 1};
     phase[1].x0 = (moray_bounds_list){one, 1}, phase[1].xf = (moray_bounds_list){three, 1};
     phase[0].duration = first, phase[1].duration = second;
-    *status = moray_ocp_new(
-        &ocp, &(moray_ocp_spec){.phases = 2, .phase = phase, .ne = 1, .e = {zero, 1}, .endpoint = join});
+    *status =
+        moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 2, .phase = phase, .ne = 1, .e = {zero, 1}, .endpoint = join});
     return ocp;
 }
 
@@ -180,7 +181,8 @@ static void test_control_multipliers(void)
                                         .u = {path ? wide : within, 1},
                                         .c = {path ? within : wide, 1}};
         moray_ocp *ocp;
-        CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = own_effort}), "problem");
+        CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = own_effort}),
+                 "problem");
         moray_solution *solution = solve(ocp, schemes[k / 2], 15);
         double time[100], c[100], u[100], worst = 0;
         const int nodes = moray_solution_nodes(solution, 0, time, NULL);

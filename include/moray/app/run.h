@@ -71,8 +71,8 @@ MORAY_API moray_status moray_solution_draw(const moray_solution *solution, doubl
 
 // ---- Interruption --------------------------------------------------------------------------------------------------
 
-// From now on the first SIGINT or SIGTERM only makes moray_interrupted true; the next one acts as it did before. Nothing
-// changes for one that is ignored. The end brings back the earlier handlers.
+// From now on the first SIGINT or SIGTERM only makes moray_interrupted true; the next one acts as it did before.
+// Nothing changes for one that is ignored. The end brings back the earlier handlers.
 MORAY_API void moray_interrupt_begin(void);
 MORAY_API void moray_interrupt_end(void);
 MORAY_API bool moray_interrupted(void);

@@ -35,8 +35,8 @@ MORAY_API moray_status moray_path_through(moray_path *path, const double (*waypo
 // Error: those, and MORAY_IO.
 MORAY_API moray_status moray_path_read(moray_path *path, const char *text, double radius);
 
-// Makes of every arc a corner whose curvature grows from 0 and falls back to it evenly, two clothoids in place of the arc
-// between the same ends: nowhere does the curvature jump. Error: MORAY_MEMORY.
+// Makes of every arc a corner whose curvature grows from 0 and falls back to it evenly, two clothoids in place of the
+// arc between the same ends: nowhere does the curvature jump. Error: MORAY_MEMORY.
 MORAY_API moray_status moray_path_ease(moray_path *path);
 MORAY_API void moray_path_free(moray_path *path); // safe on a zeroed path, and twice
 

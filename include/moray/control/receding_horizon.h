@@ -27,7 +27,7 @@ typedef struct moray_replanner {
 // horizon, which changes it.
 typedef struct moray_receding_horizon_spec {
     moray_replanner replanner;
-    moray_ocp *ocp; // NULL: by the replanner
+    moray_ocp *ocp;              // NULL: by the replanner
     moray_settings settings;     // of each solve; at least 1 interval
     double horizon, interval;    // length of a plan; between two plans
     double watch;                // between two looks for a change; 0: only when a plan is due

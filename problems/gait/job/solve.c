@@ -5,7 +5,8 @@
 #include "job.h"
 
 enum { START_SAMPLES = 101 }; // of the motion that a solve begins from
-// Of the speed through still water: not all models of the water know nothing of who looks, but none gains so much by it.
+// Of the speed through still water: not all models of the water know nothing of who looks, but none gains so much by
+// it.
 static const double beyond_doubt = 1.25;
 
 static double limit(double value)

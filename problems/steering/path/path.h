@@ -16,7 +16,7 @@ typedef struct path_job {
     // found along the way
     moray_path path;
     moray_path planned; // the same, its corners as wide as a plan needs them
-    double speed; // straight ahead through the water, by the model of the last plan made [m/s]
+    double speed;       // straight ahead through the water, by the model of the last plan made [m/s]
 } path_job;
 
 // Plans: averaged, control-oriented, and with the first-principles model first-principles. Error: MORAY_NOT_SOLVED

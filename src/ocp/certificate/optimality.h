@@ -11,8 +11,8 @@ struct optimality {
                         // gradient and every violation is taken back, relative to the size of the objective
     double gap;         // the same where every slack of a bound or row with a multiplier is used up
     double feasibility; // largest violation of a row or a bound, relative to its size
-    double told; // difference of the objective that the solution tells to that of its trajectory, relative; of what
-                 // moving data see to it
+    double told;     // difference of the objective that the solution tells to that of its trajectory, relative; of what
+                     // moving data see to it
     int column, row; // of the improvement; of the feasibility, rows + j for bounds of column j
 };
 

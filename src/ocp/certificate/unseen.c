@@ -10,7 +10,7 @@
 static const double step_part = 1e-4; // of a size, by which states and parameters are moved
 static const double inset = 1e-6;     // of an interval, from its ends
 static const double nearby = 1e-3;    // of the way from one point to the next
-static const double resolved = 0.1; // of how far effects differ from node to node, what a polynomial may miss of them
+static const double resolved = 0.1;   // of how far effects differ from node to node, what a polynomial may miss of them
 enum { halvings = 12 };
 static const double small_jump = 1e-5; // in parts of the objective
 

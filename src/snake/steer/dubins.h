@@ -11,8 +11,8 @@ typedef struct moray_dubins {
 
 enum { MORAY_DUBINS_KINDS = 6 }; // orders of turns; four with a leg in the middle, two with an arc
 
-// The way of one kind, at most one turn an arc, from (0, 0), heading 0, to (x, y) in radii that turns by `heading` [rad];
-// false where no such way turns by that.
+// The way of one kind, at most one turn an arc, from (0, 0), heading 0, to (x, y) in radii that turns by `heading`
+// [rad]; false where no such way turns by that.
 bool moray_dubins_way(int kind, double x, double y, double heading, moray_dubins *path);
 
 // The way of one kind to `end` over ground [m] at a speed through water that moves [m/s]: the first time, of a row of

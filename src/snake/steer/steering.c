@@ -138,9 +138,8 @@ static moray_status make_added(moray_steering_spec *spec, int n_in, moray_map *a
         return moray_error(MORAY_MEMORY, "no memory for the steering problem");
     fill_points(spec, n_in, points);
     const struct numeric_probe probe = {.points = points, .n = look_points};
-    const moray_status status =
-        moray_complex_map_new(added, n_in, moray_steering_rate_rows(spec) + task->nc + task->nq, added_outputs, spec,
-                              NULL, &probe);
+    const moray_status status = moray_complex_map_new(added, n_in, moray_steering_rate_rows(spec) + task->nc + task->nq,
+                                                      added_outputs, spec, NULL, &probe);
     free(points);
     return status;
 }

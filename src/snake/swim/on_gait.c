@@ -24,7 +24,7 @@ typedef struct on_gait {
     int n, n_joints;
     double t, start, y[states];
     swim_current current;
-    double deviation[2]; // of the offset from what is commanded, and its rate, at t
+    double deviation[2];  // of the offset from what is commanded, and its rate, at t
     double slope[states]; // of y at t,
     bool known;           // where nothing has changed since it was found
     int measurements;

@@ -74,9 +74,7 @@ int main(void)
     CHECK(most < 1e-9, "none is shorter than straight on: %.1e", most);
 
     moray_dubins path;
-    CHECK(shortest(0, 2, M_PI, &path) &&
-              fabs(length_of(&path) - M_PI) < 1e-9,
-          "half a circle where that does it");
+    CHECK(shortest(0, 2, M_PI, &path) && fabs(length_of(&path) - M_PI) < 1e-9, "half a circle where that does it");
     CHECK(shortest(0, 1, M_PI, &path) && path.turn[1] != 0, "three arcs where the end is too near");
     const double away[2] = {0, 2}, current[2] = {0.1, 0.1}, none[2] = {0, 0}, strong[2] = {0.5, 0};
     const double still = soonest(away, M_PI, none), moved = soonest(away, M_PI, current);

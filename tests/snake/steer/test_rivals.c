@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Heading feedback, tuned as the programs tune it, against an independent search: Nelder and Mead's simplex from twenty
-// starts. Without an argument a short sine and two laws; with `sine`, `fig8` or `all`, Fig. 8 (its heading) and the sine of 30 deg and 60
-// s whole, all five laws (tests/studies/rivals.sh).
+// starts. Without an argument a short sine and two laws; with `sine`, `fig8` or `all`, Fig. 8 (its heading) and the
+// sine of 30 deg and 60 s whole, all five laws (tests/studies/rivals.sh).
 #include "degree.h"
 #include "tap.h"
 
