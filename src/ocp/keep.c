@@ -213,12 +213,13 @@ static moray_status read_iterate(struct reader *r, moray_solution *solution)
     MORAY_TRY(next_line(r));
     if (sscanf(r->line, "outcome %d iterations %d seconds %lf%n", &outcome, &solution->info.iterations,
                &solution->info.seconds, &used) != 3 ||
-        !is_end(r->line + used) || outcome < MORAY_NLP_SOLVED || outcome > MORAY_NLP_INVALID)
+        !is_end(r->line + used) || outcome < MORAY_NLP_SOLVED || outcome > MORAY_NLP_INVALID ||
+        solution->info.iterations < 0 || !isfinite(solution->info.seconds))
         return damaged(r, "outcome, iterations and seconds");
     solution->info.outcome = (moray_nlp_outcome)outcome;
     MORAY_TRY(next_line(r));
     if (sscanf(r->line, "objective %lf variables %d constraints %d%n", &it->objective, &n, &m, &used) != 3 ||
-        !is_end(r->line + used))
+        !is_end(r->line + used) || !isfinite(it->objective))
         return damaged(r, "objective, variables and constraints");
     if (n != nlp->n || m != nlp->m)
         return moray_error(MORAY_INPUT, "%s: has %d variables and %d constraints, the problem %d and %d on this mesh",

@@ -54,12 +54,15 @@ static bool within(double number, double least, double most)
     return number >= least && number <= most && number == floor(number);
 }
 
-// As it stands at the end of the line: printed anew, numbers would lose digits.
-static char *raw_found(const char *line)
+// As it stands at the end of the line: printed anew, numbers would lose digits. NULL where no writer of ours has left
+// it.
+static const char *place_of_found(const char *line, size_t *length)
 {
     static const char key[] = ",\"found\":"; // inside a text the quotes would be escaped
     const char *at = strstr(line, key), *end = strrchr(line, '}');
-    return at && end ? strndup(at + sizeof key - 1, (size_t)(end - at) - (sizeof key - 1)) : NULL;
+    const char *from = at ? at + sizeof key - 1 : NULL;
+    *length = from && end && end >= from ? (size_t)(end - from) : 0;
+    return *length > 0 ? from : NULL;
 }
 
 moray_status moray_record_read(const char *text, struct record *record)
@@ -71,19 +74,21 @@ moray_status moray_record_read(const char *text, struct record *record)
                  seconds = member(line, "seconds");
     const cJSON *reason = cJSON_GetObjectItemCaseSensitive(line, "reason");
     const cJSON *found = cJSON_GetObjectItemCaseSensitive(line, "found");
+    size_t length = 0;
+    const char *raw = found ? place_of_found(text, &length) : NULL;
     moray_status status = moray_ok();
     if (!(within(point, 0, MOST_POINTS) && within(round, 0, MOST_ROUNDS) && within(start, -1, MOST_POINTS) &&
           within(start_round, 0, MOST_ROUNDS) && within(code, MORAY_OK, MORAY_INTERRUPTED) && seconds >= 0 &&
-          cJSON_IsString(reason) && (!found || cJSON_IsObject(found)))) {
+          cJSON_IsString(reason) && (!found || (raw && cJSON_IsObject(found))))) {
         status = moray_error(MORAY_INPUT, "no record of a sweep: %.60s", text);
     } else {
         record->task = (struct task){(long)point, (long)start, (int)round, (int)start_round};
         record->code = (moray_code)code;
         record->seconds = seconds;
         record->reason = strdup(reason->valuestring);
-        record->found = found ? raw_found(text) : NULL;
+        record->found = raw ? strndup(raw, length) : NULL;
         record->read = cJSON_DetachItemFromObjectCaseSensitive(line, "found");
-        if (!record->reason || (found && !record->found))
+        if (!record->reason || (raw && !record->found))
             status = moray_error(MORAY_MEMORY, "no memory for a record");
     }
     cJSON_Delete(line);

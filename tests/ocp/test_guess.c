@@ -342,7 +342,10 @@ static void test_damaged(void)
     check_damaged(ocp, 4, "99 0.5\n", "line 4: stages and a later end");
     check_damaged(ocp, 5, "3 0.9\n", "line 5: 1 as the end of the last interval");
     check_damaged(ocp, 9, "outcome 17 iterations 1 seconds 0\n", "line 9: outcome");
+    check_damaged(ocp, 9, "outcome 0 iterations 1 seconds inf\n", "line 9: outcome");
+    check_damaged(ocp, 9, "outcome 0 iterations -1 seconds 0\n", "line 9: outcome");
     check_damaged(ocp, 10, "objective\n", "line 10: objective");
+    check_damaged(ocp, 10, "objective nan variables 7 constraints 6\n", "line 10: objective");
     check_damaged(ocp, 5, "4 1\n", "variables and");
     check_damaged(ocp, 12, "1 2\n", "line 12: a finite number");
     check_damaged(ocp, 12, "1 nan 2\n", "line 12: a finite number");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Ranks that fall silent, come back, and answer too late, as the first one hears them; and a rank that is sent home
-// while it works. What ranks say goes through this test in place of MPI.
+// while it works. What ranks say goes through this test in place of MPI. What they send: records that are none of ours.
 #include "tap.h"
 
 #include <string.h>
@@ -200,6 +200,24 @@ static void test_first_is_gone(void)
     CHECK(left, "and wait for nobody");
 }
 
+// What a point has found is kept as it stands, which takes it where our writer leaves it.
+static void test_records(void)
+{
+    static const char head[] =
+        "{\"point\":3,\"start\":1,\"round\":0,\"start_round\":0,\"code\":0,\"seconds\":1,\"reason\":\"\"";
+    static const char *const found[] = {",\"found\":{\"gain\":1}}", ",\t\"found\":{\"gain\":1}}", ",\"found\" :{}}",
+                                        ",\"found\":3}", "}"};
+    for (int k = 0; k < 5; k++) {
+        struct record record;
+        char line[200];
+        snprintf(line, sizeof line, "%s%s", head, found[k]);
+        const moray_status status = moray_record_read(line, &record);
+        CHECK(status.code == (k == 0 || k == 4 ? MORAY_OK : MORAY_INPUT), "record%s: %s", found[k], status.text);
+        CHECK(!record.found == (k > 0) && (k > 0 || strcmp(record.found, "{\"gain\":1}") == 0), "what it found");
+        moray_record_free(&record);
+    }
+}
+
 int main(void)
 {
     setvbuf(stdout, NULL, _IOLBF, 0); // processes that are made here have nothing of it to write
@@ -209,5 +227,6 @@ int main(void)
     test_waiting();
     test_sent_home();
     test_first_is_gone();
+    test_records();
     return tap_done();
 }

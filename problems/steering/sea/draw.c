@@ -99,8 +99,9 @@ static moray_status believe(sea_job *job)
     scale_coefficients(&job->believed, job->factor);
     if (strcmp(job->believed_current, "unknown") != 0 &&
         (sscanf(job->believed_current, "%lf,%lf%n", &current[0], &current[1], &used) != 2 ||
-         job->believed_current[used]))
-        return moray_error(MORAY_INPUT, "planner_current = %s: must be unknown or VX,VY", job->believed_current);
+         job->believed_current[used] || !isfinite(current[0]) || !isfinite(current[1])))
+        return moray_error(MORAY_INPUT, "planner_current = %s: must be unknown or VX,VY, both finite",
+                           job->believed_current);
     MORAY_TRY(see_through(job, &job->believed, &job->believed_straight, &job->belief, &turn));
     memcpy(job->belief.current, current, sizeof current);
     return moray_ok();
