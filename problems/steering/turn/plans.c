@@ -23,8 +23,8 @@ static moray_status why_not(const turn_job *job, const moray_steering_plan *plan
     if (told.code != MORAY_NOT_SOLVED || steer_cut_short(plan->solution) || !turn_to_position(job))
         return told;
     return moray_error(MORAY_NOT_SOLVED,
-                       "end_m = %g,%g with angle_deg = %g is not reached: the robot turns on a circle of %.3g m at "
-                       "the least; %s",
+                       "no way was found to end_m = %g,%g with angle_deg = %g by a robot that turns on a circle of "
+                       "%.3g m at the least, from any outline tried; %s",
                        job->end[0], job->end[1], job->angle / DEG,
                        speed / fabs(job->steer.turn_rate[plan->straight.model]), told.text);
 }
