@@ -104,10 +104,14 @@ static double larger(double a, double b)
     return a > b ? a : b;
 }
 
-static double quality_1x1(double d, struct peak peak)
+// Of a column without its diagonal.
+static double most_beside(const struct panel *p, int t)
 {
-    const double most = larger(peak.inside, peak.outside);
-    return most > 0 ? fabs(d) / most : INFINITY;
+    const size_t h = (size_t)p->height;
+    double most = moray_ldl_kernel_largest(p->height - t - 1, p->P + (size_t)t * (h + 1) + 1);
+    for (int j = p->done; j < t; j++)
+        most = larger(most, fabs(p->P[(size_t)j * h + t]));
+    return most;
 }
 
 // Duff and Reid: the inverse of the pivot times the largest entries beside it; beside: of column t, but for row r.
@@ -127,15 +131,17 @@ static double quality_2x2(const struct panel *p, int t, int r, double beside)
 
 static struct choice judge(const struct panel *p, int t)
 {
-    const double d = p->P[(size_t)t * (size_t)p->height + t];
-    const struct peak peak = scan(p, t, -1);
-    struct choice choice = {t, -1, quality_1x1(d, peak), false};
-    if (larger(fabs(d), larger(peak.inside, peak.outside)) <= nothing)
+    const double d = p->P[(size_t)t * (size_t)p->height + t], most = most_beside(p, t);
+    const struct choice alone = {t, -1, most > 0 ? fabs(d) / most : INFINITY, false};
+    if (larger(fabs(d), most) <= nothing)
         return (struct choice){t, -1, INFINITY, true};
-    if (choice.quality >= good || peak.at < 0)
-        return choice;
+    if (alone.quality >= good)
+        return alone;
+    const struct peak peak = scan(p, t, -1);
+    if (peak.at < 0)
+        return alone;
     const double quality = quality_2x2(p, t, peak.at, larger(peak.second, peak.outside));
-    return quality > choice.quality ? (struct choice){t, peak.at, quality, false} : choice;
+    return quality > alone.quality ? (struct choice){t, peak.at, quality, false} : alone;
 }
 
 // The first good pivot of the block, or the best.

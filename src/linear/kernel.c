@@ -4,6 +4,7 @@
 // The registers must be the processor's own: gcc takes wider vectors apart by way of memory, which is several times
 // slower.
 #include <stddef.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "linear/parts.h"
@@ -165,19 +166,21 @@ static void backward(int height, int pivots, const double *L, int ldl, double *r
     }
 }
 
-// What is left of eight lanes is looked at again together with some before: a maximum does not mind.
+// Absolute values without their sign bit are in the order of their bits as whole numbers, whose maximum every compiler
+// takes several at a time.
 FOR_EACH_PROCESSOR
 static double largest(int n, const double *x)
 {
-    double lane[8] = {0}, most = 0;
-    for (int i = 0; i < n && n >= 8; i += 8)
-        for (int k = 0, from = i + 8 <= n ? i : n - 8; k < 8; k++)
-            lane[k] = __builtin_fabs(x[from + k]) > lane[k] ? __builtin_fabs(x[from + k]) : lane[k];
-    for (int k = 0; k < 8; k++)
-        most = lane[k] > most ? lane[k] : most;
-    for (int i = 0; i < n && n < 8; i++)
-        most = __builtin_fabs(x[i]) > most ? __builtin_fabs(x[i]) : most;
-    return most;
+    int64_t most = 0;
+    double found;
+    for (int i = 0; i < n; i++) {
+        int64_t bits;
+        memcpy(&bits, x + i, sizeof bits);
+        bits &= INT64_MAX;
+        most = bits > most ? bits : most;
+    }
+    memcpy(&found, &most, sizeof found);
+    return found;
 }
 
 // gcc exports functions made for several processors whatever their visibility, and a program's own of the same name
