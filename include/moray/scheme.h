@@ -28,6 +28,8 @@ typedef struct moray_scheme {
     double *A; // [points][points]: integral of the j-th stage polynomial from 0 to node i; 0 for points not collocated
     double *b; // [points]: the last row of A
     double *P, *Q; // [points-1][points]
+    int exact;     // Gauss points that integrate the stage polynomials exactly
+    double *gauss, *weight; // [exact]: those and their weights
 } moray_scheme;
 
 // Builds the table of a family with s stages (Lobatto 2..64, Radau and Gauss 1..64). Lobatto with 2 and 3 stages are

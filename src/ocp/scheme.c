@@ -36,16 +36,13 @@ static double lagrange(const moray_scheme *scheme, int j, double tau)
 
 void moray_scheme_basis(const moray_scheme *scheme, double tau, double *ell, double *integral)
 {
-    double node[MORAY_MAX_STAGES], weight[MORAY_MAX_STAGES];
-    const int exact = scheme->stages / 2 + 1; // Gauss points that integrate degree s - 1 exactly
-    moray_legendre_gauss(exact, node, weight);
     for (int j = 0; j < scheme->points; j++) {
         ell[j] = integral[j] = 0;
         if (j < scheme->first || j > scheme->last)
             continue;
         ell[j] = lagrange(scheme, j, tau);
-        for (int k = 0; k < exact; k++)
-            integral[j] += tau * weight[k] * lagrange(scheme, j, tau * node[k]);
+        for (int k = 0; k < scheme->exact; k++)
+            integral[j] += tau * scheme->weight[k] * lagrange(scheme, j, tau * scheme->gauss[k]);
     }
 }
 
@@ -103,6 +100,7 @@ static moray_status fill_tables(moray_scheme *scheme)
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for a scheme of %d stages", scheme->stages);
     place_nodes(scheme);
+    moray_legendre_gauss(scheme->exact, scheme->gauss, scheme->weight);
     for (int i = 0; i < n; i++)
         moray_scheme_basis(scheme, scheme->node[i], ell, scheme->A + i * n);
     memcpy(scheme->b, scheme->A + (n - 1) * n, (size_t)n * sizeof *scheme->b);
@@ -126,13 +124,16 @@ moray_status moray_scheme_new(moray_scheme *scheme, moray_family family, int sta
     scheme->first = family == MORAY_LOBATTO ? 0 : 1;
     scheme->last = scheme->first + stages - 1;
     scheme->order = 2 * stages - (family == MORAY_LOBATTO ? 2 : family == MORAY_RADAU ? 1 : 0);
-    scheme->node = calloc((size_t)(n * (2 + 3 * n)), sizeof *scheme->node);
+    scheme->exact = stages / 2 + 1; // of degree s - 1
+    scheme->node = calloc((size_t)(n * (2 + 3 * n) + 2 * scheme->exact), sizeof *scheme->node);
     if (!scheme->node)
         return moray_error(MORAY_MEMORY, "no memory for a scheme of %d stages", stages);
     scheme->b = scheme->node + n;
     scheme->A = scheme->b + n;
     scheme->P = scheme->A + n * n;
     scheme->Q = scheme->P + n * n;
+    scheme->gauss = scheme->Q + n * n;
+    scheme->weight = scheme->gauss + scheme->exact;
     moray_status status = fill_tables(scheme);
     if (moray_failed(status))
         moray_scheme_free(scheme);

@@ -125,18 +125,13 @@ static const struct interval *interval_at(const struct phase_layout *layout, dou
 
 // State: x at the start plus the integral of the interpolated slopes, which is the collocation polynomial for every
 // scheme; control: the polynomial through its values at the stage points.
-void moray_solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau,
-                           double *x, double *u)
+void moray_solution_by_basis(const moray_solution *solution, int p, const struct interval *interval, const double *ell,
+                             const double *integral, double *x, double *u)
 {
     const struct transcription *t = solution->transcription;
-    const struct phase_layout *layout = &t->layout.phase[p];
     const struct phase_cache *cache = &t->phase[p];
     const int nx = t->ocp->phase[p].nx, nu = t->ocp->phase[p].nu, n_out = t->phase[p].map->n_out;
-    if (!interval)
-        interval = interval_at(layout, tau);
-    const struct node *node = layout->node + interval->first;
-    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
-    moray_scheme_basis(interval->scheme, (tau - node->tau) / interval->width, ell, integral);
+    const struct node *node = t->layout.phase[p].node + interval->first;
     if (x)
         memcpy(x, solution->iterate.x + node->x, (size_t)nx * sizeof *x);
     if (u)
@@ -150,6 +145,17 @@ void moray_solution_at_tau(const moray_solution *solution, int p, const struct i
     }
     for (int r = 0; u && r < nu; r++)
         u[r] = fmin(fmax(u[r], t->ocp->phase[p].u[r].lower), t->ocp->phase[p].u[r].upper);
+}
+
+void moray_solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau,
+                           double *x, double *u)
+{
+    const struct phase_layout *layout = &solution->transcription->layout.phase[p];
+    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
+    if (!interval)
+        interval = interval_at(layout, tau);
+    moray_scheme_basis(interval->scheme, (tau - layout->node[interval->first].tau) / interval->width, ell, integral);
+    moray_solution_by_basis(solution, p, interval, ell, integral, x, u);
 }
 
 void moray_solution_at(const moray_solution *solution, int p, double time, double *x, double *u)

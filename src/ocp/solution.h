@@ -45,6 +45,10 @@ moray_status moray_choose_scales(struct transcription *t, const double *x, bool 
 // caches they are, and by what is known of sizes; 0: nothing tells. size[n]: scratch for states and controls.
 double moray_needed_duration(struct transcription *t, int p, const double *x, double *size);
 
+// State x and control u (either NULL) on the polynomials of an interval where its scheme's basis is ell, integral.
+void moray_solution_by_basis(const moray_solution *solution, int p, const struct interval *interval, const double *ell,
+                             const double *integral, double *x, double *u);
+
 // moray_solution_at by the time in the phase, 0..1, on the polynomials of one interval; NULL: of the one at tau, before
 // an edge.
 void moray_solution_at_tau(const moray_solution *solution, int p, const struct interval *interval, double tau,

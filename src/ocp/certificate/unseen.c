@@ -51,7 +51,8 @@ moray_status moray_unseen_new(struct unseen *u, struct examiner *e)
     const size_t nx = (size_t)phase->nx, states = (size_t)t->layout.phase[e->p].nodes * nx;
     double *block = calloc(
         states + 5 * nx + n_in + 2 * nu + (4 + MORAY_UNSEEN_KINDS * (MORAY_MAX_STAGES + 3)) * n_out + 1, sizeof *block);
-    *u = (struct unseen){.e = e, .costate = block};
+    // Without controls the least and the largest are the same.
+    *u = (struct unseen){.e = e, .kinds = nu > 0 ? MORAY_UNSEEN_KINDS : high_control, .costate = block};
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for the certificate");
     u->direction = block + states;
@@ -195,7 +196,7 @@ static void look_at_nodes(struct unseen *u, const struct interval *interval)
     for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
         const double tau = fmin(fmax(interval->scheme->node[j], inset), 1 - inset);
         moray_examiner_place(u->e, interval, time_at(u, interval, tau), NULL);
-        for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++)
+        for (int kind = 0; kind < u->kinds; kind++)
             effect_at(u, kind, NULL, effect_of(u, kind, j));
     }
 }
@@ -264,7 +265,7 @@ static double jump_since(struct unseen *u, double small)
     const size_t state = (size_t)u->e->solution->transcription->ocp->phase[u->e->p].nx * sizeof *u->state;
     double jump = 0;
     memcpy(u->state, u->e->in, state);
-    for (int kind = low_control; kind <= high_control && u->begun; kind++) {
+    for (int kind = low_control; kind < u->kinds && u->begun; kind++) {
         memcpy(u->before, u->last, state);
         jump = fmax(jump, jump_of(u, kind, small));
     }
@@ -284,16 +285,17 @@ double moray_unseen_interval(struct unseen *u, const struct interval *interval, 
     double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2], sum[MORAY_UNSEEN_KINDS] = {0}, most = 0,
                                                                       worst = 0;
     *where = 0.5;
-    *jumps = 0;
+    if (jumps)
+        *jumps = 0;
     set_prices(u, interval);
     look_at_nodes(u, interval);
-    for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++)
+    for (int kind = 0; kind < u->kinds; kind++)
         find_spread(u, interval, kind);
     for (int k = 0; k < count; k++) {
         const double tau = (k + 0.5) / count;
         moray_scheme_basis(interval->scheme, tau, ell, integral);
-        moray_examiner_place(u->e, interval, time_at(u, interval, tau), NULL);
-        for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++) {
+        moray_examiner_place_by_basis(u->e, interval, time_at(u, interval, tau), ell, integral);
+        for (int kind = 0; kind < u->kinds; kind++) {
             interpolate(u, interval, kind, ell);
             effect_at(u, kind, u->told, u->e->out);
             const double here = cost_of(u, u->e->out, u->told, u->spread[kind]);
@@ -301,9 +303,10 @@ double moray_unseen_interval(struct unseen *u, const struct interval *interval, 
             if (here > most)
                 most = here, *where = tau;
         }
-        *jumps += jump_since(u, small_jump * objective / T) * T / objective;
+        if (jumps)
+            *jumps += jump_since(u, small_jump * objective / T) * T / objective;
     }
-    for (int kind = 0; kind < MORAY_UNSEEN_KINDS; kind++)
+    for (int kind = 0; kind < u->kinds; kind++)
         worst = fmax(worst, sum[kind] * T * interval->width / count / objective);
     return worst;
 }

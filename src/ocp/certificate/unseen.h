@@ -14,6 +14,7 @@ enum { along_states, low_control, high_control, MORAY_UNSEEN_KINDS };
 // The phase of an examiner, with room for its effects.
 struct unseen {
     struct examiner *e;
+    int kinds;               // of effects that there are
     double *costate, *price; // [nodes][nx]; [n_out] what outputs cost on the interval at hand
     double *control[2];      // [nu]: the least and the largest that are tried along the whole phase
     double *direction;       // [n_in]: of states and parameters
@@ -30,8 +31,9 @@ moray_status moray_unseen_new(struct unseen *u, struct examiner *e);
 void moray_unseen_free(struct unseen *u);
 
 // What an interval, the next one, has of effects that its nodes do not tell, at most, in parts of the objective;
-// *where: tau in the interval, 0..1, of the largest. *jumps: what functions jump by as states move on since the last
-// point of the interval before, over the whole phase: derivatives on either side know nothing of when that is.
+// *where: tau in the interval, 0..1, of the largest. *jumps (NULL: not asked): what functions jump by as states move on
+// since the last point of the interval before, over the whole phase: derivatives on either side know nothing of when
+// that is.
 double moray_unseen_interval(struct unseen *u, const struct interval *interval, double objective, double *jumps,
                              double *where);
 #endif

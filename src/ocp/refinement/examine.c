@@ -50,6 +50,14 @@ int moray_points_between(const struct interval *interval, int at_least)
     return share > at_least ? (int)share : at_least;
 }
 
+// Parameters and time beside the state and control in e->in.
+static void complete(struct examiner *e, double t)
+{
+    const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
+    memcpy(e->in + phase->nx + phase->nu, moray_solution_parameters(e->solution), (size_t)phase->ns * sizeof *e->in);
+    e->in[phase->map->n_in - 1] = t;
+}
+
 void moray_examiner_place(struct examiner *e, const struct interval *interval, double t, const double *x)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
@@ -58,24 +66,34 @@ void moray_examiner_place(struct examiner *e, const struct interval *interval, d
     moray_solution_at_tau(e->solution, e->p, interval, T > 0 ? (t - cache->t0) / T : 0, e->in, e->in + phase->nx);
     if (x)
         memcpy(e->in, x, (size_t)phase->nx * sizeof *x);
-    memcpy(e->in + phase->nx + phase->nu, moray_solution_parameters(e->solution), (size_t)phase->ns * sizeof *e->in);
-    e->in[phase->map->n_in - 1] = t;
+    complete(e, t);
+}
+
+void moray_examiner_place_by_basis(struct examiner *e, const struct interval *interval, double t, const double *ell,
+                                   const double *integral)
+{
+    const int nx = e->solution->transcription->ocp->phase[e->p].nx;
+    moray_solution_by_basis(e->solution, e->p, interval, ell, integral, e->in, e->in + nx);
+    complete(e, t);
+}
+
+static void evaluate(struct examiner *e)
+{
+    const moray_map *map = e->solution->transcription->ocp->phase[e->p].map;
+    map->value(map->self, e->in, e->out);
 }
 
 void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x)
 {
-    const moray_map *map = e->solution->transcription->ocp->phase[e->p].map;
     moray_examiner_place(e, interval, t, x);
-    map->value(map->self, e->in, e->out);
+    evaluate(e);
 }
 
-// x~' and q~' at tau of the interval: the stage polynomials through f and g at the nodes.
-static void interpolant_slope(struct examiner *e, const struct interval *interval, double tau)
+// x~' and q~': the stage polynomials, whose values are ell, through f and g at the nodes.
+static void interpolant_slope(struct examiner *e, const struct interval *interval, const double *ell)
 {
     const struct transcription *t = e->solution->transcription;
     const struct phase *phase = &t->ocp->phase[e->p];
-    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
-    moray_scheme_basis(interval->scheme, tau, ell, integral);
     memset(e->slope, 0, (size_t)e->n * sizeof *e->slope);
     for (int j = interval->scheme->first; j <= interval->scheme->last; j++) {
         const double *out = t->phase[e->p].out + (interval->first + j) * phase->map->n_out;
@@ -115,11 +133,14 @@ double moray_examiner_interval(struct examiner *e, const struct interval *interv
     const struct phase_cache *cache = &t->phase[e->p];
     const int count = moray_points_between(interval, samples_between * interval->scheme->points);
     const double T = cache->tf - cache->t0, start = t->layout.phase[e->p].node[interval->first].tau;
+    double ell[MORAY_MAX_STAGES + 2], integral[MORAY_MAX_STAGES + 2];
     memset(e->error, 0, (size_t)e->n * sizeof *e->error);
     for (int k = 0; k < count; k++) {
         const double tau = (k + 0.5) / count;
-        moray_examiner_evaluate(e, interval, cache->t0 + T * (start + tau * interval->width), NULL);
-        interpolant_slope(e, interval, tau);
+        moray_scheme_basis(interval->scheme, tau, ell, integral);
+        moray_examiner_place_by_basis(e, interval, cache->t0 + T * (start + tau * interval->width), ell, integral);
+        evaluate(e);
+        interpolant_slope(e, interval, ell);
         for (int i = 0; i < e->n; i++)
             e->error[i] +=
                 T * interval->width / count * fabs(e->slope[i] - e->out[moray_examiner_output(e, i)]) / e->size[i];

@@ -34,6 +34,8 @@ int moray_examiner_output(const struct examiner *e, int i);
 // Functions of the phase at time t of an interval with its interpolated control; state from the interpolant unless
 // given.
 void moray_examiner_place(struct examiner *e, const struct interval *interval, double t, const double *x); // in e->in
+void moray_examiner_place_by_basis(struct examiner *e, const struct interval *interval, double t, const double *ell,
+                                   const double *integral);
 void moray_examiner_evaluate(struct examiner *e, const struct interval *interval, double t, const double *x);
 
 // Integral over an interval of |x~' - f(x~, u~)| / (size + max |x|), or of the same of an integrand and its q, of the
