@@ -31,21 +31,21 @@ struct forces {
 
 static struct forces forces(moray_num v, moray_num h, moray_num a)
 {
-    const moray_num CL = CL0 + a / a_max * (CL_max - CL0), k = 33 * pow((h + h_w) / (span / 2), 1.5);
+    const moray_num CL = CL0 + a / a_max * (CL_max - CL0), k = 33 * moray_pow((h + h_w) / (span / 2), 1.5);
     const moray_num K = k / (1 + k) / (M_PI * AR * efficiency), q = rho * v * v / 2;
     return (struct forces){q * S * CL, q * S * (CD0 + K * CL * CL)};
 }
 
 static moray_num load_on_wheels(moray_num v, moray_num a, double T)
 {
-    return m * g - forces(v, 0, a).lift * cos(a) - T * sin(a);
+    return m * g - forces(v, 0, a).lift * moray_cos(a) - T * moray_sin(a);
 }
 
 static void on_ground(const moray_node *at, moray_rates *out, moray_num a, double T, double friction)
 {
     const moray_num v = at->x[1];
     out->f[0] = v;
-    out->f[1] = (T * cos(a) - forces(v, 0, a).drag - load_on_wheels(v, a, T) * friction) / m;
+    out->f[1] = (T * moray_cos(a) - forces(v, 0, a).drag - load_on_wheels(v, a, T) * friction) / m;
 }
 
 static void run_up(const moray_node *at, moray_rates *out, const void *data)
@@ -78,10 +78,10 @@ static void climb_out(const moray_node *at, moray_rates *out, const void *data)
     (void)data;
     const moray_num h = at->x[1], v = at->x[2], c = at->x[3], a = at->u[0];
     const struct forces force = forces(v, h, a);
-    out->f[0] = v * cos(c);
-    out->f[1] = v * sin(c);
-    out->f[2] = (thrust * cos(a) - force.drag) / m - g * sin(c);
-    out->f[3] = (thrust * sin(a) + force.lift) / (m * v) - g / v * cos(c);
+    out->f[0] = v * moray_cos(c);
+    out->f[1] = v * moray_sin(c);
+    out->f[2] = (thrust * moray_cos(a) - force.drag) / m - g * moray_sin(c);
+    out->f[3] = (thrust * moray_sin(a) + force.lift) / (m * v) - g / v * moray_cos(c);
 }
 
 // Phase `next` begins when `before` ends, with r and v where they stand in its states.

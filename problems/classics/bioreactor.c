@@ -19,7 +19,7 @@ static void ferment(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num y = at->x[0], s = at->x[1], b = at->x[2], u = at->u[0];
-    const moray_num sun = moray_max(0, sin(2 * M_PI * at->t / day));
+    const moray_num sun = moray_max(0, moray_sin(2 * M_PI * at->t / day));
     const moray_num mu = mubar * sun * sun, mu2 = mu2m * s / (s + Ks);
     out->f[0] = mu * y / (1 + y) - (r + u) * y;
     out->f[1] = -mu2 * b + u * beta * (gam * y - s);

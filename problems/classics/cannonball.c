@@ -42,10 +42,10 @@ static void fly(const moray_node *at, moray_rates *out, const void *data)
     (void)data;
     const moray_num v = at->x[0], c = at->x[1], radius = at->s[0];
     const moray_num drag = moray_spline_at(air, at->x[2]) * v * v / 2 * CD * M_PI * radius * radius;
-    out->f[0] = -drag / mass(radius) - g * sin(c);
-    out->f[1] = -g * cos(c) / v;
-    out->f[2] = v * sin(c);
-    out->f[3] = v * cos(c);
+    out->f[0] = -drag / mass(radius) - g * moray_sin(c);
+    out->f[1] = -g * moray_cos(c) / v;
+    out->f[2] = v * moray_sin(c);
+    out->f[3] = v * moray_cos(c);
 }
 
 static void shoot(const moray_ends *at, moray_end_values *out, const void *data)

@@ -50,13 +50,13 @@ static struct tables splines; // of the constants above; every build makes them 
 static void atmosphere(moray_num h, moray_num *rho, moray_num *sound)
 {
     const moray_num km = h * foot / 1000, geopotential = km * 6369 / (km + 6369);
-    moray_num T = 288.15 - 6.5 * geopotential, pressure = pow(288.15 / T, 34.163195 / -6.5);
+    moray_num T = 288.15 - 6.5 * geopotential, pressure = moray_pow(288.15 / T, 34.163195 / -6.5);
     if (creal(geopotential) > 11) {
         T = 216.65;
-        pressure = 0.2233611 * exp(-34.163195 * (geopotential - 11) / 216.65);
+        pressure = 0.2233611 * moray_exp(-34.163195 * (geopotential - 11) / 216.65);
     }
     *rho = 1.22521 * pressure * 288.15 / T * 0.062427960841 / 32.174049;
-    *sound = 20.0468 * sqrt(T) / foot;
+    *sound = 20.0468 * moray_sqrt(T) / foot;
 }
 
 static moray_num splined(const moray_num *weight, int n, const double *value)
@@ -81,9 +81,9 @@ static void fly(const moray_node *at, moray_rates *out, const void *data)
     const moray_num slope = splined(by_mach, 9, c_La), pressure = S * rho * v * v / 2, m = w / g0;
     const moray_num L = slope * alpha * pressure;
     const moray_num D = (splined(by_mach, 9, c_D0) + splined(by_mach, 9, eta) * slope * alpha * alpha) * pressure;
-    out->f[0] = v * sin(gamma);
-    out->f[1] = (T * cos(alpha) - D) / m - mu / (r * r) * sin(gamma);
-    out->f[2] = (T * sin(alpha) + L) / (m * v) + cos(gamma) * (v / r - mu / (v * r * r));
+    out->f[0] = v * moray_sin(gamma);
+    out->f[1] = (T * moray_cos(alpha) - D) / m - mu / (r * r) * moray_sin(gamma);
+    out->f[2] = (T * moray_sin(alpha) + L) / (m * v) + moray_cos(gamma) * (v / r - mu / (v * r * r));
     out->f[3] = -T / Isp;
 }
 

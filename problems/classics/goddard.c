@@ -19,7 +19,7 @@ static void climb(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num h = at->x[0], v = at->x[1], m = at->x[2], T = at->u[0];
-    const moray_num D = 310 * v * v * exp(-500 * (h - 1));
+    const moray_num D = 310 * v * v * moray_exp(-500 * (h - 1));
     out->f[0] = v;
     out->f[1] = (T - D) / m - 1 / (h * h);
     out->f[2] = -2 * T;

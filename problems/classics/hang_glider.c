@@ -20,7 +20,7 @@ static void glide(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num vx = at->x[2], vy = at->x[3], cL = at->u[0], offset = at->x[0] / 100 - 2.5, r = offset * offset;
-    const moray_num w = vy - 2.5 * (1 - r) * exp(-r), v = sqrt(vx * vx + w * w);
+    const moray_num w = vy - 2.5 * (1 - r) * moray_exp(-r), v = moray_sqrt(vx * vx + w * w);
     const moray_num pressure = 1.13 * 14 * v * v / 2, L = cL * pressure, D = (0.034 + 0.069662 * cL * cL) * pressure;
     out->f[0] = vx;
     out->f[1] = vy;

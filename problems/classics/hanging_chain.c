@@ -14,7 +14,7 @@
 static void hang(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
-    const moray_num x = at->x[0], u = at->u[0], ds = sqrt(1 + u * u);
+    const moray_num x = at->x[0], u = at->u[0], ds = moray_sqrt(1 + u * u);
     out->f[0] = u;
     out->g[0] = x * ds;
     out->g[1] = ds;

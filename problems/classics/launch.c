@@ -67,10 +67,10 @@ static double thrust(int phase)
 static void ascend(const moray_node *at, moray_rates *out, int phase)
 {
     const moray_num *r = at->x, *v = at->x + 3, *u = at->u, m = at->x[6];
-    const moray_num distance = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+    const moray_num distance = moray_sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
     const moray_num w[] = {v[0] + Omega * r[1], v[1] - Omega * r[0], v[2]};
-    const moray_num speed = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    const moray_num drag = rho0 * exp(-(distance - Re) / H) * Cd * A * speed / 2;
+    const moray_num speed = moray_sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    const moray_num drag = rho0 * moray_exp(-(distance - Re) / H) * Cd * A * speed / 2;
     for (int i = 0; i < 3; i++) {
         out->f[i] = v[i];
         out->f[3 + i] = -mu * r[i] / (distance * distance * distance) + (thrust(phase) * u[i] - drag * w[i]) / m;
@@ -104,15 +104,15 @@ static moray_num dot(const moray_num *a, const moray_num *b)
 // a, e, i, Omega, omega of the orbit through position r and velocity v.
 static void elements(const moray_num *r, const moray_num *v, moray_num *e)
 {
-    const moray_num distance = sqrt(dot(r, r)), energy = dot(v, v) / 2 - mu / distance;
+    const moray_num distance = moray_sqrt(dot(r, r)), energy = dot(v, v) / 2 - mu / distance;
     const moray_num h[] = {r[1] * v[2] - r[2] * v[1], r[2] * v[0] - r[0] * v[2], r[0] * v[1] - r[1] * v[0]};
-    const moray_num n[] = {-h[1], h[0], 0}, length = sqrt(dot(n, n));
+    const moray_num n[] = {-h[1], h[0], 0}, length = moray_sqrt(dot(n, n));
     moray_num eccentric[3];
     for (int i = 0; i < 3; i++)
         eccentric[i] = ((dot(v, v) - mu / distance) * r[i] - dot(r, v) * v[i]) / mu;
     e[0] = -mu / (2 * energy);
-    e[1] = sqrt(dot(eccentric, eccentric));
-    e[2] = acos(h[2] / sqrt(dot(h, h)));
+    e[1] = moray_sqrt(dot(eccentric, eccentric));
+    e[2] = acos(h[2] / moray_sqrt(dot(h, h)));
     e[3] = angle(n[0] / length, n[1]);
     e[4] = angle(dot(n, eccentric) / (length * e[1]), eccentric[2]);
 }

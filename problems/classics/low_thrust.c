@@ -34,8 +34,8 @@ static void weight(const moray_ends *at, moray_end_values *out, const void *data
     (void)data;
     const moray_num *x = at->phase[0].xf, f = x[1], g = x[2], h = x[3], k = x[4];
     out->objective = -x[6];
-    out->e[0] = sqrt(f * f + g * g);
-    out->e[1] = sqrt(h * h + k * k);
+    out->e[0] = moray_sqrt(f * f + g * g);
+    out->e[1] = moray_sqrt(h * h + k * k);
     out->e[2] = f * h + g * k;
     out->e[3] = g * h - k * f;
 }

@@ -29,9 +29,10 @@ static void move(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num *q = at->x, *w = at->x + 3, *u = at->u;
-    const moray_num s2 = sin(q[1]), c2 = cos(q[1]), s3 = sin(q[1] + q[2]), c3 = cos(q[1] + q[2]), bend = sin(q[2]);
+    const moray_num s2 = moray_sin(q[1]), c2 = moray_cos(q[1]), s3 = moray_sin(q[1] + q[2]),
+                    c3 = moray_cos(q[1] + q[2]), bend = moray_sin(q[2]);
     // kinetic energy w' M w / 2
-    const moray_num elbow = l * m3 * z3 * cos(q[2]);
+    const moray_num elbow = l * m3 * z3 * moray_cos(q[2]);
     const moray_num M11 = I1 + ratio[0] * ratio[0] * Ir + I2yy * s2 * s2 + I2zz * c2 * c2 + I3yy * s3 * s3 +
                           I3zz * c3 * c3 + m3 * l * (l * s2 + 2 * z3 * s3) * s2;
     const moray_num M12 = (I2xz - l * m3_x3) * c2 + I3xz * c3, M13 = I3xz * c3;

@@ -23,8 +23,8 @@ static void sail(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num x = at->x[0], y = at->x[1], theta = at->u[0];
-    out->f[0] = V * cos(theta);
-    out->f[1] = V * sin(theta);
+    out->f[0] = V * moray_cos(theta);
+    out->f[1] = V * moray_sin(theta);
     out->c[0] = square(x - 0.4) + square(y - 0.5);
     out->c[1] = square(x - 0.8) + square(y - 1.5);
     out->g[0] = square(out->f[0]) + square(out->f[1]);

@@ -29,9 +29,9 @@ static void oblateness(moray_num r, const moray_num *z, moray_num *delta)
 void orbit_rates(const moray_num *element, const moray_num *thrust, moray_num *rate)
 {
     const moray_num p = element[0], f = element[1], g = element[2], h = element[3], k = element[4], L = element[5];
-    const moray_num sinL = sin(L), cosL = cos(L), q = 1 + f * cosL + g * sinL, s2 = 1 + h * h + k * k;
+    const moray_num sinL = moray_sin(L), cosL = moray_cos(L), q = 1 + f * cosL + g * sinL, s2 = 1 + h * h + k * k;
     const moray_num z[] = {2 * (h * sinL - k * cosL) / s2, 2 * (h * cosL + k * sinL) / s2, (2 - s2) / s2};
-    const moray_num root = sqrt(p / mu), node = (h * sinL - k * cosL) / q;
+    const moray_num root = moray_sqrt(p / mu), node = (h * sinL - k * cosL) / q;
     moray_num delta[] = {thrust[0], thrust[1], thrust[2]};
     oblateness(p / q, z, delta);
     rate[0] = 2 * p / q * root * delta[1];
@@ -39,14 +39,14 @@ void orbit_rates(const moray_num *element, const moray_num *thrust, moray_num *r
     rate[2] = root * (-cosL * delta[0] + ((q + 1) * sinL + g) / q * delta[1] + f * node * delta[2]);
     rate[3] = root * s2 * cosL / (2 * q) * delta[2];
     rate[4] = root * s2 * sinL / (2 * q) * delta[2];
-    rate[5] = sqrt(mu * p) * (q / p) * (q / p) + root * node * delta[2];
+    rate[5] = moray_sqrt(mu * p) * (q / p) * (q / p) + root * node * delta[2];
 }
 
 void orbit_velocity(const moray_num *element, moray_num *radial, moray_num *transverse)
 {
-    const moray_num f = element[1], g = element[2], L = element[5], root = sqrt(mu / element[0]);
-    *radial = root * (f * sin(L) - g * cos(L));
-    *transverse = root * (1 + f * cos(L) + g * sin(L));
+    const moray_num f = element[1], g = element[2], L = element[5], root = moray_sqrt(mu / element[0]);
+    *radial = root * (f * moray_sin(L) - g * moray_cos(L));
+    *transverse = root * (1 + f * moray_cos(L) + g * moray_sin(L));
 }
 
 enum { steps = 4, max_states = 8 };

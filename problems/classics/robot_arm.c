@@ -26,7 +26,7 @@ static void turn(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num rho = at->x[0], phi = at->x[2];
-    const moray_num I_phi = (cube(L - rho) + cube(rho)) / 3, I_theta = I_phi * sin(phi) * sin(phi);
+    const moray_num I_phi = (cube(L - rho) + cube(rho)) / 3, I_theta = I_phi * moray_sin(phi) * moray_sin(phi);
     out->f[0] = at->x[3];
     out->f[1] = at->x[4];
     out->f[2] = at->x[5];

@@ -25,14 +25,15 @@ static void reenter(const moray_node *at, moray_rates *out, const void *data)
     (void)data;
     const moray_num theta = at->x[2], v = at->x[3], gamma = at->x[4], psi = at->x[5], beta = at->u[1];
     const moray_num r = Re + at->x[0], g = mu / (r * r), alpha = at->u[0] / DEG;
-    const moray_num pressure = rho0 * exp(-at->x[0] / hr) * v * v / 2;
+    const moray_num pressure = rho0 * moray_exp(-at->x[0] / hr) * v * v / 2;
     const moray_num L = (a0 + a1 * alpha) * S * pressure, D = (b0 + b1 * alpha + b2 * alpha * alpha) * S * pressure;
-    out->f[0] = v * sin(gamma);
-    out->f[1] = v / r * cos(gamma) * sin(psi) / cos(theta);
-    out->f[2] = v / r * cos(gamma) * cos(psi);
-    out->f[3] = -D / m - g * sin(gamma);
-    out->f[4] = L / (m * v) * cos(beta) + cos(gamma) * (v / r - g / v);
-    out->f[5] = L * sin(beta) / (m * v * cos(gamma)) + v / (r * cos(theta)) * cos(gamma) * sin(psi) * sin(theta);
+    out->f[0] = v * moray_sin(gamma);
+    out->f[1] = v / r * moray_cos(gamma) * moray_sin(psi) / moray_cos(theta);
+    out->f[2] = v / r * moray_cos(gamma) * moray_cos(psi);
+    out->f[3] = -D / m - g * moray_sin(gamma);
+    out->f[4] = L / (m * v) * moray_cos(beta) + moray_cos(gamma) * (v / r - g / v);
+    out->f[5] = L * moray_sin(beta) / (m * v * moray_cos(gamma)) +
+                v / (r * moray_cos(theta)) * moray_cos(gamma) * moray_sin(psi) * moray_sin(theta);
 }
 
 static void cross_range(const moray_ends *at, moray_end_values *out, const void *data)

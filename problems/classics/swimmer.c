@@ -44,11 +44,11 @@ static void add_drag(const struct piece *piece, const moray_num *V, moray_num ra
 static void swim(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
-    const moray_num c = cos(at->x[2]), s = sin(at->x[2]);
-    const struct piece pieces[] = {{{-1, 0}, -1, {cos(at->x[3]), sin(at->x[3])}, at->u[0]},
+    const moray_num c = moray_cos(at->x[2]), s = moray_sin(at->x[2]);
+    const struct piece pieces[] = {{{-1, 0}, -1, {moray_cos(at->x[3]), moray_sin(at->x[3])}, at->u[0]},
                                    {{0, 0}, -1, {1, 0}, 0},
                                    {{0, 0}, 1, {1, 0}, 0},
-                                   {{1, 0}, 1, {cos(at->x[4]), sin(at->x[4])}, at->u[1]}};
+                                   {{1, 0}, 1, {moray_cos(at->x[4]), moray_sin(at->x[4])}, at->u[1]}};
     const moray_num still[3] = {0};
     moray_num resistance[3][3] = {{0}}, V[3] = {0};
     for (int i = 0; i < 4; i++) {

@@ -18,9 +18,9 @@ static void steer(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     out->f[0] = at->x[1];
-    out->f[1] = a * cos(at->u[0]);
+    out->f[1] = a * moray_cos(at->u[0]);
     out->f[2] = at->x[3];
-    out->f[3] = a * sin(at->u[0]);
+    out->f[3] = a * moray_sin(at->u[0]);
 }
 
 static moray_status build(moray_ocp **ocp, const void *data)

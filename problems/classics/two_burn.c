@@ -30,11 +30,12 @@ static void burn(const moray_node *at, moray_rates *out, const void *data)
     const moray_num acceleration = g0 * T / at->x[6], theta = at->u[0], phi = at->u[1];
     moray_num radial, transverse;
     orbit_velocity(at->x, &radial, &transverse);
-    const moray_num v = sqrt(radial * radial + transverse * transverse);
-    const moray_num along = acceleration * cos(theta) * cos(phi) / v, across = acceleration * sin(theta) / v;
+    const moray_num v = moray_sqrt(radial * radial + transverse * transverse);
+    const moray_num along = acceleration * moray_cos(theta) * moray_cos(phi) / v,
+                    across = acceleration * moray_sin(theta) / v;
     orbit_rates(at->x,
                 (const moray_num[]){along * radial - across * transverse, along * transverse + across * radial,
-                                    -acceleration * cos(theta) * sin(phi)},
+                                    -acceleration * moray_cos(theta) * moray_sin(phi)},
                 out->f);
     out->f[6] = -T / Isp;
 }

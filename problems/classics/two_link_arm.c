@@ -19,7 +19,7 @@ static void swing(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num x1 = at->x[0], x2 = at->x[1], x3 = at->x[2], u1 = at->u[0], u2 = at->u[1];
-    const moray_num s = sin(x3), c = cos(x3), d = 31. / 36 + 9. / 4 * s * s;
+    const moray_num s = moray_sin(x3), c = moray_cos(x3), d = 31. / 36 + 9. / 4 * s * s;
     out->f[0] = (s * (9. / 4 * c * x1 * x1 + 2 * x2 * x2) + 4. / 3 * (u1 - u2) - 3. / 2 * c * u2) / d;
     out->f[1] = -(s * (7. / 2 * x1 * x1 + 9. / 4 * c * x2 * x2) - 7. / 3 * u2 + 3. / 2 * c * (u1 - u2)) / d;
     out->f[2] = x2 - x1;

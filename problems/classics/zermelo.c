@@ -26,8 +26,8 @@ static void sail(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
     const moray_num theta = at->u[0];
-    out->f[0] = cos(theta) + moray_surface_at(current, at->x[0], at->x[1]);
-    out->f[1] = sin(theta);
+    out->f[0] = moray_cos(theta) + moray_surface_at(current, at->x[0], at->x[1]);
+    out->f[1] = moray_sin(theta);
 }
 
 static moray_status build(moray_ocp **ocp, const void *data)

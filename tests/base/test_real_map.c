@@ -179,8 +179,35 @@ static moray_num root_cubed(moray_num a, moray_num b)
     return moray_pow(a, 1.5) + 0 * b;
 }
 
+// Quick and full forms against the complex functions, on either side of where one takes the other's place.
+static void test_quick(void)
+{
+    static const struct {
+        moray_num (*quick)(moray_num);
+        double complex (*full)(double complex);
+        const char *name;
+    } pair[] = {
+        {moray_sin, csin, "sin"}, {moray_cos, ccos, "cos"}, {moray_exp, cexp, "exp"}, {moray_sqrt, csqrt, "sqrt"}};
+    static const double imaginary[] = {0, 1e-50, -3e-50, 0.99e-9, 1.01e-9, 1e-6, 0.3, -2};
+    for (unsigned k = 0; k < sizeof pair / sizeof *pair; k++)
+        for (int i = 0; i < 40; i++)
+            for (unsigned j = 0; j < sizeof imaginary / sizeof *imaginary; j++) {
+                const moray_num z = moray_complex(0.013 + 0.37 * i, imaginary[j]);
+                const double complex found = pair[k].quick(z), told = pair[k].full(z);
+                const double part = imaginary[j] != 0 ? fabs(cimag(found) - cimag(told)) / fabs(imaginary[j]) : 0;
+                CHECK(fabs(creal(found) - creal(told)) <= 4e-16 * cabs(told) && part <= 1e-15 * (1 + cabs(told)),
+                      "%s of %g + %g i: %g + %g i, not %g + %g i", pair[k].name, creal(z), cimag(z), creal(found),
+                      cimag(found), creal(told), cimag(told));
+            }
+    CHECK(cimag(moray_sqrt(moray_complex(-2, 0))) != 0, "the root of a negative number shows");
+    CHECK(isnan(creal(moray_sin(NAN))) && isnan(creal(moray_cos(NAN))) && isnan(creal(moray_exp(NAN))) &&
+              isnan(creal(moray_sqrt(NAN))),
+          "a NaN passes through");
+}
+
 static void test_num(void)
 {
+    test_quick();
     check_num(square, -1.5, 0, 2.25, -3, 0, "square of a negative number");
     check_num(square, 0, 0, 0, 0, 0, "square of 0");
     check_num(cube, -1.5, 0, -3.375, 6.75, 0, "cube of a negative number");
