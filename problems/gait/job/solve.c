@@ -71,7 +71,7 @@ moray_settings gait_job_settings(gait_job *job)
                             .mesh_tolerance = GAIT_MESH_TOLERANCE,
                             .max_refinements = job->refinements,
                             .max_iterations = 1000,
-                            .barrier = 1e-4, // the guess is an orbit, feasible but for the limits
+                            .barrier = 1e-6, // the guess is an orbit, feasible but for the limits
                             .own_scaling = true,
                             .progress = show_iteration,
                             .observer = job};
