@@ -43,6 +43,23 @@ static void test_corner(void)
     moray_path_free(&path);
 }
 
+// A path that ends in a corner, its last leg no longer than what the corner takes: straight on from there, eased or not.
+static void test_corner_last(void)
+{
+    for (int eased = 0; eased < 2; eased++) {
+        moray_path path;
+        CHECK_OK(moray_path_through(&path, (const double[][2]){{0, 0}, {5, 0}, {5, 2 - 1e-13}}, 3, 2), "a corner last");
+        if (eased)
+            CHECK_OK(moray_path_ease(&path), "eased");
+        const moray_path_point behind = moray_path_at(&path, path.length + 3);
+        CHECK_NEAR(creal(behind.x), 5, 1e-9, "behind the corner on the leg's line");
+        CHECK_NEAR(creal(behind.y), 5, 1e-9, "3 m further");
+        CHECK_NEAR(creal(behind.course), 90 * DEG, 1e-12, "on its course");
+        CHECK(behind.curvature == 0, "and straight");
+        moray_path_free(&path);
+    }
+}
+
 // Random polygons of legs long enough for their arcs.
 static void test_continuity(void)
 {
@@ -250,12 +267,14 @@ static void test_currents(void)
     CHECK(status.code == MORAY_NOT_SOLVED && strstr(status.text, "on leg 1"), "against: %s", status.text);
     status = moray_path_passable(&path, speed, with);
     CHECK(status.code == MORAY_NOT_SOLVED && strstr(status.text, "in the corner behind leg 1"), "%s", status.text);
+    CHECK(strstr(status.text, "within 30 deg of 0 deg"), "twice as fast as it swims, from behind: asin(1/2)");
     moray_path_free(&path);
 }
 
 int main(void)
 {
     test_corner();
+    test_corner_last();
     test_continuity();
     test_eased();
     test_projection();

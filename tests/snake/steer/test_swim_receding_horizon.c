@@ -175,8 +175,8 @@ static moray_swim_closed_loop sail(scene *s, moray_model swum, double seconds)
     return closed_loop;
 }
 
-// At 0, 3, 6, 9 s with the reference known; else at once when it steps, and 3 s after that.
-static void test_times(scene *s)
+// At 0, 3, 6, 9 s with the reference known; else at once when it steps, to either side, and 3 s after that.
+static void test_times(scene *s, double step)
 {
     static const double regular[] = {0, 3, 6, 9}, at_once[] = {0, 3, 4.1, 7.1};
     for (int preview = 0; preview < 2; preview++) {
@@ -193,7 +193,7 @@ static void test_times(scene *s)
         CHECK(fabs(closed_loop.offset[closed_loop.track.n - 1]) <= 0.015 * (1 + 1e-6), "within its limits");
         const double end = moray_straight_motion_heading(&s->straight[0], 9.5,
                                                          closed_loop.track.pose[closed_loop.track.n - 1].heading);
-        CHECK_NEAR(end / DEG, 20, 3, "heading in the end [deg]");
+        CHECK_NEAR(end / DEG, step, 3, "heading in the end [deg]");
         CHECK(preview == (closed_loop.offset[20 * 4 - 2] != 0 && fabs(closed_loop.offset[20 * 4 - 2]) > 1e-4),
               "steers before the step only if it knows: %g m", closed_loop.offset[20 * 4 - 2]);
         moray_swim_closed_loop_free(&closed_loop);
@@ -251,10 +251,13 @@ int main(void)
     static scene s;
     test_limits_map();
     test_refused();
-    CHECK_OK(moray_reference_read(&s.reference, "steps:4.05=20"), "reference");
     for (int model = 0; model < 2; model++)
         s.straight[model] = straight_motion_of((moray_model)model);
-    test_times(&s);
+    CHECK_OK(moray_reference_read(&s.reference, "steps:4.05=-20"), "reference");
+    test_times(&s, -20);
+    moray_reference_free(&s.reference);
+    CHECK_OK(moray_reference_read(&s.reference, "steps:4.05=20"), "reference");
+    test_times(&s, 20);
     test_measured(&s, MORAY_CONTROL_ORIENTED);
     test_measured(&s, MORAY_FIRST_PRINCIPLES);
     test_failures(&s);
