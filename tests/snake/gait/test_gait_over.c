@@ -5,12 +5,15 @@
 #include "degree.h"
 #include "tap.h"
 
+#include <string.h>
+
 #include "moray/snake/gait_over.h"
 #include "moray/snake/ladder.h"
 #include "moray/snake/orbit.h"
 #include "moray/snake/trial.h"
 
 enum { MOST = 3 };
+static const double still[2] = {0, 0};
 
 typedef struct {
     moray_robot robot;
@@ -22,7 +25,7 @@ typedef struct {
 } set;
 
 // Scenarios of rungs, at the baseline's power there.
-static void make_set(set *s, const char *const *names, int n, double theta_max)
+static void make_set(set *s, const char *const *names, int n, double theta_max, const double current[2])
 {
     s->robot = moray_robot_paper();
     s->n = n;
@@ -31,7 +34,8 @@ static void make_set(set *s, const char *const *names, int n, double theta_max)
     moray_ladder(&s->robot, s->rung);
     for (int k = 0; k < n; k++) {
         const moray_robot *robot = &s->rung[moray_rung_named(names[k])].robot;
-        const moray_orbit_spec spec = moray_orbit_spec_default(robot, MORAY_FIRST_PRINCIPLES);
+        moray_orbit_spec spec = moray_orbit_spec_default(robot, MORAY_FIRST_PRINCIPLES);
+        memcpy(spec.current, current, sizeof spec.current);
         moray_orbit_result found;
         CHECK_OK(moray_orbit_new(&s->orbit[k], &spec), names[k]);
         CHECK_OK(moray_orbit_solve(s->orbit[k], &s->baseline, &found), "the baseline");
@@ -40,6 +44,7 @@ static void make_set(set *s, const char *const *names, int n, double theta_max)
                                   .problem = {.robot = *robot,
                                               .model = MORAY_FIRST_PRINCIPLES,
                                               .joints = MORAY_JOINTS_ON_GAIT,
+                                              .current = {current[0], current[1]},
                                               .limits = {.theta_max = moray_between(1 * DEG, theta_max * DEG),
                                                          .omega = moray_between(30 * DEG, 360 * DEG),
                                                          .delta = moray_between(15 * DEG, 90 * DEG),
@@ -123,7 +128,7 @@ static void check_over(const char *const *names, int n)
     moray_solution *solution[2];
     double worst[2], mean[2];
     set s;
-    make_set(&s, names, n, 20);
+    make_set(&s, names, n, 20, still);
     for (int goal = MORAY_OVER_WORST; goal <= (int)MORAY_OVER_MEAN; goal++) {
         CHECK_OK(moray_gait_over_new(&over[goal], s.scenario, n, (moray_over_goal)goal), "the programme");
         solution[goal] = solve(&s, over[goal]);
@@ -147,7 +152,7 @@ static void check_one(void)
 {
     moray_gait_over *over;
     set s;
-    make_set(&s, (const char *const[]){"paper"}, 1, 20);
+    make_set(&s, (const char *const[]){"paper"}, 1, 20, still);
     CHECK_OK(moray_gait_over_new(&over, s.scenario, 1, MORAY_OVER_WORST), "the programme");
     moray_solution *solution = solve(&s, over);
     CHECK_NEAR(100 * moray_gait_over_gain(solution), 4.029, 5e-3, "over the paper's model alone");
@@ -158,11 +163,31 @@ static void check_one(void)
     free_set(&s);
 }
 
+// In a current what is gained is speed through the water: as the orbit of the gait found has it.
+static void check_current(void)
+{
+    const double current[2] = {0.03, -0.08};
+    moray_gait_over *over;
+    moray_orbit_result found;
+    set s;
+    make_set(&s, (const char *const[]){"paper"}, 1, 20, current);
+    CHECK_OK(moray_gait_over_new(&over, s.scenario, 1, MORAY_OVER_WORST), "the programme in a current");
+    moray_solution *solution = solve(&s, over);
+    const moray_gait gait = moray_gait_over_prediction(over, solution, 0).gait;
+    CHECK_OK(moray_orbit_solve(s.orbit[0], &gait, &found), "orbit of the gait found");
+    CHECK_NEAR(100 * moray_gait_over_gain(solution), 100 * (found.steady.speed / s.scenario[0].speed - 1), 1e-4,
+               "gain in speed through the water [%]");
+    CHECK_NEAR(found.steady.power, s.scenario[0].problem.limits.power, 1e-7, "at the baseline's power");
+    moray_solution_free(solution);
+    moray_gait_over_free(over);
+    free_set(&s);
+}
+
 static void check_refusals(void)
 {
     moray_gait_over *over;
     set s;
-    make_set(&s, (const char *const[]){"paper", "strip"}, 2, 20);
+    make_set(&s, (const char *const[]){"paper", "strip"}, 2, 20, still);
     CHECK(moray_gait_over_new(&over, s.scenario, 0, MORAY_OVER_WORST).code == MORAY_INPUT && !over, "no scenario");
     s.scenario[1].speed = 0;
     CHECK(moray_gait_over_new(&over, s.scenario, 2, MORAY_OVER_WORST).code == MORAY_INPUT && !over, "no speed");
@@ -176,6 +201,7 @@ int main(void)
 {
     check_over((const char *const[]){"paper", "strip", "consistent"}, 3);
     check_one();
+    check_current();
     check_refusals();
     return tap_done();
 }

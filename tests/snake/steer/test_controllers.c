@@ -10,6 +10,7 @@
 #include "moray/snake/trial.h"
 #include "moray/snake/controllers.h"
 #include "moray/snake/closed_loop.h"
+#include "moray/snake/heading_law.h"
 
 static const moray_model models[] = {MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES};
 
@@ -191,6 +192,36 @@ static void test_undulation(void)
     CHECK_NEAR(controller.offset(0.5, controller.self).value, 0.1 * 0.1, 1e-15, "error without undulation");
 }
 
+// A heading that turns at 0.2 rad/s: its rate, filtered, is 0.2 (1 - exp(-t / smoothing)), t since the first look, or the
+// first that the gyro shows, one period earlier; a gyro that says nothing leaves the heading's.
+static void test_law_rate(void)
+{
+    const double turning = 0.2, smoothing = 0.5, gain = 0.1, derivative = 2;
+    double from = 0, to = 0, worst[3] = {0};
+    const moray_straight_motion straight = {.gait = {.omega = 2}};
+    const moray_reference ahead = {.n = 1, .time = &from, .heading = &to};
+    const moray_feedback feedback = {.straight = &straight, .offset = 1, .offset_rate = 1, .period = 0.1};
+    const moray_reading gyro = {.rate = turning}, silent = {.rate = NAN}, *const readings[] = {NULL, &gyro, &silent};
+    for (int which = 0; which < 3; which++) {
+        moray_heading_law law = {.gains = {.proportional = gain, .derivative = derivative},
+                                 .reference = &ahead,
+                                 .feedback = &feedback,
+                                 .scale = 1,
+                                 .smoothing = smoothing,
+                                 .reading = readings[which]};
+        for (int k = 0; k < 30; k++) {
+            const double t = k * feedback.period, since = readings[which] == &gyro ? t + feedback.period : t;
+            const moray_swim_sample sample = {.t = t, .pose = {.heading = turning * t}};
+            const double wanted = -gain * derivative * turning * (1 - exp(-since / smoothing));
+            const double off = fabs(moray_heading_law_feed(&sample, t, &law) - wanted);
+            worst[which] = isnan(off) ? INFINITY : fmax(worst[which], off);
+        }
+    }
+    CHECK_NEAR(worst[0], 0, 1e-15, "rate taken from the heading");
+    CHECK_NEAR(worst[1], 0, 1e-15, "from a gyro");
+    CHECK_NEAR(worst[2], 0, 1e-15, "from the heading where the gyro says nothing");
+}
+
 // ---- Scores --------------------------------------------------------------------------------------------------------
 
 // A heading that rises from 0 at 0.1 rad/s for 10 s, beside a reference that jumps from 0 to 0.5 at 4 s.
@@ -227,6 +258,7 @@ int main(void)
     }
     test_feedback();
     test_undulation();
+    test_law_rate();
     test_score();
     return tap_done();
 }

@@ -231,6 +231,28 @@ static void test_stability(void)
     rig_free(&r);
 }
 
+// By how much a head current of V draws deviations in over a period.
+static double margin_in(double V, bool *stable)
+{
+    const sample head = {10, 20, 120, 40, 0, {-V, 0}, 0, true, 0, false};
+    moray_floquet floquet;
+    rig r = rig_of(&head, MORAY_FIRST_PRINCIPLES);
+    CHECK_OK(moray_orbit_floquet(r.orbit, &floquet), "multipliers");
+    rig_free(&r);
+    *stable = floquet.stable;
+    return 1 - floquet.largest;
+}
+
+// In proportion to a small current, until what is left says nothing.
+static void test_weak_current(void)
+{
+    bool stable, barely;
+    const double firm = margin_in(1e-4, &stable), weak = margin_in(1e-6, &barely);
+    CHECK_NEAR(weak / firm, 0.01, 1e-3, "a hundredth of the current, a hundredth of the margin");
+    CHECK(firm > 1e-9 && stable, "stable by %.1e", firm);
+    CHECK(weak > 0 && weak < 1e-9 && !barely, "by %.1e it is not told to be stable", weak);
+}
+
 // ---- Gradients -----------------------------------------------------------------------------------------------------
 
 enum { QUANTITIES = 5 };
@@ -296,5 +318,6 @@ int main(void)
             test_gradients(&samples[k], (moray_model)model);
         }
     test_stability();
+    test_weak_current();
     return tap_done();
 }
