@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// S1 of problems/benchmark/s1.c for CasADi, in C++: the same model, scheme, mesh, start, limits and tolerance, with
-// CasADi's own derivatives and Ipopt as CasADi calls it.
+// S1 of problems/benchmark/s1.c for CasADi, in C++: the same model, scheme, mesh, start, barrier there, limits and
+// tolerance, with CasADi's own derivatives and Ipopt as CasADi calls it.
 //
 //   c++ -O2 casadi_s1.cpp $(pkg-config --cflags --libs casadi) -o casadi_s1
 //   ./casadi_s1 START.csv        START.csv: `benchmark --part s1 --out DIR` writes s1_start.csv
@@ -169,7 +169,8 @@ int main(int argc, char **argv)
     constrain(nlp, omega * T, 2 * pi, 2 * pi);
     constrain(nlp, a / (L * cos(delta / 2)), std::sin(1 * deg), std::sin(20 * deg));
 
-    casadi::Dict ipopt{{"tol", 1e-8}, {"print_level", 0}, {"linear_solver", "mumps"}, {"sb", "yes"}};
+    casadi::Dict ipopt{
+        {"tol", 1e-8}, {"mu_init", 1e-6}, {"print_level", 0}, {"linear_solver", "mumps"}, {"sb", "yes"}};
     casadi::Function solver = casadi::nlpsol(
         "solver", "ipopt",
         casadi::MXDict{{"x", vertcat(nlp.w)}, {"g", vertcat(nlp.g)}, {"f", -left(joints + 1) / T}},

@@ -120,7 +120,8 @@ def main():
     nlp.constrain(a / (L * ca.cos(delta / 2)), sin(1 * DEG), sin(20 * DEG))
     solver = ca.nlpsol("solver", "ipopt",
                        {"x": ca.vertcat(*nlp.w), "g": ca.vertcat(*nlp.g), "f": -left[JOINTS + 1] / T},
-                       {"ipopt": {"tol": 1e-8, "print_level": 0, "linear_solver": "mumps", "sb": "yes"},
+                       {"ipopt": {"tol": 1e-8, "mu_init": 1e-6, "print_level": 0, "linear_solver": "mumps",
+                                  "sb": "yes"},
                         "print_time": False, "expand": True})
     found = solver(x0=nlp.w_0, lbx=nlp.w_low, ubx=nlp.w_up, lbg=nlp.g_low, ubg=nlp.g_up)
     seconds = time.process_time() - begin

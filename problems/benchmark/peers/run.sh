@@ -47,9 +47,11 @@ cell() {
 beside() {
     ours=$(cell "Start to finish [ms]" "$2" 1)
     awk -v label="$1" -v ours="$ours" -v value="$(cell Programmes "$2" 6)" -v theirs="$(middle seconds "$3")" \
-        -v reached="$(middle objective "$3")" -v solved="$(middle solved "$3")" 'BEGIN {
-        printf "%-32s %12.7g %12.7g %10.4g %10.4g %8.3g%s\n", label, value, reached, ours, 1000 * theirs,
-               1000 * theirs / ours, solved ? "" : "  (NOT SOLVED)" }'
+        -v reached="$(middle objective "$3")" -v solved="$(middle solved "$3")" \
+        -v count="$(cell Programmes "$2" 1)" -v needed="$(middle iterations "$3")" 'BEGIN {
+        printf "%-32s %12.7g %12.7g %10s %7s %10.4g %10.4g %8.3g%s\n", label, value, reached, count,
+               needed == "" ? "-" : needed, ours, 1000 * theirs, 1000 * theirs / ours,
+               solved ? "" : "  (NOT SOLVED)" }'
 }
 
 repeat() { # repeat FILE COMMAND...
@@ -64,7 +66,8 @@ repeat() { # repeat FILE COMMAND...
 }
 
 title() {
-    printf '%s\n%-32s %12s %12s %10s %10s %8s\n' "$1" "" "objective" "theirs" "time [ms]" "theirs" "ratio"
+    printf '%s\n%-32s %12s %12s %10s %7s %10s %10s %8s\n' "$1" "" "objective" "theirs" "iterations" "theirs" \
+        "time [ms]" "theirs" "ratio"
 }
 
 "$moray" --part s1 --set repeats="$repeats" --quiet --out "$work/s1" >"$work/moray" || exit 1
