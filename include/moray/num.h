@@ -138,13 +138,13 @@ static inline int moray_is_step(moray_num z, double size)
 // give what the complex ones work out from eight.
 static inline moray_num moray_sin(moray_num z)
 {
-    const double x = moray_real(z);
-    return moray_is_step(z, 1) ? moray_complex(sin(x), cos(x) * moray_imag(z)) : moray_complex_sin(z);
+    const double x = moray_real(z), sine = sin(x), slope = cos(x); // before the question: one call for moray_cos too
+    return moray_is_step(z, 1) ? moray_complex(sine, slope * moray_imag(z)) : moray_complex_sin(z);
 }
 static inline moray_num moray_cos(moray_num z)
 {
-    const double x = moray_real(z);
-    return moray_is_step(z, 1) ? moray_complex(cos(x), -sin(x) * moray_imag(z)) : moray_complex_cos(z);
+    const double x = moray_real(z), cosine = cos(x), slope = -sin(x);
+    return moray_is_step(z, 1) ? moray_complex(cosine, slope * moray_imag(z)) : moray_complex_cos(z);
 }
 static inline moray_num moray_exp(moray_num z)
 {

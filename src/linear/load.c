@@ -22,24 +22,30 @@ static bool sum_up(moray_ldl *ldl, const double *values)
     return check == 0;
 }
 
-static void sweep(moray_ldl *ldl)
+// peak[row] <- the largest entry of each row as scaled.
+static void find_peaks(const struct plan *plan, const double *restrict value, const double *restrict scale,
+                       double *restrict peak)
 {
-    const struct plan *plan = &ldl->plan;
-    double *peak = ldl->peak, *scale = ldl->scale;
     memset(peak, 0, (size_t)plan->n * sizeof *peak);
     for (int c = 0; c < plan->n; c++) {
+        const double own = scale[c];
         double most = peak[c];
         for (int k = plan->start[c]; k < plan->start[c + 1]; k++) {
             const int row = plan->row[k];
-            const double size = fabs(ldl->value[k]) * scale[c] * scale[row];
+            const double size = fabs(value[k]) * own * scale[row], here = peak[row];
             most = size > most ? size : most;
-            peak[row] = size > peak[row] ? size : peak[row];
+            peak[row] = size > here ? size : here;
         }
         peak[c] = most > peak[c] ? most : peak[c];
     }
-    for (int c = 0; c < plan->n; c++)
-        if (peak[c] > 0)
-            scale[c] /= sqrt(peak[c]);
+}
+
+static void sweep(moray_ldl *ldl)
+{
+    find_peaks(&ldl->plan, ldl->value, ldl->scale, ldl->peak);
+    for (int c = 0; c < ldl->plan.n; c++)
+        if (ldl->peak[c] > 0)
+            ldl->scale[c] /= sqrt(ldl->peak[c]);
 }
 
 bool moray_ldl_load(moray_ldl *ldl, const double *values)
