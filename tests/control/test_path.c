@@ -43,7 +43,8 @@ static void test_corner(void)
     moray_path_free(&path);
 }
 
-// A path that ends in a corner, its last leg no longer than what the corner takes: straight on from there, eased or not.
+// A path that ends in a corner, its last leg no longer than what the corner takes: straight on from there, eased or
+// not.
 static void test_corner_last(void)
 {
     for (int eased = 0; eased < 2; eased++) {

@@ -59,7 +59,7 @@ static moray_status take_scatter(const moray_identify *v, struct run *run, moray
     for (int i = 0; i < width_of(log, kind); i++) {
         struct smooth s;
         const double *y = channel_of(log, kind, i, &stride);
-        const moray_status status = moray_smooth_fit(&s, log->n, log->t, y, stride, 0);
+        const moray_status status = moray_smooth_fit(&s, log->n, log->t, y, stride);
         if (!moray_failed(status)) {
             moray_smooth_at(&s, log->t[0], d);
             sum += s.noise * s.noise * s.freedom;

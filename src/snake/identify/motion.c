@@ -38,7 +38,7 @@ static moray_status fit_splines(struct motion *m, const moray_swim_log *log)
     if (!m->joint)
         return moray_error(MORAY_MEMORY, "no memory for %d joints", m->joints);
     for (int i = 0; i < m->joints; i++) {
-        MORAY_TRY(moray_smooth_fit(&m->joint[i], log->n, log->t, log->phi + i, m->joints, 0));
+        MORAY_TRY(moray_smooth_fit(&m->joint[i], log->n, log->t, log->phi + i, m->joints));
         noise = hypot(noise, m->joint[i].noise);
     }
     noise /= sqrt(m->joints);

@@ -15,9 +15,9 @@ struct smooth {
     int freedom;  // of that
 };
 
-// Of the values y[k * stride] that are not NAN. pieces 0: as many as generalised cross-validation takes. Error:
+// Of the values y[k * stride] that are not NAN, with as many pieces as generalised cross-validation takes. Error:
 // MORAY_INPUT where there are too few values; MORAY_MEMORY, MORAY_NUMERIC. Free with moray_smooth_free in any case.
-moray_status moray_smooth_fit(struct smooth *s, int n, const double *t, const double *y, int stride, int pieces);
+moray_status moray_smooth_fit(struct smooth *s, int n, const double *t, const double *y, int stride);
 void moray_smooth_free(struct smooth *s);
 void moray_smooth_at(const struct smooth *s, double t, double d[3]); // value, first and second derivative
 

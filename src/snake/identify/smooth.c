@@ -147,20 +147,19 @@ static moray_status choose_pieces(struct smooth *s, double (*a)[BAND], int used,
     return fit_pieces(s, a, n, t, y, stride);
 }
 
-moray_status moray_smooth_fit(struct smooth *s, int n, const double *t, const double *y, int stride, int pieces)
+moray_status moray_smooth_fit(struct smooth *s, int n, const double *t, const double *y, int stride)
 {
     int used = 0;
     for (int k = 0; k < n; k++)
         used += !isnan(y[k * stride]);
-    *s = (struct smooth){.from = t[0], .pieces = pieces, .width = pieces ? (t[n - 1] - t[0]) / pieces : 0};
-    const int most = pieces ? pieces : used;
-    if (used < 2 * (LEAST_PIECES + DEGREE) || (pieces && pieces + DEGREE >= used))
+    *s = (struct smooth){.from = t[0]};
+    if (used < 2 * (LEAST_PIECES + DEGREE))
         return moray_error(MORAY_INPUT, "%d values are too few for a spline", used);
-    s->c = calloc((size_t)(most + DEGREE), sizeof *s->c);
-    double(*a)[BAND] = calloc((size_t)(most + DEGREE), sizeof *a);
+    s->c = calloc((size_t)used, sizeof *s->c);
+    double(*a)[BAND] = calloc((size_t)used, sizeof *a);
     moray_status status = moray_error(MORAY_MEMORY, "no memory for a spline through %d values", used);
     if (s->c && a)
-        status = pieces ? fit_pieces(s, a, n, t, y, stride) : choose_pieces(s, a, used, n, t, y, stride);
+        status = choose_pieces(s, a, used, n, t, y, stride);
     free(a);
     return status;
 }

@@ -150,6 +150,31 @@ static void test_recovery(void)
     check_recovered(&s, "c_t,c_n,rot_damping,rot_gain,current_x,current_y,heading_bias", "control-oriented");
 }
 
+// A search goes on from the spec's start and from others within the bounds; the best comes first, by however many
+// processes.
+static void test_search(void)
+{
+    enum { starts = 3 };
+    story s = {.model = MORAY_CONTROL_ORIENTED, .offset = 0.005, .duration = 4, .step = 0.1};
+    moray_swim_log log[MOST_LOGS];
+    wanted w;
+    moray_identify *identify;
+    moray_estimate at[starts];
+    memcpy(s.sigma, known, sizeof known);
+    swim_logs(&s, log);
+    moray_identify_spec spec = spec_of(&s, "c_t,c_n,current_x", &w);
+    CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "search");
+    for (int jobs = 1; jobs <= 2; jobs++) {
+        CHECK_OK(moray_identify_search(identify, starts, jobs, at), "searched");
+        CHECK(at[0].cost <= at[1].cost && at[1].cost <= at[2].cost && at[0].converged, "costs %.3g, %.3g, %.3g",
+              at[0].cost, at[1].cost, at[2].cost);
+        for (int k = 0; k < w.n; k++)
+            CHECK_NEAR(at[0].value[k], w.truth[k], 1e-6 * (1 + w.truth[k]), moray_unknown_name(w.unknown[k]));
+    }
+    moray_identify_free(identify);
+    free_logs(log);
+}
+
 // A coefficient that is nothing: there is no robot on its other side for a difference.
 static void test_zero(void)
 {
@@ -641,6 +666,7 @@ int main(int argc, char **argv)
         return tap_done();
     }
     test_recovery();
+    test_search();
     test_zero();
     test_motors();
     test_refusals();

@@ -192,8 +192,8 @@ static void test_undulation(void)
     CHECK_NEAR(controller.offset(0.5, controller.self).value, 0.1 * 0.1, 1e-15, "error without undulation");
 }
 
-// A heading that turns at 0.2 rad/s: its rate, filtered, is 0.2 (1 - exp(-t / smoothing)), t since the first look, or the
-// first that the gyro shows, one period earlier; a gyro that says nothing leaves the heading's.
+// A heading that turns at 0.2 rad/s: its rate, filtered, is 0.2 (1 - exp(-t / smoothing)), t since the first look, or
+// the first that the gyro shows, one period earlier; a gyro that says nothing leaves the heading's.
 static void test_law_rate(void)
 {
     const double turning = 0.2, smoothing = 0.5, gain = 0.1, derivative = 2;
