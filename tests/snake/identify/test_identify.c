@@ -150,28 +150,36 @@ static void test_recovery(void)
     check_recovered(&s, "c_t,c_n,rot_damping,rot_gain,current_x,current_y,heading_bias", "control-oriented");
 }
 
-// A search goes on from the spec's start and from others within the bounds; the best comes first, by however many
-// processes.
+// A search goes on from the spec's start and from others within the bounds, the best first, by however many processes;
+// before an iteration its points are the starts.
 static void test_search(void)
 {
-    enum { starts = 3 };
+    enum { starts = 4 };
     story s = {.model = MORAY_CONTROL_ORIENTED, .offset = 0.005, .duration = 4, .step = 0.1};
     moray_swim_log log[MOST_LOGS];
     wanted w;
     moray_identify *identify;
-    moray_estimate at[starts];
+    moray_estimate at[starts] = {0};
     memcpy(s.sigma, known, sizeof known);
     swim_logs(&s, log);
-    moray_identify_spec spec = spec_of(&s, "c_t,c_n,current_x", &w);
-    CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "search");
-    for (int jobs = 1; jobs <= 2; jobs++) {
-        CHECK_OK(moray_identify_search(identify, starts, jobs, at), "searched");
-        CHECK(at[0].cost <= at[1].cost && at[1].cost <= at[2].cost && at[0].converged, "costs %.3g, %.3g, %.3g",
-              at[0].cost, at[1].cost, at[2].cost);
-        for (int k = 0; k < w.n; k++)
-            CHECK_NEAR(at[0].value[k], w.truth[k], 1e-6 * (1 + w.truth[k]), moray_unknown_name(w.unknown[k]));
+    moray_identify_spec spec = spec_of(&s, "c_t,c_n", &w);
+    for (int iterations = 0; iterations <= 40; iterations += 40) {
+        int given = 0, outside = 0;
+        spec.max_iterations = iterations;
+        CHECK_OK(moray_identify_new(&identify, &spec, log, MOST_LOGS), "search");
+        CHECK_OK(moray_identify_search(identify, starts, 1 + (iterations > 0), at), "searched");
+        moray_identify_free(identify);
+        for (int i = 0; i < starts; i++) {
+            given += fabs(at[i].value[0] / w.truth[0] - 1.3) + fabs(at[i].value[1] / w.truth[1] - 1.3) < 1e-12;
+            for (int k = 0; k < w.n; k++)
+                outside += !(at[i].value[k] >= w.lower[k] && at[i].value[k] <= w.upper[k]);
+            CHECK(i == 0 || at[i - 1].cost <= at[i].cost, "cost %.3g", at[i].cost);
+        }
+        CHECK(given == (iterations == 0) && outside == 0, "from the spec's start, and none outside the bounds");
+        CHECK(iterations ? at[0].converged : at[1].value[0] != at[2].value[0], "from several, to the best");
     }
-    moray_identify_free(identify);
+    for (int k = 0; k < w.n; k++)
+        CHECK_NEAR(at[0].value[k] / w.truth[k], 1, 1e-6, moray_unknown_name(w.unknown[k]));
     free_logs(log);
 }
 
