@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+//
+// The equations of a periodic orbit: their slopes against differences, where parameters, the period and a further
+// quantity are found of a plant that time drives; and a plant without parameters against its closed form.
+#include "tap.h"
+
+#include <string.h>
+
+#include "control/orbit_system.h"
+#include "moray/num.h"
+
+// ---- Slopes --------------------------------------------------------------------------------------------------------
+
+enum { NX = 2, NS = 2, NW = 1, UNKNOWN = 400 };
+
+// x, v; stiffness, force.
+static void driven(void *self, const moray_num *in, moray_num *out)
+{
+    const moray_num *x = in, *s = in + NX, t = in[NX + NS];
+    (void)self;
+    out[0] = x[1];
+    out[1] = s[1] * csin(2 * t) - s[0] * x[0] * x[0] * x[0] - 0.2 * x[1] * t;
+}
+
+// Of x(0), x(T), s, T, w.
+static void turned(void *self, const moray_num *in, moray_num *out)
+{
+    const moray_num *start = in, *end = in + NX, *s = in + 2 * NX, T = in[2 * NX + NS], w = in[2 * NX + NS + 1];
+    (void)self;
+    out[0] = end[0] * ccos(w) - end[1] * csin(w) - start[0];
+    out[1] = end[0] * csin(w) + end[1] * ccos(w) - start[1];
+    out[2] = start[1] - 0.1 * w * T;
+    out[3] = s[1] * T - 2;
+    out[4] = start[0] * s[0] + w;
+}
+
+// The largest difference between the slopes and central differences of the equations.
+static double worst_slope(orbit_system *system, double *z)
+{
+    static double up[UNKNOWN], down[UNKNOWN], slope[UNKNOWN * UNKNOWN];
+    const moray_pattern *pattern = &system->jacobian.pattern;
+    const int n = system->unknowns;
+    double worst = 0;
+    moray_orbit_residual(system, z, up);
+    moray_orbit_slopes(system, z);
+    memset(slope, 0, sizeof slope);
+    for (int e = 0; e < pattern->nnz; e++)
+        slope[pattern->row[e] * n + pattern->col[e]] = system->values[e];
+    for (int j = 0; j < n; j++) {
+        const double at = z[j], h = 1e-5;
+        z[j] = at + h;
+        const bool above = moray_orbit_residual(system, z, up);
+        z[j] = at - h;
+        const bool below = moray_orbit_residual(system, z, down);
+        z[j] = at;
+        for (int i = 0; i < n; i++)
+            worst = fmax(worst, fabs(slope[i * n + j] - (up[i] - down[i]) / (2 * h)));
+        if (!above || !below)
+            return INFINITY;
+    }
+    return worst;
+}
+
+static void test_slopes(void)
+{
+    static const int found[][2] = {{0, 1}, {0, NS}, {1, NS}}; // stiffness, force, period
+    const double probe[] = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.35};
+    for (int k = 0; k < 3; k++) {
+        moray_map plant, closing;
+        orbit_system system;
+        unsigned long long seed = 3;
+        double z[UNKNOWN];
+        CHECK_OK(moray_map_from_complex(&plant, NX + NS + 1, NX, driven, NULL, NULL, probe), "plant");
+        CHECK_OK(moray_map_from_complex(&closing, 2 * NX + NS + 1 + NW, NX + 2 + NW, turned, NULL, NULL, probe),
+                 "closing");
+        const moray_periodic_orbit_spec spec = {.nx = NX,
+                                                .ns = NS,
+                                                .nw = NW,
+                                                .plant = &plant,
+                                                .closing = &closing,
+                                                .found = found[k],
+                                                .n_found = 2,
+                                                .scheme = "lobatto5",
+                                                .intervals = 3};
+        CHECK_OK(moray_orbit_system_new(&system, &spec), "system");
+        for (int i = 0; i < system.unknowns; i++)
+            z[i] = tap_random(&seed, 0.5, 2);
+        for (int i = 0; i <= NS; i++)
+            system.p[i] = 1.1 + 0.2 * i; // those that are given
+        const double worst = worst_slope(&system, z);
+        CHECK(worst < 1e-8, "slopes where parameters %d and %d are found: off by %.1e", found[k][0], found[k][1],
+              worst);
+        moray_orbit_system_free(&system);
+        moray_map_release(&plant);
+        moray_map_release(&closing);
+    }
+}
+
+// ---- Without parameters: x' = cos t - x, x = (cos t + sin t) / 2 ----------------------------------------------------
+
+static void lag(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    out[0] = ccos(in[1]) - in[0];
+}
+
+static void rest(double t, double *x, const void *self)
+{
+    (void)t, (void)self;
+    x[0] = 0;
+}
+
+static void test_no_parameters(void)
+{
+    const moray_closing_condition returns = {MORAY_CLOSE_RETURNS, 0, 0};
+    const moray_periodic_orbit_guess guess = {.state = rest};
+    const double probe[] = {0.3, 0.4}, T = 2 * M_PI;
+    moray_map plant, closing;
+    moray_periodic_orbit *orbit;
+    moray_periodic_orbit_info info;
+    double M, worst = 0;
+    CHECK_OK(moray_map_from_complex(&plant, 2, 1, lag, NULL, NULL, probe), "plant");
+    CHECK_OK(moray_closing_map(&closing, 1, 0, &returns, 1), "closing conditions");
+    const moray_periodic_orbit_spec spec = {
+        .nx = 1, .plant = &plant, .closing = &closing, .scheme = "lobatto5", .intervals = 20};
+    if (CHECK(!moray_failed(moray_periodic_orbit_new(&orbit, &spec)), "a plant may be without parameters")) {
+        CHECK_OK(moray_periodic_orbit_solve(orbit, &T, &guess, &info), "found");
+        for (int k = 0; k <= 50; k++) {
+            const double t = T * k / 50;
+            double x;
+            moray_periodic_orbit_state(orbit, t, &x);
+            worst = fmax(worst, fabs(x - (cos(t) + sin(t)) / 2));
+        }
+        CHECK(worst < 1e-8, "the lagging motion: %.1e", worst);
+        CHECK_OK(moray_periodic_orbit_monodromy(orbit, &M), "monodromy");
+        CHECK_RELATIVE(M, exp(-T), 1e-9, "what is left of a deviation after a period");
+    }
+    moray_periodic_orbit_free(orbit);
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
+// ---- Closing conditions --------------------------------------------------------------------------------------------
+
+// The first of several that an array holds: those behind have no say.
+static void test_first_conditions(void)
+{
+    const moray_closing_condition all[] = {
+        {MORAY_CLOSE_RETURNS, 1, 3}, {MORAY_CLOSE_STARTS, 0, 0.5}, {MORAY_CLOSE_RETURNS, 0, 0}};
+    const double ends[] = {2, 10, 7, 14, 1}; // x(0), x(T), T
+    double out[2], slope[3];
+    moray_map map;
+    CHECK_OK(moray_closing_map(&map, 2, 0, all, 2), "two of three conditions");
+    if (CHECK(map.jac.nnz == 3 && map.n_out == 2, "one that returns has two slopes, one that starts has one: %d",
+              map.jac.nnz)) {
+        map.value(map.self, ends, out);
+        map.jacobian(map.self, ends, slope);
+        CHECK(out[0] == 14 - 10 - 3 && out[1] == 2 - 0.5, "14 - 10 is not 3 by %g, 2 not 0.5 by %g", out[0], out[1]);
+        CHECK(slope[0] == -1 && slope[1] == 1 && slope[2] == 1 && map.jac.col[0] == 1 && map.jac.col[1] == 3 &&
+                  map.jac.col[2] == 0,
+              "slopes by x(0) and x(T)");
+    }
+    moray_map_release(&map);
+}
+
+int main(void)
+{
+    test_slopes();
+    test_no_parameters();
+    test_first_conditions();
+    return tap_done();
+}
