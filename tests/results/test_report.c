@@ -126,6 +126,25 @@ static void test_contents(void)
     free(many);
 }
 
+// What the animation reads: numbers to four digits, nothing for what rounds to nothing or is no number, next to others
+// that are some.
+static void test_scene(void)
+{
+    const double at[] = {0, 0.5, -1e-5, 1, 0, -1.25, NAN, 0.25, 0, -1, 1e-5, INFINITY}, times[] = {0, 0.1};
+    const moray_scene_body body = {
+        .name = "robot", .colour = MORAY_COLOUR_BEST, .links = 2, .length = 0.14, .width = 0.07, .at = at};
+    const moray_scene scene = {
+        .title = "Swimming", .frames = 2, .t = times, .bodies = &body, .n_bodies = 1, .current = {0, -0.1}};
+    moray_output *output = open_in("scene");
+    CHECK_OK(moray_output_report(output, &(moray_report){.title = "Seen", .scene = &scene}), "report");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *page = content("scene/report.html");
+    CHECK(strstr(page, "\"at\":[[0,0.5000,0,1.0000,0,-1.2500],\n[0,0.2500,0,-1.0000,0,0]]"), "every link's place");
+    CHECK(strstr(page, "\"current\":[0,-0.1000]") && strstr(page, "\"t\":[0,0.1000]"), "current and times");
+    free(page);
+}
+
 int main(void)
 {
     if (!enter())
@@ -134,6 +153,7 @@ int main(void)
     test_report_sections();
     test_report_order();
     test_contents();
+    test_scene();
     leave();
     return tap_done();
 }

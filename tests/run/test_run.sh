@@ -43,6 +43,12 @@ check "costates have names, units, a row for each node" eval '
 # u = x'' = 3 - 3 t, H = u^2/2 + lambda_x v + lambda_v u: lambda_v = -u, lambda_x = -lambda_v' = -3
 check "and are those of the cubic" awk -F, 'NR > 1 { e = $3 + 3; d = $4 + 3 - 3 * $2; n[$1]++
     if (e * e > 1e-10 || d * d > 1e-10) bad = 1 } END { exit bad || n[1] != 41 || n[2] != 41 }' results/costates.csv
+# points FIGURE: x and y on the screen of the first curve, behind the two of its key.
+points() {
+    tr -d "\n" <"$1" | grep -o "rgb( *0, 114, 178)'[^>]*d='[^']*" | sed "s/.*d='//" | tr ' ' '\n' | sed -n 's/^[ML]\([0-9.]*\),\([0-9.]*\)$/\1 \2/p' | tail -n +3
+}
+check "a figure of the second phase shows that alone: on from the gate, and ever further" eval 'points results/states_2_beyond.svg |
+    awk "NR > 1 && (\$1 < x || \$2 > y) { bad = 1 } { x = \$1; y = \$2 } END { exit bad || NR < 100 }"'
 iterations() { number iterations; }
 run --json --continue results/solution.moray
 check "--continue from the solution that --out leaves: $(iterations) iterations" eval '[ $code -eq 0 ] && has objective 3 1e-6 &&

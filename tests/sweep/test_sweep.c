@@ -488,6 +488,30 @@ static void test_draws(void)
     CHECK(moray_sweep(&spec, &result).code == MORAY_INPUT, "draws of nothing are refused");
 }
 
+// The page of a sweep that has ended tells how many points there were, and of nothing that is left; nor does that of
+// one that found all of them done.
+static void test_page(void)
+{
+    moray_sweep_spec spec = spec_of("paged.nc", &no_time);
+    spec.warm = false;
+    spec.page = "paged.html";
+    for (int again = 0; again < 2; again++) {
+        char *text = NULL;
+        size_t size = 0;
+        moray_sweep_result result;
+        unlink(spec.page);
+        CHECK_OK(moray_sweep(&spec, &result), "a sweep with a page");
+        CHECK(result.solved == points && result.before == (again ? points : 0), "%ld points of before", result.before);
+        FILE *file = fopen(spec.page, "r");
+        if (CHECK(file && getdelim(&text, &size, 0, file) > 0, "a page"))
+            CHECK(strstr(text, "<p>21 of 21, 0 failed</p>"), "which says what was done, and no more");
+        free(text);
+        if (file)
+            fclose(file);
+    }
+    remove_sweep("paged.nc");
+}
+
 // Draws, each at all values of an axis: numbers of the draws alone, of the axis alone, and of all points.
 static void test_draws_and_values(void)
 {
@@ -537,6 +561,7 @@ int main(void)
     test_full_disk();
     test_draws();
     test_draws_and_values();
+    test_page();
     snprintf(command, sizeof command, "rm -rf %s", folder);
     CHECK(chdir("/") == 0 && system(command) == 0, "nothing is left behind");
     return tap_done();
