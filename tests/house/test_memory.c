@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Every allocation of the library fails once: each run then ends with MORAY_MEMORY and frees what it had, which the
-// leak sanitizer sees. The linker leads the library's calls here (--wrap), those of its dependencies not.
+// leak sanitizer sees.
+#include "allocations.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -18,42 +19,6 @@
 #include "moray/app/results.h"
 #include "moray/sim.h"
 #include "moray/snake/swim.h"
-
-static long calls, fatal; // allocations so far; the one that fails, 0 for none
-
-static bool fails(void)
-{
-    return ++calls == fatal;
-}
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t n, size_t size);
-void *__real_realloc(void *block, size_t size);
-char *__real_strdup(const char *text);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t n, size_t size);
-void *__wrap_realloc(void *block, size_t size);
-char *__wrap_strdup(const char *text);
-
-void *__wrap_malloc(size_t size)
-{
-    return fails() ? NULL : __real_malloc(size);
-}
-
-void *__wrap_calloc(size_t n, size_t size)
-{
-    return fails() ? NULL : __real_calloc(n, size);
-}
-
-void *__wrap_realloc(void *block, size_t size)
-{
-    return fails() ? NULL : __real_realloc(block, size);
-}
-
-char *__wrap_strdup(const char *text)
-{
-    return fails() ? NULL : __real_strdup(text);
-}
 
 // ---- What is run ---------------------------------------------------------------------------------------------------
 
@@ -350,30 +315,6 @@ static moray_status results(void)
         status = write_results(output);
     moray_output_free(output);
     return status;
-}
-
-// ---- Every allocation ----------------------------------------------------------------------------------------------
-
-static void fail_each(const char *what, bool may_do_without, moray_status (*run)(void))
-{
-    const long step = tap_thorough() ? 1 : 3;
-    long k = 0, wrong = 0, last = 0;
-    moray_status status, odd = moray_ok();
-    do {
-        calls = 0;
-        fatal = k += step;
-        status = run();
-        if (calls >= fatal && status.code != MORAY_MEMORY && !(may_do_without && status.code == MORAY_OK)) {
-            wrong++;
-            last = k;
-            odd = status;
-        }
-    } while (calls >= fatal);
-    fatal = 0;
-    CHECK_OK(status, what);
-    CHECK(k > 2, "%s: %ld allocations, every %ld.", what, k - 1, step);
-    CHECK(wrong == 0, "%s: each reported as out of memory; %ld are not, the last, %ld, as '%s: %s'", what, wrong, last,
-          moray_code_text(odd.code), odd.text);
 }
 
 int main(void)
