@@ -153,7 +153,8 @@ static void hessian(void *self, const double *in, const double *weight, double *
 
 // ---- Patterns ------------------------------------------------------------------------------------------------------
 
-// A swimming robot in the middle of a stroke, and others, quasi-random, up to half of 1 + |it| away.
+// A swimming robot in the middle of a stroke, no number of which is below 0, and others, quasi-random, up to half of
+// 1 + it away.
 static void probe(const moray_plant_spec *spec, int n_in, int k, double *in)
 {
     const double speed = spec->robot.l, state[body] = {0.1, 0, 0, 0.2, speed, 0.3 * speed};
@@ -164,7 +165,7 @@ static void probe(const moray_plant_spec *spec, int n_in, int k, double *in)
     else
         memcpy(in + body, on_gait, sizeof on_gait);
     for (int j = 0; j < n_in && k > 0; j++)
-        in[j] += 0.5 * (2 * fmod(0.618033988749895 * (j + 1) * k, 1) - 1) * (1 + fabs(in[j]));
+        in[j] += 0.5 * (2 * fmod(0.618033988749895 * (j + 1) * k, 1) - 1) * (1 + in[j]);
 }
 
 static void mark(fp_plant *plant, const double *in, const double *weight, bool *slopes, bool *bends)
