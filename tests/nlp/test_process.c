@@ -184,8 +184,24 @@ static void check_refused(const char *key, const char *value, const char *expect
     CHECK(status.code == MORAY_INPUT && strstr(status.text, expected), "%s", status.text);
 }
 
+// The option that is wrong is named, not the one before it.
+static void test_second_option(void)
+{
+    chain c = chain_new(40);
+    const moray_key_value options[] = {{"tol", "1e-6"}, {"print_level", "loud"}};
+    moray_nlp_settings settings = moray_nlp_settings_default();
+    moray_status status;
+    moray_nlp_info info;
+    settings.ipopt = options;
+    settings.n_ipopt = 2;
+    solve(&c, &settings, &status, &info);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, "ipopt.print_level = loud: must be"), "%s", status.text);
+    chain_free(&c);
+}
+
 static void test_refusals(void)
 {
+    test_second_option();
     check_refused("tolerance", "1", "ipopt.tolerance: Ipopt has no such option");
     check_refused("", "1", "ipopt.: Ipopt has no such option");
     check_refused("tol", "small", "ipopt.tol = small: not a value");
