@@ -3,15 +3,15 @@
 """The tests measured: faults planted in src one at a time, and which of them the tests find.
 
     python3 tests/studies/mutate.py [--count 200] [--seed 1] [--first 1] [--under src/ocp] [--folder DIR] [--only 3,17]
-                                  [--whole] [--sanitized] [--list]
+                                  [--whole] [--plain | --sanitized] [--list]
 
 Works on a copy of the source tree with a build of its own, in a folder that is left for the next run. A mutant is one
 sign, factor, index, relation, logical operator, negation, term or statement changed. It is built as far as the tests of
 its room (tests/ROOM for src/ROOM) need it, and these run, quick ones first, until one fails; then, where none does, all
-quick ones of other rooms, or with --whole every test. Survivors are listed by their number in the sample, file, line and
-change, and --only NUMBERS plants these again, with --sanitized for the tests of the room under the sanitizers, which see
-reads beyond an end and leaks; the last line counts.
-Runs by name alone: some five seconds a mutant.
+quick ones of other rooms, or with --whole every test. What lives then faces the tests of its room under the sanitizers,
+which see reads beyond an end and leaks, as tests/run.sh has two halves; --plain leaves that out, --sanitized all else.
+Survivors are listed by their number in the sample, file, line and change, and --only NUMBERS plants these again; the
+last line counts. Runs by name alone: some ten seconds a mutant.
 """
 import argparse
 import hashlib
@@ -282,7 +282,8 @@ def main():
     options.add_argument("--folder", default="/var/tmp/moray-mutants")
     options.add_argument("--only", help="numbers in the sample, with commas")
     options.add_argument("--whole", action="store_true", help="what these let pass faces every test")
-    options.add_argument("--sanitized", action="store_true", help="the room's tests under the sanitizers, in a folder of their own")
+    options.add_argument("--plain", action="store_true", help="not under the sanitizers")
+    options.add_argument("--sanitized", action="store_true", help="under the sanitizers alone")
     options.add_argument("--list", action="store_true", help="only list what would be planted")
     asked = options.parse_args()
     everything = list(candidates(asked.under))
@@ -294,8 +295,10 @@ def main():
     sample = [by_kind[kinds[k % len(kinds)]].pop() for k in range(min(asked.count, len(everything)))
               if by_kind[kinds[k % len(kinds)]]]
     wanted = [int(n) for n in asked.only.split(",")] if asked.only else range(asked.first, len(sample) + 1)
-    copy = None if asked.list else Copy(asked.folder + "-sanitized", SANITIZED) if asked.sanitized else Copy(asked.folder, [])
-    further = Copy.all if asked.whole else (lambda *_: []) if asked.sanitized else Copy.quick
+    # Where a mutant is planted, one after the other, and what it meets there beside the tests of its room.
+    places = [] if asked.list or asked.sanitized else [(Copy(asked.folder, []), Copy.all if asked.whole else Copy.quick)]
+    if not asked.list and not asked.plain:
+        places.append((Copy(asked.folder + "-sanitized", SANITIZED), lambda *_: []))
     killed = survived = late = unbuilt = 0
     begin = time.monotonic()
     for place in wanted:
@@ -304,7 +307,9 @@ def main():
         if asked.list:
             print(what)
             continue
-        by = copy.plant(path, number, before, after, further)
+        by = None
+        for copy, further in places:
+            by = by or copy.plant(path, number, before, after, further)
         unbuilt += by == "build"
         killed += by not in (None, "build")
         late += by is not None and by.endswith("(time)")
