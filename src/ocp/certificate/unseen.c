@@ -155,10 +155,13 @@ static void states_effect(struct unseen *u, const double *told, double *effect)
     }
 }
 
+// Kinds in their order: where there are no controls the first leaves the values that are the second's.
 static void effect_at(struct unseen *u, int kind, const double *told, double *effect)
 {
     if (kind == along_states)
         states_effect(u, told, effect);
+    else if (u->kinds == high_control)
+        memcpy(effect, u->here, (size_t)outputs(u) * sizeof *effect);
     else
         value_with(u, kind, effect);
 }
