@@ -24,9 +24,12 @@ static char *read_text(const char *path)
     if (!file)
         return NULL;
     errno = 0;
-    if (getdelim(&text, &size, 0, file) < 0) {
+    const ssize_t read = getdelim(&text, &size, 0, file);
+    if (read < 0) {
         free(text);
         text = NULL;
+    } else if ((size_t)read > strlen(text)) {
+        text[0] = 0; // a byte 0, behind which there may be more, is no JSON
     }
     fclose(file);
     return text;
@@ -40,7 +43,7 @@ moray_status moray_json_read(moray_json_file **result, const char *path)
         return cannot_read(path, errno ? strerror(errno) : "it is empty");
     moray_json_file *json = calloc(1, sizeof *json);
     if (json)
-        json->root = cJSON_Parse(text);
+        json->root = cJSON_ParseWithOpts(text, NULL, true); // nothing behind it
     free(text);
     if (!json)
         return moray_error(MORAY_MEMORY, "no memory for a JSON file");

@@ -68,7 +68,7 @@ static const char *place_of_found(const char *line, size_t *length)
 moray_status moray_record_read(const char *text, struct record *record)
 {
     *record = (struct record){0};
-    cJSON *line = cJSON_Parse(text);
+    cJSON *line = cJSON_ParseWithOpts(text, NULL, true);
     const double point = member(line, "point"), round = member(line, "round"), start = member(line, "start"),
                  start_round = member(line, "start_round"), code = member(line, "code"),
                  seconds = member(line, "seconds");
@@ -99,9 +99,10 @@ moray_status moray_record_read(const char *text, struct record *record)
 
 moray_status moray_json_on_one_line(const char *text, char **line, cJSON **read)
 {
-    cJSON *object = text ? cJSON_Parse(text) : NULL;
+    const char *end = text; // of the object: what a program says behind it does not belong into a record
+    cJSON *object = text ? cJSON_ParseWithOpts(text, &end, false) : NULL;
     const bool is_object = cJSON_IsObject(object);
-    *line = is_object ? strdup(text) : NULL;
+    *line = is_object ? strndup(text, (size_t)(end - text)) : NULL;
     if (*line)
         cJSON_Minify(*line);
     if (read && *line)

@@ -269,8 +269,8 @@ static void test_progress(void)
 // Numbers and texts by their places; nothing stands where a list is asked for what is no number.
 static void test_json_places(void)
 {
-    static const char *const bad[] = {"", "{\"a\": ", "no"}, *const why[] = {"it is empty", "is not JSON",
-                                                                             "is not JSON"};
+    static const char *const bad[] = {"", "{\"a\": ", "no", "{\"a\": 1} x", "{\"a\": 1}{}"},
+                             *const why[] = {"it is empty", "is not JSON", "is not JSON", "is not JSON", "is not JSON"};
     char path[] = "/tmp/moray-json-XXXXXX";
     moray_json_file *json;
     FILE *file = fdopen(mkstemp(path), "w");

@@ -4,6 +4,7 @@
 // while it works. What ranks say goes through this test in place of MPI. What they send: records that are none of ours.
 #include "tap.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -218,6 +219,17 @@ static void test_records(void)
     }
 }
 
+// A summary without what its program said behind it, which would make the record unreadable.
+static void test_summary(void)
+{
+    char *line = NULL;
+    CHECK_OK(moray_json_on_one_line("{\"x\":\n 4}\nand more\n", &line, NULL), "a summary and a word");
+    CHECK(line && strcmp(line, "{\"x\":4}") == 0, "kept: %s", line ? line : "nothing");
+    free(line);
+    CHECK_OK(moray_json_on_one_line("and more", &line, NULL), "a word");
+    CHECK(!line, "is no summary");
+}
+
 int main(void)
 {
     setvbuf(stdout, NULL, _IOLBF, 0); // processes that are made here have nothing of it to write
@@ -228,5 +240,6 @@ int main(void)
     test_sent_home();
     test_first_is_gone();
     test_records();
+    test_summary();
     return tap_done();
 }
