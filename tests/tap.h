@@ -40,15 +40,22 @@ static inline int tap_done(void)
 // CHECK(condition, "what is claimed %g", ...)
 #define CHECK(condition, ...) tap_check((condition), __FILE__, __LINE__, __VA_ARGS__)
 
+static inline bool tap_near(double got, double want, double tolerance, const char *what, const char *file, int line)
+{
+    return tap_check(fabs(got - want) <= tolerance, file, line, "%s: %.10g, expected %.10g", what, got, want);
+}
+
+static inline bool tap_relative(double got, double want, double tolerance, const char *what, const char *file, int line)
+{
+    return tap_check(fabs(got - want) <= tolerance * (1 + fabs(want)), file, line, "%s: %.12g, expected %.12g", what,
+                     got, want);
+}
+
 // |got - want| <= tolerance, with both numbers in the text; a NaN fails.
-#define CHECK_NEAR(got, want, tolerance, what)                                                                         \
-    tap_check(fabs((double)(got) - (double)(want)) <= (tolerance), __FILE__, __LINE__, "%s: %.10g, expected %.10g",    \
-              (what), (double)(got), (double)(want))
+#define CHECK_NEAR(got, want, tolerance, what) tap_near((got), (want), (tolerance), (what), __FILE__, __LINE__)
 
 // |got - want| <= tolerance (1 + |want|)
-#define CHECK_RELATIVE(got, want, tolerance, what)                                                                     \
-    tap_check(fabs((double)(got) - (double)(want)) <= (tolerance) * (1 + fabs((double)(want))), __FILE__, __LINE__,    \
-              "%s: %.12g, expected %.12g", (what), (double)(got), (double)(want))
+#define CHECK_RELATIVE(got, want, tolerance, what) tap_relative((got), (want), (tolerance), (what), __FILE__, __LINE__)
 
 // A failed status shows its text.
 #define CHECK_OK(status, what)                                                                                         \
