@@ -279,6 +279,40 @@ static void test_check_finds_kinks(void)
     moray_ocp_free(ocp);
 }
 
+// In a box -10..-8, far from 0 on its lower side; counts the questions asked outside.
+static void in_its_box(const moray_node *at, moray_rates *out, const void *data)
+{
+    int *outside = *(int *const *)data;
+    *outside += creal(at->x[0]) < -10 || creal(at->x[0]) > -8;
+    out->f[0] = log(at->x[0] + 10.1) + at->u[0];
+}
+static void ends_there(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].tf;
+}
+
+static void test_check_stays_within(void)
+{
+    int outside = 0, *const count = &outside;
+    moray_ocp *ocp;
+    moray_ocp_derivative_report report;
+    const moray_phase_spec phase = {.name = "box",
+                                    .nx = 1,
+                                    .nu = 1,
+                                    .continuous = in_its_box,
+                                    .tf = moray_between(0.1, 10),
+                                    .x = MORAY_BOUNDS(moray_between(-10, -8)),
+                                    .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    CHECK_OK(
+        moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = ends_there, .data = &count}),
+        "a box");
+    outside = 0;
+    CHECK_OK(moray_ocp_check_derivatives(ocp, &report), "checks");
+    CHECK(outside == 0, "nothing is asked outside the box, where functions need not exist: %d times", outside);
+    moray_ocp_free(ocp);
+}
+
 static void nowhere(const moray_real_node *at, moray_real_rates *out, const void *data)
 {
     slide(at, out, data);
@@ -300,6 +334,7 @@ int main(void)
     test_real_and_complex();
     test_check_names();
     test_check_finds_kinks();
+    test_check_stays_within();
     test_not_finite();
     return tap_done();
 }
