@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/table.h"
 #include "moray/num.h"
-#include "moray/table.h"
 
 enum { most = 65 };
 static unsigned long long seed = 3;
@@ -143,6 +143,24 @@ static void test_outside(void)
     }
 }
 
+// Beyond an end that is held, only the value there counts, whatever the memory held before.
+static void test_held_weights(void)
+{
+    const double x[] = {0, 1, 3};
+    const struct table_axis axis = {3, x, MORAY_HOLD};
+    for (int high = 0; high < 2; high++) {
+        double complex weight[4] = {7, 7, 7, 7};
+        double real[3][4];
+        moray_table_complex_weights(&axis, high ? 4 : -1, weight);
+        moray_table_weights(&axis, high ? 4 : -1, real);
+        for (int k = 0; k < 4; k++) {
+            const double expected = k == (high ? 2 : 0);
+            CHECK(weight[k] == expected && real[0][k] == expected, "weight %d %s: %g, in real numbers %g", k,
+                  high ? "above" : "below", creal(weight[k]), real[0][k]);
+        }
+    }
+}
+
 // ---- Surfaces
 // --------------------------------------------------------------------------------------------------------
 
@@ -236,6 +254,7 @@ int main(void)
     test_monotone(1);
     test_monotone(-1);
     test_outside();
+    test_held_weights();
     test_surface();
     test_files();
     return tap_done();

@@ -171,6 +171,14 @@ BODY(crooked)
 {
     return (void)arg, (void)res, (void)iw, (void)w, (void)mem, 1;
 }
+static const integer negative[] = {-1, 1, 1};
+FUNCTION(hollow, 1, 1);
+SPARSITY(hollow, in, negative)
+SPARSITY(hollow, out, state)
+BODY(hollow)
+{
+    return (void)arg, (void)res, (void)iw, (void)w, (void)mem, 1;
+}
 FUNCTION(odd, 2, 1);
 SPARSITY(odd, in, state, control)
 SPARSITY(odd, out, state)

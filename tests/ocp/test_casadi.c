@@ -139,6 +139,7 @@ int main(int argc, char **argv)
     test_refusal("/nowhere.so", "wire", NULL, MORAY_IO, "/nowhere.so: cannot be loaded");
     test_refusal(object, "wired", NULL, MORAY_INPUT, "no function wired");
     test_refusal(object, "crooked", NULL, MORAY_INPUT, "crooked_sparsity_in(0)");
+    test_refusal(object, "hollow", NULL, MORAY_INPUT, "hollow_sparsity_in(0)");
     test_refusal(object, "odd", NULL, MORAY_INPUT, "result 0 of jac_odd is 3 by 1: must be 3 by 3");
     test_refusal(object, "wire", (int[]){0, 1, 1, 2}, MORAY_INPUT, "place 2 of wire is 1");
     void *kept = dlopen(object, RTLD_NOW);

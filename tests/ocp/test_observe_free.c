@@ -76,6 +76,33 @@ static void test_free_times(const char *scheme)
     moray_ocp_free(ocp);
 }
 
+// The start is fixed, the end free and known only by the state there: x = 0.1 exp(tf - t), least squares in exp(tf).
+static void test_free_end(void)
+{
+    double seen_by_model = 0, model_by_model = 0, t0, tf;
+    const moray_phase_spec phase = {
+        .nx = 1,
+        .continuous = fade,
+        .t0 = moray_fixed(1),
+        .tf = moray_between(2.5, 60),
+        .xf = MORAY_BOUNDS(moray_fixed(0.1)),
+        .observed = {.n = seen_n, .ny = 1, .time = seen_at, .value = seen, .observe = see_state}};
+    moray_ocp *ocp;
+    const moray_settings settings = moray_settings_default();
+    for (int k = 0; k < seen_n; k++) {
+        seen_by_model += seen[k] * exp(-seen_at[k]) / 10;
+        model_by_model += exp(-2 * seen_at[k]) / 100;
+    }
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = nothing}), "a free end");
+    moray_solution *solution = solve(ocp, &settings, NULL);
+    if (!solution)
+        return;
+    moray_solution_times(solution, 0, &t0, &tf);
+    CHECK_NEAR(tf, log(seen_by_model / model_by_model), 1e-6, "the end that fits the data best");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // A file tells in which intervals data are.
 static void test_kept(void)
 {
@@ -198,6 +225,7 @@ int main(void)
     test_free_times("gauss3");
     test_free_times("radau3");
     test_free_times("hermite-simpson");
+    test_free_end();
     test_kept();
     test_bounded_residuals();
     test_bounded_sum();

@@ -53,6 +53,15 @@ static bool quadrature(double t, const double *x, double *dx, void *self)
     return true;
 }
 
+// A slope of 1, and soon after the start a push that moves x by 1 more.
+static bool early_push(double t, const double *x, double *dx, void *self)
+{
+    (void)x, (void)self;
+    const double width = 0.0045, z = (t - 0.028) / width;
+    dx[0] = 1 + exp(-z * z) / (width * sqrt(M_PI));
+    return true;
+}
+
 // x' = -1/sqrt(x), x(0) = 1: x^(3/2) = 1 - 3t/2 reaches the end of the domain at t = 2/3.
 static bool sinking(double t, const double *x, double *dx, void *self)
 {
@@ -293,6 +302,14 @@ static void test_jumps_within_steps(void)
     CHECK(worst < 1e-6 * push, "jumps are found and crossed: %.1e", worst);
 }
 
+// Between the stages of a first step over all of the way lies the push.
+static void test_first_step(void)
+{
+    const moray_sim_settings settings = with_tolerance(MORAY_SIM_EXPLICIT, 1e-9);
+    const double x = simulate(&(moray_ode){.n = 1, .rhs = early_push}, &settings, (double[]){1}, 1, NULL);
+    CHECK_NEAR(x, 3, 1e-7, "a push soon after the start is not stepped over");
+}
+
 static void test_short_ways(void)
 {
     const moray_ode ode = {.n = 1, .rhs = decay};
@@ -453,6 +470,7 @@ int main(void)
     test_tr_bdf2();
     test_discontinuity();
     test_jumps_within_steps();
+    test_first_step();
     test_short_ways();
     test_silence();
     test_integrator();
