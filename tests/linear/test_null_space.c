@@ -94,6 +94,35 @@ static void test_random(void)
     CHECK(residual < 1e-13, "residuals to %.1e", residual);
 }
 
+// A stationarity row of which the multipliers nearly cancel and the Hessian leaves next to nothing: the error is relative
+// to what the constraints put into the row, not to what is left there.
+static void test_cancelling(void)
+{
+    static sample s;
+    double worst = 0;
+    enum { variables = 3, samples = 100 };
+    for (int k = 0; k < samples; k++) {
+        double error, b[] = {0, 1, 2, 3, 4};
+        bool fits;
+        null_space *ns;
+        s.seed = 1 + (unsigned long long)k;
+        s.m = 2;
+        start(&s, variables + s.m);
+        for (int j = 0; j < variables; j++)
+            put(&s, j, j, j == 0 ? 1e-9 : 1);
+        for (int c = 0; c < s.m; c++) {
+            put(&s, variables + c, 0, tap_random(&s.seed, 1, 2));
+            put(&s, variables + c, 1 + c, tap_random(&s.seed, 1, 2));
+        }
+        CHECK_OK(moray_null_space_new(&ns, s.n, &s.pattern), "made");
+        CHECK_OK(moray_null_space_factor(ns, s.value, &fits), "factored");
+        CHECK_OK(moray_null_space_solve(ns, b, &error), "solved");
+        worst = fmax(worst, error);
+        moray_null_space_free(ns);
+    }
+    CHECK(worst < 1e-14, "errors to %.1e", worst);
+}
+
 // The factors of a matrix after others of the same pattern, and of the same constraints under another Hessian.
 static void test_again(void)
 {
@@ -250,6 +279,7 @@ static void test_direction(void)
 int main(void)
 {
     test_random();
+    test_cancelling();
     test_again();
     test_unsuited();
     test_ill();

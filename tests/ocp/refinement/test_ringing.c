@@ -180,9 +180,49 @@ static void test_back(void)
     moray_ocp_free(ocp);
 }
 
+// Two meshes of Hermite-Simpson on which the control went to and fro all of the time, of these errors.
+static bool leaves(const moray_ocp *ocp, moray_solution *last, double error_before, double error, const char *changed)
+{
+    moray_settings settings = moray_settings_default();
+    moray_mesh_record history[2] = {{.error = error_before, .seen = 1, .swing = 1, .changed_to = changed},
+                                    {.error = error}};
+    struct mesh mesh = {0};
+    struct campaign c = {.ocp = ocp,
+                         .settings = &settings,
+                         .method = {MORAY_LOBATTO, 3},
+                         .meshes = &mesh,
+                         .history = history,
+                         .tried = 2};
+    settings.mesh_tolerance = 1e-6;
+    settings.intervals = 10;
+    CHECK_OK(moray_leave_ringing(&c, last), "looked at");
+    CHECK((history[1].changed_to != NULL) == (history[1].ringing == 1) &&
+              (c.method.family == MORAY_RADAU) == (history[1].ringing == 1),
+          "what rings is noted where the family changes: %d", history[1].ringing);
+    moray_campaign_free_meshes(&c);
+    return history[1].changed_to != NULL;
+}
+
+static void test_leaving(void)
+{
+    moray_ocp *ocp = new_problem();
+    moray_solution *last = solve(ocp, "hermite-simpson", 50);
+    int found;
+    set_and_find(last, alternating, &found);
+    CHECK(leaves(ocp, last, 1, 1, NULL), "a family with which a control rings on mesh after mesh is left");
+    CHECK(!leaves(ocp, last, 1, 1, "lobatto3"), "but what rang before the family changed does not count");
+    CHECK(!leaves(ocp, last, 1, 5e-6, NULL), "nor what rings where the error is nearly small enough");
+    CHECK(!leaves(ocp, last, 5e-6, 1, NULL), "or was");
+    set_and_find(last, switching, &found);
+    CHECK(!leaves(ocp, last, 1, 1, NULL), "nor is a family left that rings no more");
+    moray_solution_free(last);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     test_what_rings();
+    test_leaving();
     test_back();
     return tap_done();
 }
