@@ -110,7 +110,7 @@ static void dense_new(struct dense *d, int n, int m)
 
 // Room for a slope.
 struct slope {
-    double x[most], z_lower[most], z_upper[most], g[2], lambda[2];
+    double x[most], z_lower[most], z_upper[most], beyond, g[2], lambda[2];
 };
 static moray_iterate slope_in(struct slope *s)
 {
@@ -150,7 +150,9 @@ static void test_bound(void)
     CHECK(moray_nlp_sensitivity_weak(s, weak, 4) == 0, "what is active is certain");
     const double rises[] = {1, 0, 0};
     const moray_nlp_shift shift = {.x_lower = rises};
+    room.beyond = 7;
     CHECK_OK(moray_nlp_sensitivity_solve(s, &shift, &slope), "its bound rises");
+    CHECK(room.beyond == 7, "nothing is written behind the multipliers");
     const double want[] = {1, -0.6, -0.4};
     for (int j = 0; j < 3; j++)
         CHECK_NEAR(slope.x[j], want[j], 1e-15, "d x / d bound");

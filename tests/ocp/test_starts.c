@@ -293,8 +293,50 @@ static void test_fortune(void)
           -(log(first) * all / 0.03 + 0.02 / 0.0009 * (1 - exp(-1.5) * 2.5)), NULL);
 }
 
+// ---- Nothing bounds the final time, but a state that always moves by 2 a unit of time has a way of 10 ----
+
+static void drift(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+    out->f[1] = 2 + 0 * at->x[0];
+    out->g[0] = 1e-6 * at->u[0] * at->u[0];
+}
+
+static bool stop_at_once(void *observer, const moray_progress *progress)
+{
+    (void)observer, (void)progress;
+    return false;
+}
+
+static void test_start_by_pace(void)
+{
+    const moray_phase_spec phase = {.nx = 2,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = drift,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_at_least(0),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_free(), moray_fixed(10)),
+                                    .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    moray_settings settings = moray_settings_default();
+    double t0, tf;
+    settings.scheme = "radau3";
+    settings.progress = stop_at_once;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = first_integral}), "drift");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "stopped at the start");
+    moray_solution_times(solution, 0, &t0, &tf);
+    CHECK(tf >= 5 && tf < 10, "the start lasts as long as the way does, if in round numbers: %g", tf);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
+    test_start_by_pace();
     test_fortune();
     test_wide_box();
     test_endless();

@@ -8,6 +8,8 @@
 #include <tgmath.h>
 
 #include "moray/ocp.h"
+
+#include "ocp/certificate/bends.h"
 #include "rk4.h"
 #include "symmetric_line.h"
 
@@ -256,6 +258,79 @@ static void test_idle_argument(void)
     moray_ocp_free(ocp);
 }
 
+// ---- A wrong second derivative of the second of two integrals: least integrals of u^2 and (x - 2)^4, x' = u, x = 0 at
+//      both ends, beside a state of the same rate of which nothing is asked, so that its multipliers are 0 ----
+
+static void bow_value(void *self, const double *in, double *out)
+{
+    (void)self;
+    out[0] = out[1] = in[2];
+    out[2] = in[2] * in[2];
+    out[3] = pow(in[0] - 2, 4);
+}
+
+static void bow_jacobian(void *self, const double *in, double *values)
+{
+    (void)self;
+    values[0] = values[1] = 1;
+    values[2] = 2 * in[2];
+    values[3] = 4 * pow(in[0] - 2, 3);
+}
+
+static void bow_hessian(void *self, const double *in, const double *weight, double *values)
+{
+    const bool right = *(const bool *)self;
+    values[0] = 2 * weight[2];
+    values[1] = (right ? 12 : 6) * pow(in[0] - 2, 2) * weight[3];
+}
+
+static void both_integrals(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0] + at->phase[0].q[1];
+}
+
+static void test_second_integral(bool right)
+{
+    static int row[] = {0, 1, 2, 3}, col[] = {2, 2, 2, 0}, both[] = {2, 0};
+    const moray_map map = {.n_in = 4,
+                           .n_out = 4,
+                           .jac = {.nnz = 4, .row = row, .col = col},
+                           .hess = {.nnz = 2, .row = both, .col = both},
+                           .value = bow_value,
+                           .jacobian = bow_jacobian,
+                           .hessian = bow_hessian,
+                           .self = &right};
+    const moray_phase_spec phase = {.name = "bow",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nq = 2,
+                                    .map = &map,
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(0), moray_free())};
+    moray_ocp *ocp = NULL;
+    moray_certificate certificate;
+    moray_settings settings = moray_settings_default();
+    struct witness w;
+    double bends = 0;
+    char where[200] = "";
+    settings.intervals = 100;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = both_integrals}), "a bow");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    CHECK_OK(moray_witness_new(&w, solution), "witness");
+    CHECK_OK(moray_difference_bends(&w, &bends, where, sizeof where), "bends");
+    CHECK(certificate.pass == right, "passes only with the right one: %s", certificate.why);
+    if (right)
+        CHECK(bends < 1e-6, "the right one is: %.1e, %s", bends, where);
+    else
+        CHECK(bends > MORAY_LIMIT_DIRECTIONS && strstr(where, "second derivative in phase bow"), "told: %.1e, %s",
+              bends, where);
+    moray_witness_free(&w);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     const struct dash dashes[] = {{1, 1, 0},     {1e-6, 1e-6, 0}, {1e-9, 1e-9, 0}, {1e-9, 1, 0},
@@ -269,5 +344,7 @@ int main(void)
     test_no_length();
     test_direction_of_time();
     test_idle_argument();
+    test_second_integral(true);
+    test_second_integral(false);
     return tap_done();
 }
