@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// Second derivatives by differences where a function bends otherwise near a trajectory than around it.
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/ocp.h"
+
+#include "ocp/certificate/bends.h"
+
+// Least integral of u^2 + D(y), x' = u from 0 to 1, y' = 0 from 0, where D'' = 2 bend (1 - exp(-(y / dip)^2)).
+struct dip {
+    double bend;
+    bool right; // the Hessian
+};
+static const double dip = 1e-4;
+
+static void dip_value(void *self, const double *in, double *out)
+{
+    const double bend = ((const struct dip *)self)->bend, y = in[1], u = in[2], z = y / dip;
+    out[0] = u;
+    out[1] = 0;
+    out[2] = u * u + bend * (y * y - dip * (y * sqrt(M_PI) * erf(z) + dip * expm1(-z * z)));
+}
+
+static void dip_jacobian(void *self, const double *in, double *values)
+{
+    const double bend = ((const struct dip *)self)->bend, y = in[1];
+    values[0] = 1;
+    values[1] = 2 * in[2];
+    values[2] = bend * (2 * y - dip * sqrt(M_PI) * erf(y / dip));
+}
+
+static void dip_hessian(void *self, const double *in, const double *weight, double *values)
+{
+    const struct dip *of = self;
+    const double z = in[1] / dip;
+    values[0] = 2 * weight[2];
+    values[1] = -2 * of->bend * (of->right ? expm1(-z * z) : -1) * weight[2];
+}
+
+static void total(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+static void test_dip(double bend, bool right)
+{
+    static int row[] = {0, 2, 2}, col[] = {2, 2, 1}, both[] = {2, 1};
+    struct dip self = {bend, right};
+    const moray_map map = {.n_in = 4,
+                           .n_out = 3,
+                           .jac = {.nnz = 3, .row = row, .col = col},
+                           .hess = {.nnz = 2, .row = both, .col = both},
+                           .value = dip_value,
+                           .jacobian = dip_jacobian,
+                           .hessian = dip_hessian,
+                           .self = &self};
+    const moray_phase_spec phase = {.name = "dip",
+                                    .nx = 2,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .map = &map,
+                                    .tf = moray_fixed(1),
+                                    .x = MORAY_BOUNDS(moray_between(-2, 2), moray_between(-1, 1)),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(1), moray_free())};
+    const moray_settings settings = moray_settings_default();
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    struct witness w;
+    double bends = 0;
+    char where[200] = "";
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = total}), "a dip");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    CHECK_OK(moray_witness_new(&w, solution), "witness");
+    CHECK_OK(moray_difference_bends(&w, &bends, where, sizeof where), "bends");
+    if (right)
+        CHECK(bends < 1e-6, "bend %g around: what is flat here is flat: %.1e, %s", bend, bends, where);
+    else
+        CHECK(bends > MORAY_LIMIT_DIRECTIONS, "bend %g around is none here: %.1e, %s", bend, bends, where);
+    moray_witness_free(&w);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+int main(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        test_dip(3 * sign, true);
+        test_dip(3 * sign, false);
+    }
+    return tap_done();
+}
