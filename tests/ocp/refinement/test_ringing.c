@@ -219,9 +219,56 @@ static void test_leaving(void)
     moray_ocp_free(ocp);
 }
 
+// Bolza's problem: least integral of (1 - u^2)^2 + x^2, x' = u, x = 0 at both ends, has no best control but one that goes
+// to and fro ever faster: it rings with every family.
+static void bolza(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num u = at->u[0], off = 1 - u * u;
+    out->f[0] = u;
+    out->g[0] = off * off + at->x[0] * at->x[0];
+}
+
+// Radau takes over from Gauss, is worse, and may have no mesh as large as it needs; a Gauss mesh that large there may be.
+static void test_there_and_back(void)
+{
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = bolza,
+                                    .tf = moray_fixed(1),
+                                    .x = MORAY_BOUNDS(moray_between(-1, 1)),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(0)),
+                                    .u = MORAY_BOUNDS(moray_between(-1.5, 1.5))};
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    moray_settings settings = moray_settings_default();
+    int meshes, there = -1, back = -1;
+    settings.scheme = "gauss2";
+    settings.intervals = 8;
+    settings.max_refinements = 8;
+    settings.max_variables = 140;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = cost}), "Bolza's problem");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+    const moray_mesh_record *tried = moray_solution_history(solution, &meshes);
+    for (int k = 0; k < meshes; k++) {
+        there = tried[k].changed_to && strcmp(tried[k].changed_to, "radau3") == 0 ? k : there;
+        back = tried[k].changed_to && strcmp(tried[k].changed_to, "gauss2") == 0 ? k : back;
+    }
+    CHECK(there >= 0 && back > there && tried[back].error > tried[there].error,
+          "left after mesh %d of %d, for a family that is worse, and back after %d", there, meshes, back);
+    CHECK(back >= 0 && back + 1 < meshes && tried[back + 1].error < tried[there].error &&
+              solution->transcription->layout.phase[0].mesh.method.family == MORAY_GAUSS,
+          "the family of before goes on from where it was");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     test_what_rings();
+    test_there_and_back();
     test_leaving();
     test_back();
     return tap_done();
