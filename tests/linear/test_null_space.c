@@ -168,6 +168,36 @@ static void check_taken(sample *s, const char *what)
     moray_kkt_factors_free(kkt);
 }
 
+// A matrix of few degrees of freedom is solved in the null space: to the last bit as there, which LDL' does not do.
+static void test_form(void)
+{
+    static sample s;
+    const size_t all = sizeof(double[MOST]);
+    double x[MOST], b[MOST] = {0}, in_null_space[MOST], by_ldl[MOST], error;
+    bool fits;
+    kkt_factors *kkt;
+    null_space *ns;
+    moray_ldl *ldl;
+    make(&s, 11, 4);
+    plant(&s, x, b);
+    memcpy(in_null_space, b, all);
+    memcpy(by_ldl, b, all);
+    CHECK_OK(moray_null_space_new(&ns, s.n, &s.pattern), "made");
+    CHECK_OK(moray_null_space_factor(ns, s.value, &fits), "factored");
+    CHECK_OK(moray_null_space_solve(ns, in_null_space, &error), "solved in the null space");
+    CHECK_OK(moray_ldl_new(&ldl, s.n, &s.pattern), "made");
+    CHECK_OK(moray_ldl_factor(ldl, s.value, 1e-4), "factored");
+    CHECK_OK(moray_ldl_solve(ldl, 1, by_ldl), "solved by LDL'");
+    CHECK_OK(moray_kkt_factors_new(&kkt, s.n, &s.pattern), "made");
+    CHECK_OK(moray_kkt_factors_factor(kkt, s.value, 1e-4), "factored");
+    CHECK_OK(moray_kkt_factors_solve(kkt, 1, b), "solved by the form that suits");
+    CHECK(fits && memcmp(in_null_space, by_ldl, all) != 0, "both forms round otherwise");
+    CHECK(memcmp(b, in_null_space, all) == 0, "the form that suits is that of the null space");
+    moray_kkt_factors_free(kkt);
+    moray_ldl_free(ldl);
+    moray_null_space_free(ns);
+}
+
 // Constraints that regularisation has put something on the diagonal of; one without entries; what is no number;
 // patterns of another form.
 static void test_unsuited(void)
@@ -281,6 +311,7 @@ int main(void)
     test_random();
     test_cancelling();
     test_again();
+    test_form();
     test_unsuited();
     test_ill();
     test_direction();
