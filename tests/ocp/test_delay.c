@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "moray/delay.h"
+#include "ocp/problem.h"
 #include "rk4.h"
 
 static const int rk4_steps = 20;
@@ -82,6 +83,13 @@ static moray_num last(const moray_num *x, const void *data)
     return 3 * x[0];
 }
 
+static void apart(const moray_delay_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1] + at->u[0];
+    out->f[1] = -at->x[0];
+}
+
 static void test_equation(void)
 {
     moray_delay *delay;
@@ -103,6 +111,27 @@ static void test_equation(void)
         CHECK_NEAR(x, 1 - t + (t > 1 ? (t - 1) * (t - 1) / 2 : 0), 1e-8, "state");
     }
     moray_solution_free(solution);
+    moray_delay_free(delay);
+}
+
+// Three steps of two states: the end of each is the start of the next, and nothing is written behind these rows.
+static void test_joins(void)
+{
+    enum { nx = 2, steps = 3, joins = nx * (steps - 1) };
+    moray_delay *delay;
+    const moray_delay_spec spec = {.nx = nx, .nu = 1, .step = 1, .steps = steps, .continuous = apart};
+    const moray_num x0[] = {1, 2, 3, 4, 5, 6}, xf[] = {10, 20, 30, 40, 50, 60}, q[] = {0};
+    const moray_num want[] = {3 - 10, 4 - 20, 5 - 30, 6 - 40, 7};
+    moray_num e[joins + 1] = {[joins] = 7};
+    const moray_phase_ends phase = {.x0 = x0, .xf = xf, .t0 = 0, .tf = 1, .q = q};
+    const moray_ends ends = {.phase = &phase};
+    moray_end_values out = {.e = e};
+    CHECK_OK(moray_delay_new(&delay, &spec), "problem");
+    const moray_ocp *ocp = moray_delay_ocp(delay);
+    CHECK(ocp->ne == joins, "%d rows", ocp->ne);
+    ocp->endpoint_fn(&ends, &out, ocp->data);
+    for (int i = 0; i <= joins; i++)
+        CHECK(e[i] == want[i], "row %d: %g", i, creal(e[i]));
     moray_delay_free(delay);
 }
 
@@ -139,6 +168,7 @@ int main(void)
 {
     test_published();
     test_equation();
+    test_joins();
     test_refusals();
     return tap_done();
 }
