@@ -45,6 +45,48 @@ static void test_maximum(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Held by a path constraint: g = -u^2, which bends down, and 1 + x - u >= 1/2 beside x + 1e9 >= 0; x = exp(-t)
+// ----
+// ----
+
+static void fenced(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num u = at->u[0];
+    out->f[0] = -at->x[0];
+    out->c[0] = at->x[0] + 1e9;
+    out->c[1] = 1 + at->x[0] - u;
+    out->g[0] = -u * u;
+}
+
+static void total(const moray_ends *at, moray_end_values *out, const void *data);
+
+// The row that holds the control is told from the one beside it, which is far from its limit.
+static void test_fenced(void)
+{
+    const moray_phase_spec pen = {
+        .name = "pen",
+        .nx = 1,
+        .nu = 1,
+        .nc = 2,
+        .nq = 1,
+        .continuous = fenced,
+        .t0 = moray_fixed(0),
+        .tf = moray_fixed(1),
+        .x0 = MORAY_BOUNDS(moray_fixed(1)),
+        .u = MORAY_BOUNDS(moray_between(0, 5)),
+        .c = MORAY_BOUNDS(moray_between(0, MORAY_INFINITY), moray_between(0.5, MORAY_INFINITY))};
+    moray_ocp *ocp = NULL;
+    moray_certificate certificate;
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &pen, .endpoint = total}), "a pen");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    CHECK_NEAR(moray_solution_objective(solution), -1.75 + exp(-1) + exp(-2) / 2, 1e-6, "the control at its fence");
+    CHECK(certificate.pass && certificate.curvature == 0, "no saddle: %s", certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- A kink: g = 0.05 u^2 + |u| by fabs, whose complex step is 0; x' = u - 0.3 x, from 0 to 1 in 5 s ----
 
 static void kinked(const moray_node *at, moray_rates *out, const void *data)
@@ -337,6 +379,7 @@ int main(void)
                                   {1e6, 1e6, 0}, {1e9, 1e3, 0},   {1, 1, 1e4},     {1, 1, 1e6},
                                   {1e12, 1, 0},  {1, 1e-12, 0},   {1e-6, 1, 0},    {1, 1, -1e4}};
     test_maximum();
+    test_fenced();
     test_unseen(kinked, "fabs", "control u[0]");
     test_unseen(hidden, "a hidden creal", "state x[0]");
     for (unsigned k = 0; k < sizeof dashes / sizeof *dashes; k++)
