@@ -74,6 +74,7 @@ typedef struct gait_case {
     moray_gait_goal goal;
     const char *scheme;
     int intervals;
+    double barrier; // 0: that of an orbit near the optimum
     // owned
     moray_robot robot;
     moray_gait gait;

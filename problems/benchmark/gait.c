@@ -50,7 +50,8 @@ static moray_status solve(void *self, moray_linear_solver linear, moray_solution
 {
     gait_case *c = self;
     const moray_gait_problem_spec spec = spec_of(c);
-    const moray_settings settings = benchmark_settings(c->scheme, c->intervals, linear);
+    moray_settings settings = benchmark_settings(c->scheme, c->intervals, linear);
+    settings.barrier = c->barrier > 0 ? c->barrier : settings.barrier;
     MORAY_TRY(moray_gait_problem_new(&c->problem, &spec));
     return moray_gait_problem_solve(c->problem, &settings, &c->gait, &c->orbit, solution);
 }

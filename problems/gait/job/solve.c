@@ -116,8 +116,14 @@ static moray_status find_start(gait_job *job, const stage *at, const double curr
     return status;
 }
 
-static moray_status solve_in(gait_job *job, const stage *at, const double current[2], const moray_gait_problem *problem,
-                             const moray_gait *gait, moray_solution **solution)
+static bool solved(const moray_solution *solution)
+{
+    return moray_solution_info(solution)->outcome == MORAY_NLP_SOLVED;
+}
+
+static moray_status solve_from_motion(gait_job *job, const stage *at, const double current[2],
+                                      const moray_gait_problem *problem, const moray_gait *gait,
+                                      moray_solution **solution)
 {
     moray_swim_track track = {0};
     moray_gait start = *gait;
@@ -128,6 +134,30 @@ static moray_status solve_in(gait_job *job, const stage *at, const double curren
         status = gait_job_solve_from(job, problem, &start, &track, solution);
     moray_swim_track_free(&track);
     return status;
+}
+
+// The controller of the joints leaves the best gait nearly where six states have it, which are solved from anywhere;
+// all states from far away may take hundreds of iterations. What fails leaves the gait as it is.
+static void approach(gait_job *job, const stage *at, const double current[2], moray_gait *gait)
+{
+    moray_gait_problem_spec spec = gait_job_spec(job, at, job->goal, current);
+    moray_gait_problem *six = NULL;
+    moray_solution *solution = NULL;
+    spec.joints = MORAY_JOINTS_ON_GAIT;
+    if (!moray_failed(moray_gait_problem_new(&six, &spec)) &&
+        !moray_failed(solve_from_motion(job, at, current, six, gait, &solution)) && solved(solution))
+        *gait = moray_gait_problem_prediction(six, solution).gait;
+    moray_solution_free(solution);
+    moray_gait_problem_free(six);
+}
+
+static moray_status solve_in(gait_job *job, const stage *at, const double current[2], const moray_gait_problem *problem,
+                             const moray_gait *gait, moray_solution **solution)
+{
+    moray_gait start = *gait;
+    if (at->model == job->snake.model && job->joints == MORAY_JOINTS_CLOSED_LOOP)
+        approach(job, at, current, &start);
+    return solve_from_motion(job, at, current, problem, &start, solution);
 }
 
 moray_status gait_job_solve(gait_job *job, const stage *at, const moray_gait_problem *problem, const moray_gait *gait,
@@ -143,11 +173,6 @@ static moray_gait tapered(const stage *at, moray_gait gait)
     gait.taper = fmin(fmax(gait.taper, at->taper[0]), at->taper[1]);
     gait.amplitude *= before / (1 + fabs(gait.taper));
     return gait;
-}
-
-static bool solved(const moray_solution *solution)
-{
-    return moray_solution_info(solution)->outcome == MORAY_NLP_SOLVED;
 }
 
 // At constant shape the power grows with about the square of omega, a little faster.
