@@ -151,6 +151,15 @@ check "--continue starts from it alone" eval '[ $code -eq 0 ] && grep -q "\"star
 sed "1s/control-oriented/of another/" interrupted/max_speed.iterate >other
 refuse "is of problem fastest gait, of another" --model control --continue other
 
+# ---- All states, with the controller of the joints: as fast as with the joints on the gait but for what it lags
+for links in 5 8; do
+    run --model control --links $links --over none --json --quiet
+    on_gait=$(number predicted speed_m_s)
+    run --model control --links $links --over none --json --quiet --set joints=closed-loop
+    check "$links links in closed loop, solved and certified: $(cat err)" [ $code -eq 0 ]
+    check "$(number predicted speed_m_s) m/s, on the gait $on_gait" near "$(number predicted speed_m_s)" $on_gait 1e-4
+done
+
 # ---- Bad input
 printf '[robot]\nlinks = 10\nspeed = 3\n' >unknown.ini
 : >file
