@@ -8,6 +8,7 @@
 
 #include "moray/ocp.h"
 #include "ocp/solution.h"
+#include "ocp/solve_again.h"
 #include "rk4.h"
 
 static const int rk4_steps = 40;
@@ -257,34 +258,67 @@ static void dose(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = at->u[0] * at->u[0] + 2 - at->u[0];
 }
 
-static void test_many_bounds(void)
+static moray_solution *solve_doses(moray_ocp **ocp, const moray_settings *settings)
 {
     const moray_phase_spec phase = {.nx = 1,
                                     .nu = 1,
                                     .nq = 1,
                                     .nc = 1,
                                     .continuous = dose,
-                                    .t0 = moray_fixed(0),
                                     .tf = moray_fixed(1),
                                     .x0 = MORAY_BOUNDS(moray_fixed(0)),
                                     .u = MORAY_BOUNDS(moray_between(0, 0.25)),
                                     .c = MORAY_BOUNDS(moray_at_least(-1))};
+    moray_solution *solution;
+    CHECK_OK(moray_ocp_new(ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = spent}), "problem");
+    CHECK_OK(moray_solve(*ocp, settings, NULL, &solution), "solve");
+    return solution;
+}
+
+static void test_many_bounds(void)
+{
     moray_settings settings = moray_settings_default();
     moray_ocp *ocp;
-    moray_solution *solution;
     moray_certificate c;
     settings.intervals = 2000;
     settings.tolerance = 5e-7;
-    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = spent}), "problem");
-    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solve");
+    moray_solution *solution = solve_doses(&ocp, &settings);
     CHECK_OK(moray_certify(solution, &rk4, &c), "certificate");
     CHECK(c.gap < MORAY_LIMIT_GAP, "what the barrier leaves at all of them adds up to %.1e of the objective", c.gap);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
 
+// A solution in which a multiplier of 1 times the slack of its row is as much of the objective as the certificate allows:
+// in a row of the dynamics, which are equations, or of a path constraint. *more: the iterations of solving it again.
+static void solve_with_gap(bool equation, int *more)
+{
+    const moray_settings settings = moray_settings_default();
+    moray_ocp *ocp;
+    moray_solution *solution = solve_doses(&ocp, &settings);
+    const struct phase_layout *layout = &solution->transcription->layout.phase[0];
+    const int row = equation ? layout->interval[0].defect : layout->node[1].path, first = solution->info.iterations;
+    solution->iterate.lambda[row] = -1;
+    solution->iterate.g[row] =
+        solution->transcription->nlp.g_lower[row] + MORAY_LIMIT_GAP * fabs(solution->iterate.objective);
+    CHECK_OK(moray_solve_again(solution), "again where the solver stopped well inside");
+    *more = solution->info.iterations - first;
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+static void test_equations_have_no_inside(void)
+{
+    int more;
+    solve_with_gap(false, &more);
+    CHECK(more > 0, "well inside a limit it is solved again: %d iterations", more);
+    solve_with_gap(true, &more);
+    CHECK(more == 0, "what is left of an equation is no room inside it: %d iterations", more);
+}
+
 int main(void)
 {
+    test_equations_have_no_inside();
     test_rows();
     test_objective();
     test_integrals();
