@@ -151,5 +151,5 @@ esac
 
 # Takes an hour: by name alone.
 case $wanted in
-*" trust "*) by tests/studies/trust.sh trust build 150 100 200 ;;
+*" trust "*) by tests/studies/trust.sh trust build 150 100 100 ;;
 esac

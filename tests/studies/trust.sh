@@ -6,7 +6,7 @@
 #   sh tests/studies/trust.sh BUILD [ROBOTS [STARTS [MUTANTS]]]
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/../.." && pwd) || exit 1
 build=$(CDPATH='' cd -- "$1" && pwd) || exit 2
-robots=${2:-150} starts=${3:-100} mutants=${4:-200}
+robots=${2:-150} starts=${3:-100} mutants=${4:-200} # of each of two seeds
 cd "$root" || exit 1
 
 # part COMMAND...: what it is and what it printed.
@@ -21,4 +21,6 @@ part sh tests/studies/starts.sh "$build" "$starts"
 part sh tests/studies/kills.sh "$build/problems/sweep" 50 1
 part "$build/tests/fuzz" tests/fuzz/corpus 200000 7 | grep -v '^ok .*: ok$'
 part sh tests/coverage.sh
-part python3 tests/studies/mutate.py --count "$mutants" --seed 1
+for seed in 1 2; do
+    part python3 tests/studies/mutate.py --count "$mutants" --seed $seed
+done
