@@ -104,7 +104,7 @@ static bool is_finite(const struct subject *s)
     return true;
 }
 
-// Of 1 + |.|: the largest step of moray_check_derivatives is 0.02 of it, and grows with what |.| does on the way inwards.
+// Of 1 + |.|: the largest step of moray_check_derivatives is 0.02 of it, and may grow on the way inwards.
 static const double step_part = 0.021;
 
 // Inwards by the steps of the differences, as far as the box has room: beyond it functions need not exist.

@@ -94,8 +94,8 @@ static void test_random(void)
     CHECK(residual < 1e-13, "residuals to %.1e", residual);
 }
 
-// A stationarity row of which the multipliers nearly cancel and the Hessian leaves next to nothing: the error is relative
-// to what the constraints put into the row, not to what is left there.
+// A stationarity row of which the multipliers nearly cancel and the Hessian leaves next to nothing: the error is
+// relative to what the constraints put into the row, not to what is left there.
 static void test_cancelling(void)
 {
     static sample s;

@@ -289,8 +289,8 @@ static void test_many_bounds(void)
     moray_ocp_free(ocp);
 }
 
-// A solution in which a multiplier of 1 times the slack of its row is as much of the objective as the certificate allows:
-// in a row of the dynamics, which are equations, or of a path constraint. *more: the iterations of solving it again.
+// A solution in which a multiplier of 1 times the slack of its row is as much of the objective as the certificate
+// allows: in a row of the dynamics, which are equations, or of a path constraint. *more: the iterations that follow.
 static void solve_with_gap(bool equation, int *more)
 {
     const moray_settings settings = moray_settings_default();

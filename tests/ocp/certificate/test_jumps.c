@@ -11,8 +11,8 @@
 static const int rk4_steps = 40;
 static const moray_integrator rk4 = {rk4_run, &rk4_steps};
 
-// Least integral of u^2 (2 + s), x' = 1 from 0 to 1: u = 0. For u > 0, s jumps by 3 where x = edge, or is 0; for u < 0 it
-// rises steeply by 2 soon behind the edge.
+// Least integral of u^2 (2 + s), x' = 1 from 0 to 1: u = 0. For u > 0, s jumps by 3 where x = edge, or is 0; for u < 0
+// it rises steeply by 2 soon behind the edge.
 static const double edge = 0.4321, behind = 1e-3, rise = 1e-4;
 
 static void beside(const moray_node *at, moray_rates *out, const void *data)

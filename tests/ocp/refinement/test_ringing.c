@@ -219,8 +219,8 @@ static void test_leaving(void)
     moray_ocp_free(ocp);
 }
 
-// Bolza's problem: least integral of (1 - u^2)^2 + x^2, x' = u, x = 0 at both ends, has no best control but one that goes
-// to and fro ever faster: it rings with every family.
+// Bolza's problem: least integral of (1 - u^2)^2 + x^2, x' = u, x = 0 at both ends, has no best control but one that
+// goes to and fro ever faster: it rings with every family.
 static void bolza(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
@@ -229,7 +229,7 @@ static void bolza(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = off * off + at->x[0] * at->x[0];
 }
 
-// Radau takes over from Gauss, is worse, and may have no mesh as large as it needs; a Gauss mesh that large there may be.
+// Radau takes over from Gauss, is worse, and may have no mesh as large as it needs next; Gauss may.
 static void test_there_and_back(void)
 {
     const moray_phase_spec phase = {.nx = 1,
