@@ -62,17 +62,17 @@ static answer solve(const axes *turned, const char *scheme)
                                    .continuous = roll,
                                    .t0 = moray_fixed(0),
                                    .tf = moray_between(0.5, 9),
-                                   .x = MORAY_BOUNDS(along(sign[PLACE], -4, 1), along(sign[SPEED], -3, 0.5)),
+                                   .x = MORAY_BOUNDS(moray_free(), along(sign[SPEED], -3, 0.5)),
                                    .x0 = MORAY_BOUNDS(moray_fixed(sign[PLACE] * 0.3), moray_fixed(0)),
                                    .xf = MORAY_BOUNDS(moray_fixed(sign[PLACE] * -1.1), along(sign[SPEED], -0.2, 0.4)),
                                    .u = MORAY_BOUNDS(along(sign[THRUST], -2.5, 1.5)),
-                                   .c = MORAY_BOUNDS(along(sign[FAST], -0.9, 5))};
+                                   .c = MORAY_BOUNDS(along(sign[FAST], -0.9, MORAY_INFINITY))};
     const moray_ocp_spec spec = {.name = "cart",
                                  .phases = 1,
                                  .phase = &cart,
                                  .ns = 1,
                                  .ne = 1,
-                                 .s = MORAY_BOUNDS(along(sign[STEEP], -2, -0.1)),
+                                 .s = MORAY_BOUNDS(moray_free()),
                                  .e = MORAY_BOUNDS(moray_fixed(0)),
                                  .endpoint = arrive,
                                  .data = turned};
