@@ -12,7 +12,8 @@
 #include "rk4.h"
 
 // A cart on a rough slope that is steeper where it is far out: from rest at 0.3 to rest at -1.1 under a limited thrust
-// and speed, quickly and with little work; the slope is as steep as it is chosen.
+// and speed, quickly and with little work; the slope is as steep as it is chosen, in
+// ten-thousandths.
 enum { PLACE, SPEED, THRUST, STEEP, FAST, WORK, AT_REST, AXES };
 typedef struct axes {
     double sign[AXES];
@@ -22,7 +23,7 @@ static void roll(const moray_node *at, moray_rates *out, const void *data)
 {
     const double *sign = ((const axes *)data)->sign;
     const moray_num x = sign[PLACE] * at->x[0], v = sign[SPEED] * at->x[1], u = sign[THRUST] * at->u[0],
-                    steep = sign[STEEP] * at->s[0];
+                    steep = 1e-4 * sign[STEEP] * at->s[0];
     out->f[0] = sign[PLACE] * v;
     out->f[1] = sign[SPEED] * (u - 0.3 * v - (steep + 0.4 * x) * x);
     out->c[0] = sign[FAST] * (v + 0.1 * u);
@@ -32,7 +33,7 @@ static void roll(const moray_node *at, moray_rates *out, const void *data)
 static void arrive(const moray_ends *at, moray_end_values *out, const void *data)
 {
     const double *sign = ((const axes *)data)->sign;
-    const moray_num steep = sign[STEEP] * at->s[0];
+    const moray_num steep = 1e-4 * sign[STEEP] * at->s[0];
     out->objective = at->phase[0].tf + 0.2 * sign[WORK] * at->phase[0].q[0] + 0.3 * (steep + 0.6) * (steep + 0.6);
     out->e[0] = sign[AT_REST] * (at->phase[0].xf[1] * sign[SPEED] + 0.01 * at->phase[0].xf[0] * sign[PLACE] + 0.011);
 }
@@ -78,7 +79,7 @@ static answer solve(const axes *turned, const char *scheme)
                                  .data = turned};
     const double time[] = {0, 1, 3},
                  x[] = {sign[PLACE] * 0.3, 0, sign[PLACE] * -0.2, sign[SPEED] * -0.8, sign[PLACE] * -1.1, 0},
-                 u[] = {sign[THRUST] * -1.2, sign[THRUST] * -0.1, sign[THRUST] * 1}, s[] = {sign[STEEP] * -0.9};
+                 u[] = {sign[THRUST] * -1.2, sign[THRUST] * -0.1, sign[THRUST] * 1}, s[] = {sign[STEEP] * -9e3};
     const moray_samples samples = {3, time, x, u};
     const moray_guess guess = {.phase = &samples, .s = s};
     moray_settings settings = moray_settings_default();
