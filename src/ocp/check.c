@@ -104,15 +104,20 @@ static bool is_finite(const struct subject *s)
     return true;
 }
 
-// Of 1 + |.|: the largest step of moray_check_derivatives is 0.02 of it, and may grow on the way inwards.
-static const double step_part = 0.021;
+static const double step_part = 0.0200001; // of 1 + |.|: a little more than the largest step of moray_check_derivatives
+
+// Where x is such a step away from a bound: `inwards` 1 from a lower one, -1 from an upper one.
+static double step_from(double bound, int inwards)
+{
+    const double z = inwards * bound + step_part; // of inwards x = inwards bound + step_part (1 + |x|)
+    return inwards * z / (z > 0 ? 1 - step_part : 1 + step_part);
+}
 
 // Inwards by the steps of the differences, as far as the box has room: beyond it functions need not exist.
 static void keep_off_bounds(struct subject *s)
 {
     for (int j = 0; j < s->map->n_in; j++) {
-        const double step = step_part * (1 + fabs(s->in[j])), low = s->box[j].lower + step,
-                     high = s->box[j].upper - step;
+        const double low = step_from(s->box[j].lower, 1), high = step_from(s->box[j].upper, -1);
         if (low < high)
             s->in[j] = fmin(fmax(s->in[j], low), high);
     }
