@@ -94,7 +94,7 @@ static bool as_good(const motion *m, const motion *before)
 // the links, with more or less of the highest harmonic: harmonics lead to several optima, of which none leads to all.
 static int starts_of(free_gait *run, const motion *m, start at[STARTS])
 {
-    const double little = 3e-3, more = 3e-2, usual = gait_job_settings(&run->job).barrier, near = 1e-7;
+    const double little = 3e-3, more = 3e-2, usual = 1e-4, near = 1e-7;
     const stage *before = &freest(run)->at, *gait = last_stage(&run->job), *limited = &run->motion[0].at;
     const start all[STARTS] = {{before, 0, m->harmonics > 0 ? near : usual},
                                {gait, little, usual},
@@ -199,12 +199,19 @@ static void drop_motion(motion *m)
     m->coefficients = NULL;
 }
 
-// The best gait (25) within the limits of the links.
+// The best gait (25) within the limits of the links, with which freer motions are compared: these have several optima,
+// of slow and of quick strokes, between which the nearest is chance.
 static moray_status find_gait(free_gait *run)
 {
+    enum { random = 12 };
+    gait_job *job = &run->job;
     motion *m = start_motion(run, 0, 0);
-    const gait_starts starts = {{last_stage(&run->job)->prediction.gait, run->job.paper.gait[m->at.model]}, 2};
-    MORAY_TRY(gait_job_optimise(&run->job, &m->at, &starts));
+    const gait_starts starts = {{last_stage(job)->prediction.gait, job->paper.gait[m->at.model]}, 2};
+    const int asked = job->random_starts;
+    job->random_starts = asked > random ? asked : random;
+    const moray_status status = gait_job_optimise(job, &m->at, &starts);
+    job->random_starts = asked;
+    MORAY_TRY(status);
     return finish_motion(run, m);
 }
 
