@@ -544,6 +544,10 @@ static void test_course_errors(moray_model model)
     moray_status status = moray_swim_hold_course(&setup, &gait, 0, &steady);
     CHECK(status.code == MORAY_NOT_SOLVED && strstr(status.text, "U = 0.2") && strstr(status.text, "W = 0.3 m/s"),
           "cross current too strong: %s", status.text);
+    setup = setup_of(swimmer, 0, -0.3);
+    status = moray_swim_hold_course(&setup, &gait, 0, &steady);
+    CHECK(status.code == MORAY_NOT_SOLVED && strstr(status.text, "U = 0.2") && strstr(status.text, "W = -0.3 m/s"),
+          "and to the other side: %s", status.text);
     setup = setup_of(swimmer, -0.4, 0);
     status = moray_swim_hold_course(&setup, &gait, 0, &steady);
     CHECK(status.code == MORAY_NOT_SOLVED && strstr(status.text, "-0.4 m/s along"), "driven astern: %s", status.text);
