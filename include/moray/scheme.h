@@ -27,8 +27,8 @@ typedef struct moray_scheme {
     double *node; // [points]
     double *A; // [points][points]: integral of the j-th stage polynomial from 0 to node i; 0 for points not collocated
     double *b; // [points]: the last row of A
-    double *P, *Q; // [points-1][points]
-    int exact;     // Gauss points that integrate the stage polynomials exactly
+    double *P, *Q;          // [points-1][points]
+    int exact;              // Gauss points that integrate the stage polynomials exactly
     double *gauss, *weight; // [exact]: those and their weights
 } moray_scheme;
 
