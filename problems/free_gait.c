@@ -203,15 +203,10 @@ static void drop_motion(motion *m)
 // of slow and of quick strokes, between which the nearest is chance.
 static moray_status find_gait(free_gait *run)
 {
-    enum { random = 12 };
-    gait_job *job = &run->job;
     motion *m = start_motion(run, 0, 0);
-    const gait_starts starts = {{last_stage(job)->prediction.gait, job->paper.gait[m->at.model]}, 2};
-    const int asked = job->random_starts;
-    job->random_starts = asked > random ? asked : random;
-    const moray_status status = gait_job_optimise(job, &m->at, &starts);
-    job->random_starts = asked;
-    MORAY_TRY(status);
+    const gait_starts starts = {
+        .gait = {last_stage(&run->job)->prediction.gait, run->job.paper.gait[m->at.model]}, .n = 2, .random = 12};
+    MORAY_TRY(gait_job_optimise(&run->job, &m->at, &starts));
     return finish_motion(run, m);
 }
 

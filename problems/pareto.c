@@ -41,7 +41,7 @@ static void show(pareto *run, const pareto_front *front, int k, const char *what
 static moray_status follow(pareto *run, pareto_front *front, const pareto_front *like)
 {
     gait_job *job = &run->job;
-    const gait_starts paper = {{job->paper.gait[front->model]}, 1};
+    const gait_starts paper = {.gait = {job->paper.gait[front->model]}, .n = 1};
     stage *at = front->at;
     if (like)
         MORAY_TRY(gait_job_continue(job, at, like->at));

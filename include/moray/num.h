@@ -148,8 +148,10 @@ static inline moray_num moray_cos(moray_num z)
 }
 static inline moray_num moray_exp(moray_num z)
 {
-    const double e = moray_is_step(z, 1) ? exp(moray_real(z)) : 0;
-    return moray_is_step(z, 1) ? moray_complex(e, e * moray_imag(z)) : moray_complex_exp(z);
+    if (!moray_is_step(z, 1))
+        return moray_complex_exp(z);
+    const double value = exp(moray_real(z));
+    return moray_complex(value, value * moray_imag(z));
 }
 static inline moray_num moray_sqrt(moray_num z)
 {

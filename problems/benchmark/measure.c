@@ -15,7 +15,7 @@ moray_settings benchmark_settings(const char *scheme, int intervals, moray_linea
     moray_settings settings = moray_settings_default();
     settings.scheme = scheme;
     settings.intervals = intervals;
-    settings.barrier = 1e-6; // every start is an orbit
+    settings.barrier = 1e-6; // every start is an orbit; peers/casadi_s1 begin there too
     settings.timing = true;
     settings.linear_solver = linear;
     return settings;

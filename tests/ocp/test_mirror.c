@@ -108,7 +108,7 @@ static answer solve(const axes *turned, const char *scheme)
 // little: what rounding leaves of it.
 static void check_number(double one, double other, double little, const char *what, const char *scheme, int turned)
 {
-    const double most = 1e-3 * fmax(fabs(one), fabs(other)) + little;
+    const double most = 1e-6 * fmax(fabs(one), fabs(other)) + little;
     CHECK((isnan(one) && isnan(other)) || fabs(one - other) <= most, "%s, axes turned %x: %s %.3e, and %.3e", scheme,
           (unsigned)turned, what, one, other);
 }

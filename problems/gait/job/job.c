@@ -187,7 +187,7 @@ static bool leaves_out(moray_status status)
 static moray_status work_on_other(gait_job *job)
 {
     stage *at = &job->stage[MORAY_CONTROL_ORIENTED];
-    const gait_starts one = {{job->paper.gait[MORAY_CONTROL_ORIENTED]}, 1};
+    const gait_starts one = {.gait = {job->paper.gait[MORAY_CONTROL_ORIENTED]}, .n = 1};
     const moray_status status = optimise_and_prove(job, MORAY_CONTROL_ORIENTED, &one);
     if (job->snake.model == MORAY_CONTROL_ORIENTED || !leaves_out(status))
         return status;
@@ -198,9 +198,9 @@ static moray_status work_on_other(gait_job *job)
 
 static moray_status work_on_ladder(gait_job *job)
 {
-    const gait_starts known = {{job->stage[MORAY_FIRST_PRINCIPLES].trial.gait[MORAY_FIRST_PRINCIPLES],
-                                job->paper.gait[MORAY_FIRST_PRINCIPLES]},
-                               2};
+    const gait_starts known = {.gait = {job->stage[MORAY_FIRST_PRINCIPLES].trial.gait[MORAY_FIRST_PRINCIPLES],
+                                        job->paper.gait[MORAY_FIRST_PRINCIPLES]},
+                               .n = 2};
     const moray_status status = gait_job_over(job, &known);
     if (status.code == MORAY_INTERRUPTED)
         return keep_iterate(job, last_stage(job));
@@ -232,7 +232,7 @@ moray_status gait_job_work(gait_job *job)
     MORAY_TRY(work_on_other(job));
     stage *control = &job->stage[MORAY_CONTROL_ORIENTED], *revolute = &job->stage[MORAY_FIRST_PRINCIPLES];
     if (job->snake.model == MORAY_FIRST_PRINCIPLES) {
-        gait_starts known = {{job->paper.gait[MORAY_FIRST_PRINCIPLES], further_gait(job)}, 2};
+        gait_starts known = {.gait = {job->paper.gait[MORAY_FIRST_PRINCIPLES], further_gait(job)}, .n = 2};
         if (!control->left_out)
             known.gait[known.n++] = control->trial.gait[MORAY_FIRST_PRINCIPLES];
         MORAY_TRY(optimise_and_prove(job, MORAY_FIRST_PRINCIPLES, &known));

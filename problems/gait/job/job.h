@@ -140,10 +140,11 @@ void gait_job_free(gait_job *job);
 
 #define GAIT_MESH_TOLERANCE 1e-6
 
-// Known gaits of a model to start from.
+// Known gaits of a model to start from, and how many random ones to start from at least, where the model is the one
+// asked for.
 typedef struct gait_starts {
     moray_gait gait[3];
-    int n;
+    int n, random;
 } gait_starts;
 
 // The problem of at->model with the limits of job and at.

@@ -223,7 +223,8 @@ static moray_status solve_tapered(gait_job *job, stage *at, void *self, const mo
 static moray_status solve_all(gait_job *job, stage *at, const gait_starts *known)
 {
     const gait_starts none = {0}, *from = at->from ? &none : known;
-    const int random = at->model == job->snake.model ? job->random_starts : 0;
+    const int most = job->random_starts > known->random ? job->random_starts : known->random;
+    const int random = at->model == job->snake.model ? most : 0;
     MORAY_TRY(gait_job_begin_starts(at, (at->from ? 1 : known->n) + random));
     if (at->from)
         MORAY_TRY(solve_continued(job, at));

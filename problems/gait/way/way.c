@@ -77,7 +77,7 @@ static moray_status optimise(way_job *run, way_place *place, const moray_gait *b
     gait_job *job = &run->job;
     double *constant = &job->snake.robot.supply.constant;
     const double own = *constant;
-    const gait_starts known = {{*before, job->paper.gait[job->snake.model]}, 2};
+    const gait_starts known = {.gait = {*before, job->paper.gait[job->snake.model]}, .n = 2};
     memcpy(job->snake.current, place->current, sizeof place->current);
     job->snake.course = place->course;
     MORAY_TRY(gait_job_demand(job, job->snake.model, &place->at));
