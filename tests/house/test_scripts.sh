@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# problems/run.sh and tests/run.sh against stand-ins for the system's tools, which log how they are called. Argument: the
-# source directory.
+# problems/run.sh and tests/run.sh against stand-ins for the system's tools, which log how they are called; and the list
+# that tests/studies/mutate.py keeps. Argument: the source directory.
 source=$1
 . "$source/tests/tap.sh"
 work=$(mktemp -d)
@@ -157,4 +157,12 @@ check "tests: nothing run is no success" eval '[ $code -ne 0 ] && last_line "0 p
 TEST_LOG='' run tests/run.sh
 check "tests: no log at all is a failure" eval '[ $code -ne 0 ] && last_line "0 passed, 2 failed"'
 check "the last line stands alone" eval '[ "$(wc -l <"$work/out")" -eq 1 ]'
+
+# ---- The list of mutants that are left out of the share of tests/studies/mutate.py
+mutants() { python3 -B "$source/tests/studies/mutate.py" "$@" >"$work/out" 2>"$work/err"; }
+check "mutants: all that are listed as equivalent are some of src: $(mutants --check-list; sed -n '$p' "$work/out")" \
+    mutants --check-list
+sed 's/ i < joins; / i < gone; /' "$source/tests/studies/equivalent.txt" >"$work/stale.txt"
+check "mutants: one that is not is refused by name" eval \
+    '! mutants --check-list "$work/stale.txt" && grep -q "^src/ocp/delay.c build: .*gone" "$work/out" && [ "$(wc -l <"$work/out")" -eq 3 ]'
 tap_done

@@ -3,7 +3,7 @@
 """The tests measured: faults planted in src one at a time, and which of them the tests find.
 
     python3 tests/studies/mutate.py [--count 200] [--seed 1] [--first 1] [--under src/ocp] [--folder DIR] [--only 3,17]
-                                  [--whole] [--plain | --sanitized] [--list]
+                                  [--whole] [--plain | --sanitized] [--list | --check-list [FILE]]
 
 Works on a copy of the source tree with a build of its own, in a folder that is left for the next run. A mutant is one
 sign, factor, index, relation, logical operator, negation, term or statement changed. It is built as far as the tests of
@@ -11,7 +11,9 @@ its room (tests/ROOM for src/ROOM) need it, and these run, quick ones first, unt
 quick ones of other rooms, or with --whole every test. What lives then faces the tests of its room under the sanitizers,
 which see reads beyond an end and leaks, as tests/run.sh has two halves; --plain leaves that out, --sanitized all else.
 Survivors are listed by their number in the sample, file, line and change, and --only NUMBERS plants these again; the
-last line counts. Runs by name alone: some ten seconds a mutant.
+last line counts. Mutants that no caller can tell from the source are in equivalent.txt, reviewed one by one; they are
+left out of the share. --check-list tells which of these the source no longer has. Runs by name alone: some ten seconds
+a mutant.
 """
 import argparse
 import hashlib
@@ -32,6 +34,7 @@ UNMOVED = {"commands", "doc", "guide", "headers", "install", "ipopt_3_14", "lang
 SANITIZED = ["-Db_sanitize=address,undefined", "-Doptimization=1"]
 SUPPRESSED = {"LSAN_OPTIONS": "suppressions=%s/tests/lsan.supp:print_suppressions=0" % ROOT, "UBSAN_OPTIONS": "halt_on_error=1"}
 SECONDS = 300  # for a test without a mutant
+EQUIVALENT = os.path.join(ROOT, "tests", "studies", "equivalent.txt")
 
 # What is changed into what, on code without strings, characters and comments.
 CHANGES = [
@@ -68,16 +71,20 @@ CHANGES = [
 
 
 def code_lines(text):
-    """Lines of function bodies, with strings and comments blanked out so that columns stay; None elsewhere."""
+    """Lines of function bodies, with strings and comments blanked out so that columns stay, and None elsewhere; each with
+    its function."""
     blank = lambda m: re.sub(r"[^\n]", "\0", m.group())
     text = re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\])*\'', blank, text, flags=re.S)
-    inside = False
+    inside, function = False, ""
     for line in text.split("\n"):
+        named = re.search(r"^\w.*?\b(?!TYPED|__attribute__)(\w+)\)?\(", line)
+        if named and not inside:
+            function = named.group(1)
         if line.startswith("{"):
             inside = True
         elif line.startswith("}"):
             inside = False
-        yield line if inside and line.startswith(" ") and not line.lstrip().startswith("#") else None
+        yield line if inside and line.startswith(" ") and not line.lstrip().startswith("#") else None, function
 
 
 def candidates(under):
@@ -89,14 +96,35 @@ def candidates(under):
             with open(os.path.join(ROOT, path), encoding="utf-8") as file:
                 text = file.read()
             lines = text.split("\n")
-            for number, line in enumerate(code_lines(text)):
+            for number, (line, function) in enumerate(code_lines(text)):
                 for kind, pattern, becomes in CHANGES if line else []:
                     for match in re.finditer(pattern, line):
                         if "\0" in match.group():
                             continue
                         new = lines[number][: match.start()] + match.expand(becomes) if isinstance(becomes, str) else (
                             lines[number][: match.start()] + becomes(match))
-                        yield kind, path, number, lines[number], new + lines[number][match.end() :]
+                        yield kind, path, number, lines[number], new + lines[number][match.end() :], function
+
+
+def text_of(mutant):
+    """As equivalent.txt has it."""
+    _, path, _, before, after, function = mutant
+    return "%s %s: %s  ->  %s" % (path, function, before.strip(), after.strip())
+
+
+def equivalents(path):
+    """{text of a mutant: reason} of a list as equivalent.txt describes it."""
+    with open(path, encoding="utf-8") as file:
+        entries = re.sub(r"(?m)^#.*\n", "", file.read()).strip().split("\n\n")
+    return dict(re.fullmatch(r"(.+)\n(\S.*)", entry.strip()).groups() for entry in entries)
+
+
+def stale(listed):
+    """Entries that are not one line of src, as texts."""
+    lines = {what: set() for what in listed}
+    for mutant in candidates("src"):
+        lines.get(text_of(mutant), set()).add(mutant[2])
+    return ["%s\n    stands on %d lines, not 1" % (what, len(lines[what])) for what in listed if len(lines[what]) != 1]
 
 
 def run(command, folder, seconds=900, **more):
@@ -285,7 +313,14 @@ def main():
     options.add_argument("--plain", action="store_true", help="not under the sanitizers")
     options.add_argument("--sanitized", action="store_true", help="under the sanitizers alone")
     options.add_argument("--list", action="store_true", help="only list what would be planted")
+    options.add_argument("--check-list", nargs="?", const=EQUIVALENT, metavar="FILE",
+                         help="only tell which equivalent mutants the source has no longer")
     asked = options.parse_args()
+    listed = equivalents(asked.check_list or EQUIVALENT)
+    unknown = stale(listed)
+    if unknown or asked.check_list:
+        print("\n".join(unknown + ["%d of %d equivalent mutants stand as listed" % (len(listed) - len(unknown), len(listed))]))
+        return 1 if unknown else 0
     everything = list(candidates(asked.under))
     # As many of each kind as there are kinds to share the count.
     kinds = sorted({kind for kind, *_ in everything})
@@ -299,13 +334,17 @@ def main():
     places = [] if asked.list or asked.sanitized else [(Copy(asked.folder, []), Copy.all if asked.whole else Copy.quick)]
     if not asked.list and not asked.plain:
         places.append((Copy(asked.folder + "-sanitized", SANITIZED), lambda *_: []))
-    killed = survived = late = unbuilt = 0
+    killed = survived = late = unbuilt = equal = 0
     begin = time.monotonic()
     for place in wanted:
-        kind, path, number, before, after = sample[place - 1]
+        kind, path, number, before, after, _ = sample[place - 1]
         what = "%d %s:%d %s: %s  ->  %s" % (place, path, number + 1, kind, before.strip(), after.strip())
         if asked.list:
             print(what)
+            continue
+        if text_of(sample[place - 1]) in listed:
+            equal += 1
+            print("%-10s %s  (%s)" % ("equal", what, listed[text_of(sample[place - 1])]), flush=True)
             continue
         by = None
         for copy, further in places:
@@ -316,8 +355,8 @@ def main():
         survived += by is None
         print("%-10s %s" % ("SURVIVED" if by is None else by, what), flush=True)
     if not asked.list and killed + survived > 0:
-        print("\n%d of %d killed, %.1f %%, of them %d by their time; %d more did not compile; seed %d, of %d possible; %.0f s" % (
-            killed, killed + survived, 100 * killed / (killed + survived), late, unbuilt, asked.seed, len(everything),
+        print("\n%d of %d killed, %.1f %%, of them %d by their time; %d more did not compile, %d are equivalent; seed %d, of %d possible; %.0f s" % (
+            killed, killed + survived, 100 * killed / (killed + survived), late, unbuilt, equal, asked.seed, len(everything),
             time.monotonic() - begin))
     return 0
 

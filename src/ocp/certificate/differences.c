@@ -20,7 +20,7 @@ static const double step_part = 0.05; // of a variable's size: the largest step 
 struct ray {
     const moray_solution *solution;
     const moray_nlp *nlp;
-    double *size, *direction, *x, *gradient, *jac, *hess; // [n], [n], [n], [n], [nnz], [nnz]
+    double *size, *direction, *x, *gradient, *entry; // [n] each but the last, of Jacobian or Hessian in turn
 };
 
 static void move_to(struct ray *ray, double step)
@@ -65,14 +65,15 @@ static void slopes_at(void *self, const double *in, double *values)
     const moray_nlp *nlp = ray->nlp;
     move_to(ray, in[0]);
     memset(values, 0, (size_t)(1 + nlp->m) * sizeof *values);
-    if (!nlp->gradient(nlp->self, ray->x, true, ray->gradient) || !nlp->jacobian(nlp->self, ray->x, false, ray->jac)) {
+    if (!nlp->gradient(nlp->self, ray->x, true, ray->gradient) ||
+        !nlp->jacobian(nlp->self, ray->x, false, ray->entry)) {
         fill_nan(values, 1 + nlp->m);
         return;
     }
     for (int j = 0; j < nlp->n; j++)
         values[0] += f_scale(ray) * ray->gradient[j] * ray->direction[j];
     for (int k = 0; k < nlp->nnz_jac; k++)
-        values[1 + nlp->jac_row[k]] += g_scale(ray, nlp->jac_row[k]) * ray->jac[k] * ray->direction[nlp->jac_col[k]];
+        values[1 + nlp->jac_row[k]] += g_scale(ray, nlp->jac_row[k]) * ray->entry[k] * ray->direction[nlp->jac_col[k]];
 }
 
 // What each variable, moved by its size, does to the Lagrangian beside what the objective does.
@@ -81,12 +82,12 @@ static void lagrangian_at(void *self, const double *in, double *out)
     struct ray *ray = self;
     const moray_nlp *nlp = ray->nlp;
     move_to(ray, in[0]);
-    if (!nlp->gradient(nlp->self, ray->x, true, out) || !nlp->jacobian(nlp->self, ray->x, false, ray->jac)) {
+    if (!nlp->gradient(nlp->self, ray->x, true, out) || !nlp->jacobian(nlp->self, ray->x, false, ray->entry)) {
         fill_nan(out, nlp->n);
         return;
     }
     for (int k = 0; k < nlp->nnz_jac; k++)
-        out[nlp->jac_col[k]] += ray->solution->iterate.lambda[nlp->jac_row[k]] * ray->jac[k];
+        out[nlp->jac_col[k]] += ray->solution->iterate.lambda[nlp->jac_row[k]] * ray->entry[k];
     for (int j = 0; j < nlp->n; j++)
         out[j] *= f_scale(ray) * ray->size[j];
 }
@@ -97,13 +98,13 @@ static void lagrangian_slopes_at(void *self, const double *in, double *values)
     const moray_nlp *nlp = ray->nlp;
     move_to(ray, in[0]);
     memset(values, 0, (size_t)nlp->n * sizeof *values);
-    if (!nlp->hessian(nlp->self, ray->x, true, 1, ray->solution->iterate.lambda, ray->hess)) {
+    if (!nlp->hessian(nlp->self, ray->x, true, 1, ray->solution->iterate.lambda, ray->entry)) {
         fill_nan(values, nlp->n);
         return;
     }
     for (int k = 0; k < nlp->nnz_hess; k++) {
         const int r = nlp->hess_row[k], c = nlp->hess_col[k];
-        const double value = f_scale(ray) * ray->hess[k];
+        const double value = f_scale(ray) * ray->entry[k];
         values[r] += value * ray->size[r] * ray->direction[c];
         if (r != c)
             values[c] += value * ray->size[c] * ray->direction[r];
@@ -189,14 +190,13 @@ moray_status moray_difference_solution(const struct witness *w, double *worst)
     const moray_status failure = t->failure;
     const int failures = t->failures;
     const size_t n = (size_t)nlp->n;
-    double *block = calloc(4 * n + (size_t)(nlp->nnz_jac + nlp->nnz_hess) + 1, sizeof *block);
+    double *block = calloc(4 * n + (size_t)fmax(nlp->nnz_jac, nlp->nnz_hess) + 1, sizeof *block);
     *worst = 0;
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to check %d variables", nlp->n);
     struct ray ray = {.solution = solution, .nlp = nlp, .direction = block, .x = block + n, .gradient = block + 2 * n};
     ray.size = block + 3 * n;
-    ray.jac = block + 4 * n;
-    ray.hess = ray.jac + nlp->nnz_jac;
+    ray.entry = block + 4 * n;
     moray_witness_columns(w, ray.size);
     for (int j = 0; j < nlp->n; j++) // a box may be wide beside what the trajectory does of it
         ray.size[j] = nlp->x_scale ? fmin(ray.size[j], 1 / nlp->x_scale[j]) : ray.size[j];
