@@ -130,10 +130,11 @@ static moray_status on_same_mesh(const moray_solution *solution, const moray_ocp
     return status;
 }
 
-static void add_bounds(double *sum, double weight, const double *bound, int n)
+// Of bounds that do not exist nobody asks the sum.
+static void add_all(double *sum, double weight, const double *values, int n)
 {
     for (int i = 0; i < n; i++)
-        sum[i] += fabs(bound[i]) < MORAY_INFINITY ? weight * bound[i] : 0;
+        sum[i] += weight * values[i];
 }
 
 static void add_fixed_times(moray_sensitivity *s, double weight, const moray_ocp *ocp)
@@ -151,8 +152,7 @@ static moray_status add_lagrangian(moray_sensitivity *s, const moray_nlp *nlp, d
     if (!jac)
         return moray_error(MORAY_MEMORY, "no memory for a Jacobian of %d entries", nlp->nnz_jac);
     const bool ok = nlp->gradient(nlp->self, at->x, false, s->here) && nlp->jacobian(nlp->self, at->x, false, jac);
-    for (int j = 0; j < nlp->n; j++)
-        s->gradient[j] += weight * s->here[j];
+    add_all(s->gradient, weight, s->here, nlp->n);
     for (int k = 0; k < nlp->nnz_jac; k++)
         s->gradient[nlp->jac_col[k]] += weight * at->lambda[nlp->jac_row[k]] * jac[k];
     free(jac);
@@ -167,12 +167,11 @@ static moray_status add(moray_sensitivity *s, struct transcription *t, double we
     if (!nlp->objective(t, x, true, &f) || !nlp->constraints(t, x, false, g))
         return moray_error(MORAY_NUMERIC, "in a displaced problem, %s", t->failure.text);
     s->shift.objective += weight * f;
-    for (int i = 0; i < nlp->m; i++)
-        s->g[i] += weight * g[i];
-    add_bounds(s->x_lower, weight, nlp->x_lower, nlp->n);
-    add_bounds(s->x_upper, weight, nlp->x_upper, nlp->n);
-    add_bounds(s->g_lower, weight, nlp->g_lower, nlp->m);
-    add_bounds(s->g_upper, weight, nlp->g_upper, nlp->m);
+    add_all(s->g, weight, g, nlp->m);
+    add_all(s->x_lower, weight, nlp->x_lower, nlp->n);
+    add_all(s->x_upper, weight, nlp->x_upper, nlp->n);
+    add_all(s->g_lower, weight, nlp->g_lower, nlp->m);
+    add_all(s->g_upper, weight, nlp->g_upper, nlp->m);
     add_fixed_times(s, weight, t->ocp);
     return add_lagrangian(s, nlp, weight);
 }

@@ -8,13 +8,15 @@
 
 #include "moray/sensitivity.h"
 
-enum { DISTANCE, TIME, GAIN, LIMIT, PARAMETERS };
+enum { DISTANCE, START, END, GAIN, LIMIT, PARAMETERS };
 
-// A cart moved by d in T from rest to rest at least effort: x' = v, v' = b u, |u| <= U.
+// A cart moved by d in T from rest to rest at least effort: x' = v, v' = b u, |u| <= U, of the control or along the
+// path.
 //   u = 6 d/(b T²) (1 - 2 t/T),  J = integral of u² = 12 d²/(b² T³)
 struct cart {
     double p[PARAMETERS];
     bool free_time; // then T is chosen for least T + J/2: T⁴ = 18 d²/b²
+    bool by_path;   // which has the limit
 };
 
 static void move(const moray_node *at, moray_rates *out, const void *data)
@@ -23,6 +25,8 @@ static void move(const moray_node *at, moray_rates *out, const void *data)
     out->f[0] = at->x[1];
     out->f[1] = cart->p[GAIN] * at->u[0];
     out->g[0] = at->u[0] * at->u[0];
+    if (cart->by_path)
+        out->c[0] = at->u[0];
 }
 
 static void pay(const moray_ends *at, moray_end_values *out, const void *data)
@@ -34,19 +38,21 @@ static void pay(const moray_ends *at, moray_end_values *out, const void *data)
 static moray_ocp *cart_ocp(const struct cart *cart)
 {
     static const char *const u_names[] = {"push"};
-    const double U = cart->p[LIMIT];
+    const moray_bounds limit[] = {moray_between(-cart->p[LIMIT], cart->p[LIMIT])}, any[] = {moray_free()};
     moray_ocp *ocp;
     const moray_phase_spec phase = {
         .name = "cart",
         .nx = 2,
         .nu = 1,
         .nq = 1,
+        .nc = cart->by_path,
         .continuous = move,
-        .t0 = moray_fixed(0),
-        .tf = cart->free_time ? moray_between(0.1, 100) : moray_fixed(cart->p[TIME]),
+        .t0 = moray_fixed(cart->p[START]),
+        .tf = cart->free_time ? moray_between(0.1, 100) : moray_fixed(cart->p[END]),
         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
         .xf = MORAY_BOUNDS(moray_fixed(cart->p[DISTANCE]), moray_fixed(0)),
-        .u = MORAY_BOUNDS(moray_between(-U, U)),
+        .u = {cart->by_path ? any : limit, 1},
+        .c = {limit, cart->by_path},
         .u_names = u_names,
     };
     CHECK_OK(moray_ocp_new(
@@ -85,7 +91,7 @@ static void check_prediction(moray_sensitivity *s, const struct cart *cart, doub
     target.p[DISTANCE] += step;
     moray_ocp *ocp = cart_ocp(&target);
     CHECK_OK(moray_sensitivity_predict(s, ocp, step, &predicted), "prediction");
-    const double d = target.p[DISTANCE], b = target.p[GAIN], T = target.p[TIME];
+    const double d = target.p[DISTANCE], b = target.p[GAIN], T = target.p[END];
     for (double t = 0.1; t < T; t += 0.3) {
         moray_solution_at(predicted, 0, t, x, &u);
         CHECK_NEAR(u, 6 * d / (b * T * T) * (1 - 2 * t / T), 1e-8, "predicted push, linear in the distance");
@@ -107,7 +113,7 @@ static void check_prediction(moray_sensitivity *s, const struct cart *cart, doub
 static void test_fixed_time(void)
 {
     const double d = 2, T = 1.5, b = 0.8, U = 8, J = 12 * d * d / (b * b * T * T * T);
-    const struct cart cart = {.p = {d, T, b, U}};
+    const struct cart cart = {.p = {d, 0, T, b, U}};
     moray_ocp *ocp = cart_ocp(&cart);
     const moray_settings settings = tight();
     moray_solution *solution;
@@ -117,19 +123,19 @@ static void test_fixed_time(void)
     CHECK_NEAR(moray_solution_objective(solution), J, 1e-8, "the least effort");
     CHECK_OK(moray_sensitivity_new(&s, solution), "sensitivities");
     CHECK(moray_sensitivity_weak(s)[0] == 0, "no doubt of what is active");
-    const double want[] = {2 * J / d, -3 * J / T, -2 * J / b, 0};
-    const char *const names[] = {"distance, a bound", "time, a fixed one", "gain, in the dynamics",
+    const double want[] = {2 * J / d, 3 * J / T, -3 * J / T, -2 * J / b, 0};
+    const char *const names[] = {"distance, a bound", "start, a fixed time", "end, another", "gain, in the dynamics",
                                  "limit, not reached"};
     for (int parameter = 0; parameter < PARAMETERS; parameter++) {
-        by(s, &cart, parameter, 2e-3 * cart.p[parameter]);
+        by(s, &cart, parameter, 2e-3 * (parameter == START ? T : cart.p[parameter]));
         CHECK_NEAR(moray_sensitivity_objective(s), want[parameter], 1e-8 * J, names[parameter]);
         CHECK_NEAR(moray_sensitivity_integrals(s, 0)[0], want[parameter], 1e-8 * J, "and the integral with it");
         moray_sensitivity_ends(s, 0, x0, xf);
         moray_sensitivity_times(s, 0, &t0, &tf);
         CHECK_NEAR(xf[0], parameter == DISTANCE, 1e-12, "where it ends");
         CHECK_NEAR(x0[0], 0, 1e-12, "where it starts");
-        CHECK_NEAR(tf, parameter == TIME, 1e-12, "when");
-        CHECK_NEAR(t0, 0, 1e-12, "from when");
+        CHECK_NEAR(tf, parameter == END, 1e-12, "when");
+        CHECK_NEAR(t0, parameter == START, 1e-12, "from when");
     }
     by(s, &cart, DISTANCE, 4e-3);
     const moray_active_change more = moray_sensitivity_change(s, 1), less = moray_sensitivity_change(s, -1);
@@ -142,10 +148,53 @@ static void test_fixed_time(void)
     moray_ocp_free(ocp);
 }
 
+static double least(const struct cart *cart)
+{
+    moray_ocp *ocp = cart_ocp(cart);
+    const moray_settings settings = tight();
+    moray_solution *solution;
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solve");
+    const double objective = moray_solution_objective(solution);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+    return objective;
+}
+
+// The limit as bounds of the control and as a path constraint: how far it is, and what it costs on both of its sides.
+static void test_limit(bool by_path)
+{
+    const double d = 2, T = 1.5, b = 0.8, U = 6 * d / (b * T * T), h = 1e-3;
+    const double of_limit[] = {1.3, 0.8}; // beyond what is asked for, and short of it
+    for (int k = 0; k < 2; k++) {
+        const struct cart cart = {.p = {d, 0, T, b, of_limit[k] * U}, .by_path = by_path};
+        struct cart more = cart, less = cart;
+        moray_ocp *ocp = cart_ocp(&cart);
+        const moray_settings settings = tight();
+        moray_solution *solution;
+        moray_sensitivity *s;
+        CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solve");
+        CHECK_OK(moray_sensitivity_new(&s, solution), "sensitivities");
+        by(s, &cart, LIMIT, h);
+        more.p[LIMIT] += h;
+        less.p[LIMIT] -= h;
+        const double slope = (least(&more) - least(&less)) / (2 * h);
+        CHECK((k == 1) == (slope < -1), "reached or not: slope %g", slope);
+        CHECK_NEAR(moray_sensitivity_objective(s), slope, 1e-5, "slope by the limit, solved again");
+        const moray_active_change change = moray_sensitivity_change(s, -1);
+        if (k == 0) {
+            CHECK_NEAR(change.step, U - cart.p[LIMIT], 1e-7, "the limit comes down to the push");
+            CHECK(isinf(moray_sensitivity_change(s, 1).step), "and never by going up");
+        }
+        moray_sensitivity_free(s);
+        moray_solution_free(solution);
+        moray_ocp_free(ocp);
+    }
+}
+
 static void test_free_time(void)
 {
     const double d = 2, b = 0.8, T = pow(18 * d * d / (b * b), 0.25);
-    const struct cart cart = {.p = {d, 0, b, 100}, .free_time = true};
+    const struct cart cart = {.p = {d, 0, 0, b, 100}, .free_time = true};
     moray_ocp *ocp = cart_ocp(&cart);
     const moray_settings settings = tight();
     moray_solution *solution;
@@ -165,7 +214,7 @@ static void test_free_time(void)
     moray_ocp_free(ocp);
 }
 
-// ---- x' = s - p x² + u, x(0) = 1; least integral of x² + u², and s² ----------------------------------------------
+// ---- x' = s - p x² + u, x(0) = 1; least integral of x² + u², and s² + p s + p³ ------------------------------------
 
 static void decay(const moray_node *at, moray_rates *out, const void *data)
 {
@@ -176,8 +225,8 @@ static void decay(const moray_node *at, moray_rates *out, const void *data)
 
 static void add_square(const moray_ends *at, moray_end_values *out, const void *data)
 {
-    (void)data;
-    out->objective = at->phase[0].q[0] + at->s[0] * at->s[0];
+    const double p = *(const double *)data;
+    out->objective = at->phase[0].q[0] + at->s[0] * (at->s[0] + p) + p * p * p;
 }
 
 static moray_ocp *decay_ocp(const double *p, int integrals)
@@ -242,10 +291,13 @@ static void test_again(void)
     ocp[2] = other;
     status = moray_sensitivity_by(s, (const moray_ocp *const *)ocp, h);
     CHECK(status.code == MORAY_INPUT && strstr(status.text, "displaced problem has"), "%s", status.text);
-    ocp[2] = right;
     double wild = 0.7;
     moray_ocp *undefined = decay_ocp(&wild, 1);
     wild = NAN;
+    ocp[2] = undefined;
+    status = moray_sensitivity_by(s, (const moray_ocp *const *)ocp, h);
+    CHECK(status.code == MORAY_NUMERIC && strstr(status.text, "in a displaced problem, "), "%s", status.text);
+    ocp[2] = right;
     moray_solution *predicted;
     status = moray_sensitivity_predict(s, undefined, h, &predicted);
     CHECK(status.code == MORAY_NUMERIC && !predicted, "%s", status.text);
@@ -263,7 +315,7 @@ static void test_again(void)
 static void test_weak(void)
 {
     const double d = 2, T = 1.5, b = 0.8;
-    const struct cart cart = {.p = {d, T, b, 6 * d / (b * T * T)}};
+    const struct cart cart = {.p = {d, 0, T, b, 6 * d / (b * T * T)}};
     moray_ocp *ocp = cart_ocp(&cart);
     const moray_settings settings = tight();
     moray_solution *solution;
@@ -281,6 +333,8 @@ static void test_weak(void)
 int main(void)
 {
     test_fixed_time();
+    test_limit(false);
+    test_limit(true);
     test_free_time();
     test_again();
     test_weak();
