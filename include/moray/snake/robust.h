@@ -42,13 +42,17 @@ typedef struct moray_robust_spec {
 // MORAY_NOT_SOLVED with the diagnosis, those of moray_ocp_new and moray_solve.
 MORAY_API moray_status moray_robust_gains(moray_heading_gains *found, double *objective, const moray_robust_spec *spec);
 
+typedef struct moray_robust_point {
+    double wanted, heading; // [m], [rad]
+} moray_robust_point;
+
 // The command wanted(t) + gain (heading(t) - theta), the same for all scenarios; heading(t) is the mean of their
 // headings. Offsets and gain are those of the control-oriented model.
 typedef struct moray_robust_plan {
     double duration; // [s], from 0 on
     int n;
-    double *wanted, *heading; // [n] at equal times [m], [rad]; owned
-    double gain;              // [m/rad]; 0: blind
+    moray_robust_point *point; // [n] at equal times, owned
+    double gain;               // [m/rad]; 0: blind
 } moray_robust_plan;
 
 // One phase with the states of all scenarios, as above, which share wanted(t), whose rate is the control, and the gain;

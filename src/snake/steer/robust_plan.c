@@ -140,15 +140,13 @@ static moray_status read(moray_robust_plan *plan, const manoeuvre *m, const mora
     double x[most_states];
     plan->duration = m->spec->duration;
     plan->n = (int)ceil(per_second * plan->duration) + 1;
-    plan->wanted = calloc(2 * (size_t)plan->n, sizeof *plan->wanted);
-    if (!plan->wanted)
+    plan->point = calloc((size_t)plan->n, sizeof *plan->point);
+    if (!plan->point)
         return moray_error(MORAY_MEMORY, "no memory for a plan of %d points", plan->n);
-    plan->heading = plan->wanted + plan->n;
     plan->gain = m->blind ? 0 : exp(moray_solution_parameters(solution)[0]);
     for (int i = 0; i < plan->n; i++) {
         moray_solution_at(solution, 0, plan->duration * i / (plan->n - 1), x, NULL);
-        plan->wanted[i] = x[wanted_of(m)];
-        plan->heading[i] = x[heading_of(m)];
+        plan->point[i] = (moray_robust_point){.wanted = x[wanted_of(m)], .heading = x[heading_of(m)]};
     }
     return moray_ok();
 }
@@ -227,23 +225,25 @@ moray_status moray_robust_plan_make(moray_robust_plan *plan, double *objective, 
 
 void moray_robust_plan_free(moray_robust_plan *plan)
 {
-    free(plan->wanted);
+    free(plan->point);
     *plan = (moray_robust_plan){0};
 }
 
-static double between(const moray_robust_plan *plan, const double *values, double t)
+static moray_robust_point at_time(const moray_robust_plan *plan, double t)
 {
     const double at = fmin(fmax(t / plan->duration, 0), 1) * (plan->n - 1);
     const int k = at < plan->n - 2 ? (int)at : plan->n - 2;
-    return values[k] + (at - k) * (values[k + 1] - values[k]);
+    const moray_robust_point *from = &plan->point[k], *to = from + 1;
+    return (moray_robust_point){.wanted = from->wanted + (at - k) * (to->wanted - from->wanted),
+                                .heading = from->heading + (at - k) * (to->heading - from->heading)};
 }
 
 double moray_robust_plan_wanted(const moray_robust_plan *plan, double t)
 {
-    return between(plan, plan->wanted, t);
+    return at_time(plan, t).wanted;
 }
 
 double moray_robust_plan_heading(const moray_robust_plan *plan, double t)
 {
-    return between(plan, plan->heading, t);
+    return at_time(plan, t).heading;
 }
