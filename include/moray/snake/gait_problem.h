@@ -17,9 +17,10 @@ MORAY_BEGIN
 typedef struct moray_gait_limits {
     moray_bounds theta_max; // [rad] amplitude of (24), through (33) or (27); with a taper that of every link may be
                             // no larger (moray_theta_max_of_link), that in the middle no smaller. Control-oriented
-                            // model: where the offset is free, the upper bound holds for every link angle (12) too, at
-                            // the nodes of the mesh. With link_angles, and for a series, that is what the upper bound
-                            // holds for, on both models: |link angle - heading| at the nodes, not for amplitudes
+                            // model: where the offset is free, the upper bound holds for every link angle (12) too: at
+                            // any time with the joints on the gait, else at the nodes of the mesh. With link_angles,
+                            // and for a series, that is what the upper bound holds for, on both models:
+                            // |link angle - heading|, not for amplitudes
     moray_bounds omega;     // [rad/s]
     moray_bounds delta;     // [rad]
     moray_bounds offset;    // phi_0 of the model [m or rad]

@@ -33,6 +33,36 @@ moray_bounds moray_gait_amplitude_bounds(const struct gait_endpoint *e, moray_bo
     return moray_between(sin(theta_max.lower), sin(theta_max.upper));
 }
 
+// Amplitude of a link angle (12) next to the head (side 1) or the tail (-1): of the end link, which has one joint, or
+// of its neighbour, whose two joints are delta apart. Since the taper is linear, no link between swings further than
+// these.
+static moray_num link_amplitude(const struct gait_endpoint *e, const moray_num *s, double side, bool end)
+{
+    const moray_num a = s[0], delta = s[2], taper = s[4];
+    const moray_num last = 1 + side * taper;
+    if (end)
+        return a * last / (2 * e->L);
+    const moray_num next = last - side * taper * 2 / (e->links - 2);
+    return a * csqrt(last * last + next * next + 2 * last * next * ccos(delta)) / (2 * e->L);
+}
+
+// The largest link angles to either side, amplitude and offset. Returns how many.
+static int link_angle_events(const struct gait_endpoint *e, const moray_num *s, moray_num *out)
+{
+    int n = 0;
+    for (int side = 1; side >= -1; side -= 2)
+        for (int joints = 1; joints <= 2 && joints < e->links; joints++) {
+            if (side < 0 ? !e->tail : e->tail && !e->head)
+                continue;
+            const moray_num amplitude = link_amplitude(e, s, side, joints == 1), offset = joints * s[3] / (2 * e->L);
+            if (e->left)
+                out[n++] = amplitude + offset;
+            if (e->right)
+                out[n++] = amplitude - offset;
+        }
+    return n;
+}
+
 // The events that not every problem has. Returns how many.
 static int optional_events(const struct gait_endpoint *e, const moray_num *s, moray_num power, moray_num speed,
                            moray_num *out)
@@ -52,7 +82,7 @@ static int optional_events(const struct gait_endpoint *e, const moray_num *s, mo
         out[n++] = s[0] * s[1] * (1 - s[4]);
     if (e->speed)
         out[n++] = speed;
-    return n;
+    return n + link_angle_events(e, s, out + n);
 }
 
 void moray_gait_ends(const moray_ends *at, moray_end_values *out, const void *data)
@@ -76,7 +106,7 @@ void moray_gait_ends(const moray_ends *at, moray_end_values *out, const void *da
 int moray_gait_events(const struct gait_endpoint *e)
 {
     const moray_num s[MORAY_GAIT_PARAMETERS] = {1, 1, 1};
-    moray_num events[8];
+    moray_num events[GAIT_OPTIONAL_EVENTS];
     return e->nx + optional_events(e, s, 0, 0, events);
 }
 

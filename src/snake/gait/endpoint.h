@@ -9,7 +9,7 @@
 // but the position, displacement across the course [m], omega T [rad], amplitude in the middle of the body as bounded
 // by moray_gait_amplitude_bounds, its square for the last and the first link where the taper may be positive and
 // negative; then where limited mean power [W], largest rate amplitude (of the last joint, of the first), speed along
-// the course [m/s].
+// the course [m/s], largest link angles (12) to the left and the right [rad] of a control-oriented gait.
 struct gait_endpoint {
     int nx, position; // states; first of p_x, p_y
     double course[2]; // unit vector
@@ -20,8 +20,11 @@ struct gait_endpoint {
     bool head, tail; // a taper above and below 0 is allowed
     moray_gait_goal goal;
     bool power, rate, speed;
-    double constant; // power that is drawn whatever the joints do [W]
+    bool left, right; // link angles are bounded to this side: the offset may turn them there, or nowhere
+    double constant;  // power that is drawn whatever the joints do [W]
 };
+
+enum { GAIT_OPTIONAL_EVENTS = 15 }; // events behind the first nx, at most
 
 // The endpoint function of moray_ocp_spec; data is a struct gait_endpoint.
 void moray_gait_ends(const moray_ends *at, moray_end_values *out, const void *data);
@@ -29,9 +32,9 @@ void moray_gait_ends(const moray_ends *at, moray_end_values *out, const void *da
 int moray_gait_events(const struct gait_endpoint *endpoint);      // how many
 int moray_gait_power_event(const struct gait_endpoint *endpoint); // place of the mean power among them
 
-typedef char gait_name[32];
+typedef char gait_name[40];
 
-// What the events are called, name[moray_gait_events(endpoint)]; text has room for nx names.
+// What the events are called, name[moray_gait_events(endpoint)], and as many texts.
 void moray_gait_event_names(const struct gait_endpoint *endpoint, gait_name *text, const char **name);
 
 // What the n path outputs are called: joint efforts if any, then what the motors' supply allows by so many lines,

@@ -3,6 +3,19 @@
 
 #include "snake/gait/endpoint.h"
 
+// As moray_gait_ends orders them.
+static void link_angle_names(const struct gait_endpoint *e, gait_name *text, const char **name)
+{
+    static const char *const to[] = {"right", "left"};
+    for (int tail = e->tail && !e->head; tail <= e->tail; tail++)
+        for (int joints = 1; joints <= 2 && joints < e->links; joints++)
+            for (int left = e->left; left >= !e->right; left--, text++) {
+                snprintf(*text, sizeof *text, "%s of the %s, to the %s", joints == 1 ? "end link" : "link",
+                         tail ? "tail" : "head", to[left]);
+                *name++ = *text;
+            }
+}
+
 void moray_gait_event_names(const struct gait_endpoint *e, gait_name *text, const char **name)
 {
     for (int r = 0; r < e->nx - 2; r++) {
@@ -25,6 +38,8 @@ void moray_gait_event_names(const struct gait_endpoint *e, gait_name *text, cons
         *name++ = e->head && e->tail ? "joint rate of the tail" : "joint rate";
     if (e->speed)
         *name++ = "course speed";
+    if (e->left || e->right)
+        link_angle_names(e, text + e->nx, name);
 }
 
 void moray_gait_path_names(int n, int efforts, int lines, int links, gait_name *text, const char **name)

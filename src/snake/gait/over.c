@@ -8,7 +8,7 @@
 #include "snake/gait/problem.h"
 
 // Events of a gait problem, at most; names of parameters and events.
-enum { most_events = MORAY_BODY_STATES + 8, name_size = 64 };
+enum { most_events = MORAY_BODY_STATES + GAIT_OPTIONAL_EVENTS, name_size = 64 };
 typedef char over_name[name_size];
 
 struct moray_gait_over {

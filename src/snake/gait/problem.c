@@ -70,6 +70,21 @@ static bool by_link_angles(const moray_gait_problem *problem)
     return on_series(problem) || problem->spec.limits.link_angles;
 }
 
+// Whether the links' angles have limits that the amplitude's do not imply.
+static bool angles_limited(const moray_gait_problem *problem)
+{
+    const moray_bounds offset = problem->spec.limits.offset;
+    return by_link_angles(problem) ||
+           (problem->spec.model == MORAY_CONTROL_ORIENTED && (offset.lower != 0 || offset.upper != 0));
+}
+
+// Whether link angles are known in closed form, by the gait alone.
+static bool angles_as_events(const moray_gait_problem *problem)
+{
+    return angles_limited(problem) && problem->spec.model == MORAY_CONTROL_ORIENTED &&
+           problem->spec.joints == MORAY_JOINTS_ON_GAIT;
+}
+
 static int supply_lines(const moray_gait_problem *problem)
 {
     return problem->spec.model == MORAY_FIRST_PRINCIPLES ? problem->spec.robot.motor.lines : 0;
@@ -89,9 +104,7 @@ static moray_status make_plant(moray_gait_problem *problem)
                                     .current = {spec->current[0], spec->current[1]},
                                     .path_forces = limited(spec->limits.joint_effort),
                                     .path_supply = supply_lines(problem) > 0,
-                                    .path_angles = by_link_angles(problem) ||
-                                                   (spec->model == MORAY_CONTROL_ORIENTED &&
-                                                    (spec->limits.offset.lower != 0 || spec->limits.offset.upper != 0)),
+                                    .path_angles = angles_limited(problem) && !angles_as_events(problem),
                                     .path_rates = on_series(problem) && limited(moray_gait_most_rate(&problem->spec)),
                                     .harmonics = spec->harmonics};
     problem->size = moray_plant_sizes(&plant);
@@ -103,7 +116,8 @@ static void make_endpoint(moray_gait_problem *problem)
 {
     const moray_gait_problem_spec *spec = &problem->spec;
     const int joints = spec->joints == MORAY_JOINTS_CLOSED_LOOP ? spec->robot.links - 1 : 0;
-    const bool series = on_series(problem);
+    const bool series = on_series(problem), angles = angles_as_events(problem);
+    const bool turns_right = spec->limits.offset.lower < 0;
     problem->endpoint = (struct gait_endpoint){.nx = problem->size.nx,
                                                .position = joints + 1,
                                                .revolute = spec->model == MORAY_FIRST_PRINCIPLES,
@@ -117,6 +131,8 @@ static void make_endpoint(moray_gait_problem *problem)
                                                .power = limited(spec->limits.power),
                                                .rate = !series && limited(moray_gait_most_rate(&problem->spec)),
                                                .speed = least_speed(spec) > 0,
+                                               .left = angles && (spec->limits.offset.upper > 0 || !turns_right),
+                                               .right = angles && turns_right,
                                                .constant = spec->robot.supply.constant};
 }
 
@@ -142,6 +158,7 @@ static void fill_path_bounds(const moray_gait_problem *problem, moray_bounds *c)
 
 static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e)
 {
+    const moray_bounds *end = e + moray_gait_events(&problem->endpoint);
     const moray_gait_limits *limits = &problem->spec.limits;
     for (int i = 0; i < problem->size.nx - 2 + 1; i++)
         *e++ = moray_fixed(0);
@@ -159,6 +176,8 @@ static void fill_event_bounds(const moray_gait_problem *problem, moray_bounds *e
         *e++ = moray_at_most(moray_gait_most_rate(&problem->spec));
     if (endpoint->speed)
         *e++ = moray_at_least(least_speed(&problem->spec));
+    while (e < end)
+        *e++ = moray_at_most(limits->theta_max.upper);
 }
 
 static const char *const goals[][2] = {
@@ -198,7 +217,7 @@ static moray_status describe(moray_gait_problem *problem)
               ns = problem->size.ns, at = problem->endpoint.position;
     problem->block = calloc((size_t)(nx + nc + ne + ns), sizeof *problem->block);
     problem->names = calloc((size_t)(ne + nc), sizeof *problem->names);
-    problem->path_names = calloc((size_t)(nc + nx), sizeof *problem->path_names);
+    problem->path_names = calloc((size_t)(nc + ne), sizeof *problem->path_names);
     if (!problem->block || !problem->names || !problem->path_names)
         return moray_error(MORAY_MEMORY, "no memory for the gait problem");
     moray_bounds *x0 = problem->block, *c = x0 + nx, *e = c + nc, *s = e + ne;
