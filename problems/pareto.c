@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "moray/parallel.h"
+
 const char *const pareto_kinds[PARETO_KINDS] = {"lateral", "eel-like", "free taper"};
 
 static const moray_option options[] = {
@@ -33,8 +35,9 @@ static bool solved(const stage *at)
 
 static void show(pareto *run, const pareto_front *front, int k, const char *what)
 {
-    moray_ticker_count(&run->job.ticker, (run->fronts - 1) * run->points + k, run->planned * run->points,
-                       "pareto: %s model, %s: %s", moray_model_name(front->model), pareto_kinds[front->kind], what);
+    moray_ticker_count(&run->job.ticker, (int)(front->model * run->kinds + front->kind) * run->points + k,
+                       run->fronts * run->points, "pareto: %s model, %s: %s", moray_model_name(front->model),
+                       pareto_kinds[front->kind], what);
 }
 
 // The fastest gait of all, from the paper's gait or from that of another front; and from it, to and fro, the others.
@@ -60,23 +63,11 @@ static moray_status follow(pareto *run, pareto_front *front, const pareto_front 
                                : moray_ok();
 }
 
-// Swims all gaits of a front on the ladder.
-static moray_status climb(const pareto *run, pareto_front *front)
-{
-    stage *at[PARETO_POINTS];
-    for (int k = 0; k < front->n; k++) {
-        at[k] = &front->at[k];
-        at[k]->found_on = gait_job_found_on(&run->job, front->model);
-    }
-    return gait_job_climb(&run->job, at, front->n);
-}
-
-// Keeps the gaits that are worth it, certified and swum on both models.
-static moray_status prove(pareto *run, pareto_front *front)
+// Keeps the gaits that are worth it, certified.
+static moray_status certify(const pareto *run, pareto_front *front)
 {
     const double no_price = 1e-5; // of a power limit that makes no difference [m/s per W]
     const int all = front->n;
-    stage *kept[PARETO_POINTS];
     front->n = 0;
     for (int k = 0; k < all; k++) {
         stage *at = &front->at[k];
@@ -86,63 +77,111 @@ static moray_status prove(pareto *run, pareto_front *front)
         }
         const stage moved = *at;
         *at = (stage){0};
-        kept[front->n] = &front->at[front->n];
-        front->at[front->n++] = moved;
+        front->at[front->n] = moved;
+        MORAY_TRY(gait_job_certify(&run->job, &front->at[front->n++]));
     }
-    show(run, front, front->n - 1, "swum on both models");
-    MORAY_TRY(gait_job_prove(&run->job, kept, front->n));
-    return climb(run, front);
+    return moray_ok();
 }
 
-static moray_status make_front(pareto *run, moray_model model, int kind)
-{
-    pareto_front *front = &run->front[run->fronts];
-    *front = (pareto_front){.model = model, .kind = kind, .n = run->points};
-    front->at = calloc((size_t)front->n, sizeof *front->at);
-    run->fronts++;
-    if (!front->at)
-        return moray_error(MORAY_MEMORY, "no memory for a front of %d points", front->n);
-    const double eel[2] = {run->eel_taper, run->eel_taper}, none[2] = {0, 0};
-    const double *const taper[PARETO_KINDS] = {none, eel, run->job.taper};
-    for (int k = 0; k < front->n; k++) {
-        memcpy(front->at[k].taper, taper[kind], sizeof eel);
-        limit_power(&front->at[k], front, 0, 0, 0);
-    }
-    const pareto_front *lateral = front - kind;
-    MORAY_TRY(follow(run, front, kind == 0 || lateral->n == 0 ? NULL : lateral));
-    return prove(run, front);
-}
+// One round of fronts: the lateral ones, or those that begin from them.
+typedef struct rounds {
+    pareto *run;
+    bool lateral;
+} rounds;
 
-// The lateral front of the model asked for is what the program is for; another that cannot be had takes nothing from
-// it.
-static moray_status make_or_leave_out(pareto *run, moray_model model, int kind)
+// A moray_task_fn; result: the front, as it was, or if it is of the round as it is found.
+static void find_front(int f, void *result, void *self)
 {
-    const moray_status status = make_front(run, model, kind);
-    pareto_front *front = &run->front[run->fronts - 1];
-    const bool needed = kind == 0 && model == run->job.snake.model;
-    if (!moray_failed(status) || needed || status.code == MORAY_INTERRUPTED || status.code == MORAY_MEMORY)
-        return status;
+    const rounds *round = self;
+    pareto *run = round->run;
+    pareto_front *front = result;
+    const pareto_front *lateral = &run->front[f - front->kind];
+    if (round->lateral != (front->kind == 0))
+        return;
+    front->why = follow(run, front, round->lateral || lateral->n == 0 ? NULL : lateral);
+    if (!moray_failed(front->why))
+        front->why = certify(run, front);
     for (int k = 0; k < run->points; k++)
         gait_job_stage_free(&front->at[k]);
-    front->n = 0;
-    front->why = status;
+    if (moray_failed(front->why))
+        front->n = 0;
+}
+
+// Whether to go on after what happened to a front: the lateral one of the model asked for is what the program is for;
+// another that cannot be had takes nothing from it. Error: its own.
+static moray_status may_leave_out(const pareto *run, const pareto_front *front)
+{
+    const bool needed = front->kind == 0 && front->model == run->job.snake.model;
+    const moray_code code = front->why.code;
+    return needed || code == MORAY_INTERRUPTED || code == MORAY_MEMORY ? front->why : moray_ok();
+}
+
+static moray_status find_fronts(pareto *run)
+{
+    for (int k = 0; k < 2; k++) {
+        rounds round = {run, k == 0};
+        MORAY_TRY(moray_parallel(run->fronts, sizeof *run->front, run->front, find_front, &round, run->job.jobs));
+        for (int f = 0; f < run->fronts; f++)
+            MORAY_TRY(may_leave_out(run, &run->front[f]));
+    }
+    return moray_ok();
+}
+
+// Swims the gaits of a front on both models and on the ladder.
+static moray_status swim(pareto *run, pareto_front *front)
+{
+    stage *at[PARETO_POINTS];
+    for (int k = 0; k < front->n; k++) {
+        at[k] = &front->at[k];
+        at[k]->found_on = gait_job_found_on(&run->job, front->model);
+    }
+    show(run, front, front->n - 1, "swum on both models");
+    MORAY_TRY(gait_job_try_all(&run->job, at, front->n));
+    return gait_job_climb(&run->job, at, front->n);
+}
+
+static moray_status swim_fronts(pareto *run)
+{
+    for (int f = 0; f < run->fronts; f++) {
+        pareto_front *front = &run->front[f];
+        if (front->n == 0)
+            continue;
+        front->why = swim(run, front);
+        if (moray_failed(front->why))
+            front->n = 0;
+        MORAY_TRY(may_leave_out(run, front));
+    }
     return moray_ok();
 }
 
 // ---- All -----------------------------------------------------------------------------------------------------------
 
+static void begin_front(const pareto *run, pareto_front *front, moray_model model, int kind)
+{
+    const double eel[2] = {run->eel_taper, run->eel_taper}, none[2] = {0, 0};
+    const double *const taper[PARETO_KINDS] = {none, eel, run->job.taper};
+    *front = (pareto_front){.model = model, .kind = kind, .n = run->points};
+    for (int k = 0; k < front->n; k++) {
+        memcpy(front->at[k].taper, taper[kind], sizeof eel);
+        limit_power(&front->at[k], front, 0, 0, 0);
+    }
+}
+
 static moray_status work(gait_job *job)
 {
     pareto *run = (pareto *)job;
-    const int kinds = job->taper[0] < job->taper[1] ? PARETO_KINDS : PARETO_KINDS - 1;
+    run->kinds = job->taper[0] < job->taper[1] ? PARETO_KINDS : PARETO_KINDS - 1;
+    run->fronts = ((int)job->snake.model + 1) * run->kinds;
     if (isnan(run->eel_taper))
         run->eel_taper = (2.0 - job->snake.robot.links) / job->snake.robot.links;
-    run->planned = ((int)job->snake.model + 1) * kinds;
+    run->front = calloc((size_t)run->fronts, sizeof *run->front);
+    if (!run->front)
+        return moray_error(MORAY_MEMORY, "no memory for %d fronts", run->fronts);
     MORAY_TRY(gait_job_prepare(job));
-    for (int model = 0; model <= (int)job->snake.model; model++)
-        for (int kind = 0; kind < kinds; kind++)
-            MORAY_TRY(make_or_leave_out(run, (moray_model)model, kind));
-    return moray_ok();
+    for (int f = 0; f < run->fronts; f++)
+        begin_front(run, &run->front[f], (moray_model)(f / run->kinds), f % run->kinds);
+    MORAY_TRY(find_fronts(run));
+    return swim_fronts(run);
 }
 
 static moray_status certified(const gait_job *job)
@@ -161,12 +200,7 @@ static moray_status certified(const gait_job *job)
 
 static void release(gait_job *job)
 {
-    pareto *run = (pareto *)job;
-    for (int f = 0; f < run->fronts; f++) {
-        for (int k = 0; run->front[f].at && k < run->points; k++)
-            gait_job_stage_free(&run->front[f].at[k]);
-        free(run->front[f].at);
-    }
+    free(((pareto *)job)->front);
 }
 
 double pareto_speed_at(const pareto_front *front, double power)

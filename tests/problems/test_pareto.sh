@@ -57,6 +57,8 @@ run --json --links 6 --current 0,0.05 --set points=2 --set taper=0
 check "a front that cannot be had is left out, and nothing else: $code $(cat err)" \
     eval '[ $code -eq 0 ] && [ "$(grep -c "\"left_out\":.*rot_damping" out)" -eq 2 ] && [ "$(grep -c "\"taper\":" out)" -ge 3 ]'
 
+check "two processes find what one does" same_by_jobs --set points=3
+
 refuse 'points = 1' --set points=1
 refuse 'least_share = 2' --set least_share=2
 refuse 'eel_taper = -3' --set eel_taper=-3

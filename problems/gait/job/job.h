@@ -214,6 +214,9 @@ moray_status gait_job_try(const gait_job *job, const moray_gait *gait, moray_mod
 // Error: those of moray_certify and moray_parallel; MORAY_MEMORY.
 moray_status gait_job_prove(gait_job *job, stage *const *at, int n);
 
+// The same without the certificates. Error: that of moray_parallel; MORAY_MEMORY.
+moray_status gait_job_try_all(gait_job *job, stage *const *at, int n);
+
 // Optimises job->ladder for the models of job->over, from the gaits known. Where that cannot be, or there is no
 // baseline on one of the models, it is left out, with its reason. Error: MORAY_INPUT (over), MORAY_MEMORY,
 // MORAY_INTERRUPTED.
@@ -225,7 +228,8 @@ moray_status gait_job_scenarios(const gait_job *job, scenarios *over);
 // The rungs that are of the model on which a gait of the job is found.
 unsigned gait_job_found_on(const gait_job *job, moray_model model);
 
-// Ladders of the first-principles gaits of n stages over the paper's. Error: those of moray_ladder_climb.
+// Ladders over the paper's of the first-principles gaits of those of n stages that were swum. Error: those of
+// moray_ladder_climb.
 moray_status gait_job_climb(const gait_job *job, stage *const *at, int n);
 
 // "the paper's gait", with "for 5 links" where the robot has not the paper's 10.

@@ -94,13 +94,18 @@ unsigned gait_job_found_on(const gait_job *job, moray_model model)
     return model == MORAY_FIRST_PRINCIPLES && own ? own | MORAY_RUNG_CHANGES : 0;
 }
 
+static bool climbs(const stage *at)
+{
+    return at->trial.gait[MORAY_FIRST_PRINCIPLES].omega > 0 && !at->left_out;
+}
+
 moray_status gait_job_climb(const gait_job *job, stage *const *at, int n)
 {
     enum { most = 128 };
     moray_gait gait[most];
     int gaits = 0;
     for (int k = 0; k < n && gaits < most; k++)
-        if (at[k]->solution && !at[k]->left_out)
+        if (climbs(at[k]))
             gait[gaits++] = at[k]->trial.gait[MORAY_FIRST_PRINCIPLES];
     const moray_ladder_spec spec = {.robot = job->snake.robot,
                                     .current = {job->snake.current[0], job->snake.current[1]},
@@ -116,7 +121,7 @@ moray_status gait_job_climb(const gait_job *job, stage *const *at, int n)
         return moray_error(MORAY_MEMORY, "no memory for %d ladders", gaits);
     const moray_status status = moray_ladder_climb(&spec, row);
     for (int k = 0; k < n && next < row + gaits * MORAY_RUNGS; k++) {
-        if (!at[k]->solution || at[k]->left_out)
+        if (!climbs(at[k]))
             continue;
         memcpy(at[k]->ladder, next, sizeof at[k]->ladder);
         next += MORAY_RUNGS;

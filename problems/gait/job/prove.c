@@ -13,6 +13,7 @@ enum { CERTIFY = 2, TASKS }; // before it: swim on the model of that number
 typedef struct {
     const gait_job *job;
     stage *const *at;
+    int parts;              // TASKS, or CERTIFY: all before that
     const moray_gait *gait; // instead of a stage's
     moray_model from;
 } proofs;
@@ -71,8 +72,8 @@ static void prove(int task, void *result, void *self)
 {
     const proofs *all = self;
     proof *of = result;
-    const int part = task % TASKS;
-    stage *at = all->at[task / TASKS];
+    const int part = task % all->parts;
+    stage *at = all->at[task / all->parts];
     of->status = moray_ok();
     if (part == CERTIFY) {
         of->status = gait_job_certify(all->job, at);
@@ -109,26 +110,38 @@ moray_status gait_job_try(const gait_job *job, const moray_gait *gait, moray_mod
     return moray_ok();
 }
 
-static moray_status take(const proof *of, stage *at)
+static moray_status take(const proof *of, int parts, stage *at)
 {
-    MORAY_TRY(of[CERTIFY].status);
-    at->certificate = of[CERTIFY].certificate;
+    if (parts > CERTIFY) {
+        MORAY_TRY(of[CERTIFY].status);
+        at->certificate = of[CERTIFY].certificate;
+    }
     for (int model = 0; model < 2; model++)
         take_trial(&of[model], (moray_model)model, &at->trial);
     at->gain = of[MORAY_FIRST_PRINCIPLES].gain;
     return moray_ok();
 }
 
-moray_status gait_job_prove(gait_job *job, stage *const *at, int n)
+static moray_status do_parts(gait_job *job, stage *const *at, int n, int parts)
 {
-    proofs all = {.job = job, .at = at};
-    proof *of = calloc((size_t)(n * TASKS) + 1, sizeof *of);
+    proofs all = {.job = job, .at = at, .parts = parts};
+    proof *of = calloc((size_t)(n * parts) + 1, sizeof *of);
     if (!of)
         return moray_error(MORAY_MEMORY, "no memory to prove %d gaits", n);
-    moray_ticker_show(&job->ticker, "%s: %s on both models", job->name, n > 1 ? "the gaits" : "the optimised gait");
-    moray_status status = moray_parallel(n * TASKS, sizeof *of, of, prove, &all, job->jobs);
+    moray_status status = moray_parallel(n * parts, sizeof *of, of, prove, &all, job->jobs);
     for (int k = 0; k < n && !moray_failed(status); k++)
-        status = take(of + k * TASKS, at[k]);
+        status = take(of + k * parts, parts, at[k]);
     free(of);
     return status;
+}
+
+moray_status gait_job_prove(gait_job *job, stage *const *at, int n)
+{
+    moray_ticker_show(&job->ticker, "%s: %s on both models", job->name, n > 1 ? "the gaits" : "the optimised gait");
+    return do_parts(job, at, n, TASKS);
+}
+
+moray_status gait_job_try_all(gait_job *job, stage *const *at, int n)
+{
+    return do_parts(job, at, n, CERTIFY);
 }

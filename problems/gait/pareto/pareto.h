@@ -9,21 +9,22 @@
 
 enum { PARETO_KINDS = 3, PARETO_FRONTS = 2 * PARETO_KINDS, PARETO_POINTS = 60 };
 
-// The fastest gaits of one model and one kind of motion, by falling power; the first has no limit of it.
+// The fastest gaits of one model and one kind of motion, by falling power; the first has no limit of it. Plain data:
+// once it is found, the stages hold no solutions.
 typedef struct pareto_front {
     moray_model model;
-    int kind;         // lateral, eel-like, free
-    stage *at;        // [most]; after the proof, those that are kept
-    int n;            // solved, within a limit that makes a difference (or the first), and swum; 0: left out
-    moray_status why; // it is left out
+    int kind;                // lateral, eel-like, free
+    int n;                   // solved, within a limit that makes a difference (or the first), certified and swum
+    stage at[PARETO_POINTS]; // of them
+    moray_status why;        // it is left out, n = 0
 } pareto_front;
 
 typedef struct pareto {
     gait_job job; // its taper: that of the free kind
     int points;
     double eel_taper, least_share; // of the power that the fastest lateral gait uses
-    pareto_front front[PARETO_FRONTS];
-    int fronts, planned; // made, or being made; in all
+    pareto_front *front;           // [fronts], by model and kind; owned
+    int fronts, kinds;
 } pareto;
 
 extern const char *const pareto_kinds[PARETO_KINDS]; // "lateral", "eel-like", "free taper"

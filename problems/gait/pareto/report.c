@@ -115,7 +115,7 @@ static void say_ladder(const pareto_front *front, char *text)
 
 static void find_words(const pareto *run, char *text)
 {
-    const int kinds = run->fronts / (1 + (int)run->job.snake.model);
+    const int kinds = run->kinds;
     for (int f = 0; f < run->fronts; f++)
         if (is_shown(&run->front[f]))
             say_trend(run, &run->front[f], text);
@@ -208,7 +208,7 @@ static void print(const void *found, const moray_report *report)
 static moray_status make_scene(const void *found, moray_swim_scene *scene)
 {
     const pareto *run = found;
-    const pareto_front *lateral = &run->front[run->fronts - run->fronts / (1 + (int)run->job.snake.model)];
+    const pareto_front *lateral = &run->front[run->fronts - run->kinds];
     const pareto_front *eel = lateral + 1;
     const gait_job *job = &run->job;
     const double ways = 6,
