@@ -4,16 +4,16 @@
 // for the Hessian, each with the step at which rounding and truncation are about equal.
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/numeric_map.h"
 
 static const double slope_step = 5e-4, shrink = 0.01;
 static const double bend_step = 1.5e-4; // near the fourth root of the rounding unit
 static const double slope_mark = 1e-3;
-static const double bend_mark[] = {0.07, 0.05}; // wide: a second difference is to stand out of the rounding
-static const double narrow = 1.0 / 16;          // but it is there in smaller steps too, unless a kink has made it
-static const double rounding = 1e-13;           // of a second difference, relative to what it is made of
-enum { shrinks = 3 }; // tries with smaller steps, for points next to the end of the function's domain
+static const double bend_mark = 4e-3; // as narrow as a second difference stands out of the rounding, for kinks
+static const double rounding = 2e-13; // of a second difference, relative to what it is made of
+enum { shrinks = 3 };                 // tries with smaller steps, for points next to the end of the function's domain
 
 struct real_self {
     struct numeric_map map; // first
@@ -105,47 +105,48 @@ static void real_bend_pair(struct numeric_map *map, const double *in, int g, int
     }
 }
 
+static bool has_changed(double before, double after)
+{
+    return after != before && isfinite(after);
+}
+
 // An output depends on x_j where its value changes, however little, when x_j moves, and on both sides: a change on one
 // side alone may be a jump of a branch that x_j decides.
 static void real_mark_slopes(struct numeric_map *map, const double *at)
 {
     struct real_self *self = (struct real_self *)map;
-    for (int j = 0; j < map->n_in; j++)
-        map->direction[j] = 0;
+    memset(map->direction, 0, (size_t)map->n_in * sizeof *map->direction);
     for (int j = 0; j < map->n_in; j++) {
         map->direction[j] = map->size[j] + fabs(at[j]);
         shifted(self, at, -slope_mark, map->direction, 0, NULL, self->out[0]);
         shifted(self, at, slope_mark, map->direction, 0, NULL, self->out[1]);
         for (int i = 0; i < map->n_out; i++)
-            if (self->out[0][i] != map->out[i] && self->out[1][i] != map->out[i] &&
-                isfinite(self->out[0][i] + self->out[1][i]))
+            if (has_changed(map->out[i], self->out[0][i]) && has_changed(map->out[i], self->out[1][i]))
                 moray_mark_slope(map, i, j);
         map->direction[j] = 0;
     }
 }
 
-// bent[n_out] &= f(x + a + b) - f(x + a) - f(x + b) + f(x) is more than rounding, with steps a, b along the directions.
-static void keep_bent(struct real_self *self, const double *at, double side)
+// bent[n_out] &= f(x + a + b) - f(x + a) - f(x + b) + f(x) is more than rounding, with a step along either direction.
+static void keep_bent(struct real_self *self, const double *at, double step)
 {
-    const double a = side * bend_mark[0], b = side * bend_mark[1];
     const double *one = self->map.direction, *other = self->map.other;
-    shifted(self, at, a, one, b, other, self->out[0]);
-    shifted(self, at, a, one, 0, NULL, self->out[1]);
-    shifted(self, at, b, other, 0, NULL, self->out[2]);
+    shifted(self, at, step, one, step, other, self->out[0]);
+    shifted(self, at, step, one, 0, NULL, self->out[1]);
+    shifted(self, at, step, other, 0, NULL, self->out[2]);
     for (int i = 0; i < self->map.n_out; i++) {
         const double here = self->map.out[i], both = self->out[0][i], first = self->out[1][i], second = self->out[2][i];
-        const double size = fabs(both) + fabs(first) + fabs(second) + fabs(here);
         const double sum = both - first - second + here;
-        self->map.bent[i] = self->map.bent[i] && isfinite(sum) && fabs(sum) > rounding * size;
+        self->map.bent[i] = self->map.bent[i] && isfinite(sum) && fabs(sum) > rounding * (fabs(first) + fabs(second));
     }
 }
 
+// On both sides: a kink ahead bends nothing behind.
 static void real_find_bent(struct numeric_map *map, const double *at)
 {
-    for (int i = 0; i < map->n_out; i++)
-        map->bent[i] = true;
-    for (int k = 0; k < 4; k++)
-        keep_bent((struct real_self *)map, at, (k & 1 ? 1 : -1) * (k & 2 ? narrow : 1));
+    memset(map->bent, true, (size_t)map->n_out * sizeof *map->bent);
+    keep_bent((struct real_self *)map, at, -bend_mark);
+    keep_bent((struct real_self *)map, at, bend_mark);
 }
 
 static struct numeric_map *real_twin(const struct numeric_map *map);

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/numeric_map.h"
 #include "moray/map.h"
 #include "moray/num.h"
 
@@ -102,20 +103,141 @@ static void test_swallowed(void)
 }
 
 // Next to the end of its domain the steps shrink.
-static void root(void *self, const double *x, double *out)
+static void line_and_root(void *self, const double *x, double *out)
 {
     (void)self;
-    out[0] = sqrt(x[0]);
+    out[0] = 2 * x[0];
+    out[1] = sqrt(x[0]);
 }
 
 static void test_domain(void)
 {
     moray_map map;
-    const double probe = 1, x = 1e-6;
-    double slope;
-    CHECK_OK(moray_map_from_real(&map, 1, 1, root, NULL, NULL, &probe), "a square root");
-    map.jacobian(map.self, &x, &slope);
-    CHECK_NEAR(slope / (0.5 / sqrt(x)), 1, 1e-5, "slope within 1e-6 of the end of its domain, relative");
+    const double probe = 1;
+    CHECK_OK(moray_map_from_real(&map, 1, 2, line_and_root, NULL, NULL, &probe), "a line and a square root");
+    for (double x = 1e-2; x > 5e-9; x /= 10) {
+        double slope[2];
+        map.jacobian(map.self, &x, slope);
+        CHECK_NEAR(slope[0], 2, 1e-9, "a line's slope");
+        CHECK_NEAR(slope[1] * 2 * sqrt(x), 1, 2e-5, "a root's beside the end of its domain, relative");
+    }
+    moray_map_release(&map);
+}
+
+// ---- What an output is found to depend on, at one point ----
+
+static moray_map look(int n_in, int n_out, moray_real_fn *function, const double *at, const double *size)
+{
+    moray_map map;
+    const struct numeric_probe probe = {.points = at, .size = size, .n = 1};
+    CHECK_OK(moray_real_map_new(&map, n_in, n_out, function, NULL, NULL, &probe), "a map by what is at one point");
+    return map;
+}
+
+// Of no two outputs beside each other have values in common.
+static void sides(void *self, const double *x, double *out)
+{
+    (void)self;
+    out[0] = 1;
+    out[1] = 2 + x[0];
+    out[2] = 3 + (x[0] > 0);
+    out[3] = 5 + x[0];
+    out[4] = 7 + (x[0] < 0);
+    out[5] = 9;
+    out[6] = x[0] < 0 ? NAN : 10 + x[0];
+    out[7] = 11 - x[0];
+    out[8] = x[0] > 0 ? NAN : 12 + x[0];
+    out[9] = 13 - x[0];
+    out[10] = x[0] > 0 ? INFINITY : 14 + x[0];
+}
+
+// What changes, and to a number, on both sides is felt; a jump, or the end of the domain, is no slope.
+static void test_sides(void)
+{
+    static const bool felt[11] = {[1] = true, [3] = true, [7] = true, [9] = true};
+    const double at[1] = {0}, size[1] = {1}, none[11] = {0};
+    double values[11];
+    moray_map map = look(1, 11, sides, at, size);
+    for (int i = 0; i < 11; i++) {
+        bool found;
+        entry(&map.jac, none, i, 0, &found);
+        CHECK(found == felt[i], "output %d is %sfound to have a slope", i, felt[i] ? "" : "not ");
+    }
+    map.jacobian(map.self, at, values);
+    CHECK_NEAR(values[0] + values[1] + values[2] + values[3], 0, 1e-9, "the slopes found, two up and two down");
+    moray_map_release(&map);
+}
+
+static void shifted_sum(void *self, const double *x, double *out)
+{
+    (void)self;
+    out[0] = 1 + x[0] + x[1];
+}
+
+// An input moves by a part of its size and of where it is, wherever that lies.
+static void test_steps(void)
+{
+    static const double where[][2] = {{0, 0}, {1, 1}, {-1, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    static const double tiny = 1e-30;
+    for (size_t k = 0; k < sizeof where / sizeof *where; k++) {
+        const double size[] = {where[k][0] != 0 && where[k][1] == 0 ? tiny : 1,
+                               where[k][1] != 0 && where[k][0] == 0 ? tiny : 1};
+        moray_map map = look(2, 1, shifted_sum, where[k], size);
+        CHECK(map.jac.nnz == 2, "at (%g, %g), of sizes (%g, %g), both inputs are felt: %d", where[k][0], where[k][1],
+              size[0], size[1], map.jac.nnz);
+        moray_map_release(&map);
+    }
+}
+
+static double hinge(double x)
+{
+    return fmax(x, 0);
+}
+
+// Lines through numbers that no binary fraction is, with kinks on one side, on both and at the point.
+static void straight(void *self, const double *x, double *out)
+{
+    (void)self;
+    out[0] = x[0] / 3 - x[1] / 7 - 1e3 / 3;
+    out[1] = x[0] / 3 + x[1] / 7 + 1e3 / 3;
+    out[2] = x[0] / 3 - 1e3 * x[1];
+    out[3] = 1e3 * x[0] - x[1] / 3;
+    out[4] = x[0] + hinge(x[0] - 1e-3);
+    out[5] = x[0] + hinge(-x[0] - 1e-3);
+    out[6] = x[0] + hinge(x[0] - 0.02) + hinge(-x[0] - 0.02) + hinge(x[0]);
+    out[7] = x[0] + 1e-9 * (1 + x[0]) * x[1]; // whose bend is small, and no rounding
+}
+
+static void test_straight(void)
+{
+    static const double size[] = {1, 1};
+    static const double at[][2] = {{0, 0}, {0, 0.3}, {0, -0.3}, {0, 1e3}, {0, -1e3}};
+    for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
+        moray_map map = look(2, 8, straight, at[k], size);
+        CHECK(map.hess.nnz == 1 && map.hess.row[0] == 1 && map.hess.col[0] == 0,
+              "at %g: of lines and kinks none bends, of products even a small one: %d", at[k][1], map.hess.nnz);
+        moray_map_release(&map);
+    }
+}
+
+// Every pair of three groups that meet.
+static void volume(void *self, const double *x, double *out)
+{
+    (void)self;
+    out[0] = x[0] * x[1] * x[2];
+}
+
+static void test_pairs(void)
+{
+    const double at[] = {0.5, -2, 3}, size[] = {1, 1, 1}, weight = 2;
+    double values[3];
+    bool found;
+    moray_map map = look(3, 1, volume, at, size);
+    CHECK(map.hess.nnz == 3, "a product of three bends in three pairs: %d", map.hess.nnz);
+    map.hessian(map.self, at, &weight, values);
+    CHECK_NEAR(entry(&map.hess, values, 1, 0, &found), weight * at[2], 1e-6, "by the first two");
+    CHECK_NEAR(entry(&map.hess, values, 2, 0, &found), weight * at[1], 1e-6, "by the first and last");
+    CHECK_NEAR(entry(&map.hess, values, 2, 1, &found), weight * at[0], 1e-6, "by the last two");
     moray_map_release(&map);
 }
 
@@ -234,6 +356,10 @@ int main(void)
     test_real();
     test_swallowed();
     test_domain();
+    test_sides();
+    test_steps();
+    test_straight();
+    test_pairs();
     test_imaginary();
     test_num();
     return tap_done();
