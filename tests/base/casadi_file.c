@@ -162,6 +162,102 @@ BODY(square)
     return (void)iw, (void)w, (void)mem, res[0][0] = arg[0][0] * arg[0][0], arg[0][0] < -9;
 }
 
+// ---- Three arguments and three results, some sparse; derivatives that take the results
+static const integer diagonal[] = {2, 2, 0, 1, 2, 0, 1}, three[] = {3, 1, 1}, one[] = {1, 1, 1};
+static const integer two[] = {2, 1, 1}, corner[] = {3, 2, 0, 1, 1, 1};
+static const integer two_by_a[] = {2, 4, 0, 1, 1, 1, 2, 0, 1}, two_by_b[] = {2, 3, 0, 1, 2, 2, 0, 1};
+static const integer corner_by_a[] = {6, 4, 0, 1, 1, 1, 2, 1, 1}, corner_by_b[] = {6, 3, 0, 0, 1, 1, 1};
+static const integer one_by_a[] = {1, 4, 0, 0, 0, 0, 0}, one_by_b[] = {1, 3, 0, 0, 0, 1, 0};
+static const integer two_by_c[] = {2, 1, 0, 0}, corner_by_c[] = {6, 1, 0, 0}, ac[] = {4, 1, 0, 0};
+static const integer aa[] = {4, 4, 0, 1, 1, 1, 2, 3, 0}, ab[] = {4, 3, 0, 1, 3, 3, 0, 0, 3};
+static const integer ba[] = {3, 4, 0, 2, 2, 2, 3, 0, 1, 1}, bb[] = {3, 3, 0, 0, 1, 1, 1}, bc[] = {3, 1, 0, 1, 2};
+static const integer cc[] = {1, 1, 0, 0};
+static int couplings;
+
+static int couple_all(const double **arg, double **res)
+{
+    const double *a = arg[0], *b = arg[1], *c = arg[2];
+    couplings++;
+    res[0][0] = a[0] * b[0];
+    res[0][1] = exp(b[1]) * a[1];
+    res[1][0] = a[0] * a[1] * b[1];
+    res[2][0] = b[2] * c[0];
+    return 0;
+}
+
+// raised: exp(b[1])
+static int slopes_of_couple(const double **arg, double raised, double **res)
+{
+    const double *a = arg[0], *b = arg[1], *c = arg[2];
+    res[0][0] = b[0];
+    res[0][1] = raised;
+    res[1][0] = a[0];
+    res[1][1] = raised * a[1];
+    res[3][0] = a[1] * b[1];
+    res[3][1] = a[0] * b[1];
+    res[4][0] = a[0] * a[1];
+    res[7][0] = c[0];
+    res[8][0] = b[2];
+    return 0;
+}
+
+FUNCTION(couple, 3, 3);
+SPARSITY(couple, in, diagonal, three, one)
+SPARSITY(couple, out, two, corner, one)
+BODY(couple)
+{
+    return (void)iw, (void)w, (void)mem, couple_all(arg, res);
+}
+FUNCTION(jac_couple, 6, 9);
+SPARSITY(jac_couple, in, diagonal, three, one, two, corner, one)
+SPARSITY(jac_couple, out, two_by_a, two_by_b, two_by_c, corner_by_a, corner_by_b, corner_by_c, one_by_a, one_by_b, one)
+BODY(jac_couple)
+{
+    const double *a = arg[0], *b = arg[1], *first = arg[3], *second = arg[4], *third = arg[5];
+    (void)iw, (void)w, (void)mem, slopes_of_couple(arg, first[1] / a[1], res);
+    res[3][0] = second[0] / a[0];
+    res[4][0] = second[0] / b[1];
+    res[7][0] = third[0] / b[2];
+    return 0;
+}
+FUNCTION(jac_adj1_couple, 9, 27);
+SPARSITY(jac_adj1_couple, in, diagonal, three, one, two, corner, one, two, corner, one)
+SPARSITY(jac_adj1_couple, out, aa, ab, ac, cc, cc, cc, cc, cc, cc, ba, bb, bc, cc, cc, cc, cc, cc, cc, one_by_a,
+         one_by_b, cc, cc, cc, cc, cc, cc, cc)
+BODY(jac_adj1_couple)
+{
+    const double *a = arg[0], *b = arg[1], raised = arg[3][1] / a[1], *weight = arg[6], of_corner = arg[7][0];
+    (void)iw, (void)w, (void)mem;
+    res[0][0] = res[0][1] = of_corner * b[1];
+    res[1][0] = res[9][0] = weight[0];
+    res[1][1] = res[9][1] = of_corner * a[1];
+    res[1][2] = res[9][2] = weight[1] * raised + of_corner * a[0];
+    res[10][0] = weight[1] * raised * a[1];
+    res[11][0] = res[19][0] = arg[8][0];
+    return 0;
+}
+
+// ---- The same without a Hessian, whose Jacobian takes no results
+FUNCTION(lame, 3, 3);
+SPARSITY(lame, in, diagonal, three, one)
+SPARSITY(lame, out, two, corner, one)
+BODY(lame)
+{
+    return (void)iw, (void)w, (void)mem, couple_all(arg, res);
+}
+FUNCTION(jac_lame, 6, 9);
+SPARSITY(jac_lame, in, diagonal, three, one, two_by_c, cc, cc)
+SPARSITY(jac_lame, out, two_by_a, two_by_b, two_by_c, corner_by_a, corner_by_b, corner_by_c, one_by_a, one_by_b, one)
+BODY(jac_lame)
+{
+    return (void)iw, (void)w, (void)mem, slopes_of_couple(arg, exp(arg[1][1]), res);
+}
+EXPORT int lame_calls(void);
+EXPORT int lame_calls(void)
+{
+    return couplings;
+}
+
 // ---- What breaks the convention
 static const integer unsound[] = {3, 1, 0, 2, 1, 7};
 FUNCTION(crooked, 1, 1);
