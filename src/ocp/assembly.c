@@ -76,11 +76,11 @@ void moray_assemble_constraints(const struct transcription *t, double *g)
             interval_defects(t, p, &t->layout.phase[p].interval[k], g);
         path_and_integrals(t, p, g);
         for (int end = 0; end < 2; end++)
-            if (t->layout.phase[p].u_row[end] >= 0)
+            if (t->layout.phase[p].u_row[end] != absent)
                 end_controls(t, p, end, g);
         moray_assemble_holds(t, p, g);
         moray_assemble_sights(t, p, g);
-        if (t->layout.phase[p].length_row >= 0)
+        if (t->layout.phase[p].length_row != absent)
             g[t->layout.phase[p].length_row] = duration(t, p);
     }
     memcpy(g + t->layout.events, t->end_out + 1, (size_t)(t->endpoint->n_out - 1) * sizeof *g);
@@ -96,9 +96,9 @@ void moray_put_input(const struct transcription *t, int p, const struct node *no
         triplets_put(out, row, column[in], value);
         return;
     }
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         triplets_put(out, row, layout->t0, value * (1 - node->tau));
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         triplets_put(out, row, layout->tf, value * node->tau);
 }
 
@@ -106,9 +106,9 @@ void moray_put_input(const struct transcription *t, int p, const struct node *no
 static void put_duration(const struct transcription *t, int p, int row, double factor, triplets *out)
 {
     const struct phase_layout *layout = &t->layout.phase[p];
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         triplets_put(out, row, layout->t0, -factor);
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         triplets_put(out, row, layout->tf, factor);
 }
 
@@ -191,11 +191,11 @@ void moray_walk_jacobian(const struct transcription *t, triplets *out)
         for (int m = 0; m < t->ocp->phase[p].nq; m++)
             triplets_put(out, layout->integral_row + m, layout->q + m, 1);
         for (int end = 0; end < 2; end++)
-            if (layout->u_row[end] >= 0)
+            if (layout->u_row[end] != absent)
                 put_end_controls(t, p, end, out);
         moray_walk_holds(t, p, out);
         moray_walk_sights(t, p, out);
-        if (layout->length_row >= 0)
+        if (layout->length_row != absent)
             put_duration(t, p, layout->length_row, 1, out);
     }
     const moray_pattern *jac = &t->endpoint->jac;
@@ -241,11 +241,11 @@ static void put_curvature(const struct transcription *t, int p, const struct nod
             triplets_put_lower(out, column[row], column[col], value);
             continue;
         }
-        if (t0 >= 0)
+        if (t0 != absent)
             triplets_put_lower(out, t0, col < time ? column[col] : t0, value * before * (col < time ? 1 : before));
-        if (tf >= 0)
+        if (tf != absent)
             triplets_put_lower(out, tf, col < time ? column[col] : tf, value * after * (col < time ? 1 : after));
-        if (t0 >= 0 && tf >= 0 && col == time)
+        if (t0 != absent && tf != absent && col == time)
             triplets_put_lower(out, tf, t0, value * before * after);
     }
 }
@@ -270,11 +270,11 @@ static void put_duration_products(const struct transcription *t, int p, int n, c
         }
         const bool of_time = jac->col[k] == time;
         const int other = of_time ? -1 : column[jac->col[k]];
-        if (t0 >= 0)
+        if (t0 != absent)
             triplets_put_lower(out, t0, of_time ? t0 : other, by_t0 * (of_time ? 2 * (1 - tau) : 1));
-        if (tf >= 0)
+        if (tf != absent)
             triplets_put_lower(out, tf, of_time ? tf : other, by_tf * (of_time ? 2 * tau : 1));
-        if (of_time && t0 >= 0 && tf >= 0)
+        if (of_time && t0 != absent && tf != absent)
             triplets_put_lower(out, tf, t0, by_t0 * tau + by_tf * (1 - tau));
     }
 }
@@ -295,7 +295,7 @@ static void put_node_hessian(const struct transcription *t, int p, int n, const 
     if (!out->recording)
         map->hessian(map->self, t->phase[p].in + n * map->n_in, t->weight, t->map_hess);
     put_curvature(t, p, node, column, out);
-    if (layout->t0 >= 0 || layout->tf >= 0)
+    if (layout->t0 != absent || layout->tf != absent)
         put_duration_products(t, p, n, column, out);
 }
 

@@ -43,9 +43,9 @@ static void guess_from_samples(const struct transcription *t, int p, const moray
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     const double first = samples->time[0], last = samples->time[samples->n - 1];
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         x[layout->t0] = first;
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         x[layout->tf] = last;
     for (int n = 0; n < layout->nodes; n++) {
         const struct node *node = &layout->node[n];
@@ -80,7 +80,7 @@ static const double no_length = 1e-3; // of what the bounds leave: less is none
 // A phase that may begin at any late time begins where the one before it ends.
 static double start_after(const struct transcription *t, int p, const double *x, double otherwise)
 {
-    if (p == 0 || t->layout.phase[p].t0 < 0 || t->ocp->phase[p].t0.upper < MORAY_ENDLESS)
+    if (p == 0 || t->layout.phase[p].t0 == absent || t->ocp->phase[p].t0.upper < MORAY_ENDLESS)
         return otherwise;
     const int before = t->layout.phase[p - 1].tf;
     return within(before >= 0 ? x[before] : t->ocp->phase[p - 1].tf.lower, t->ocp->phase[p].t0);
@@ -99,17 +99,17 @@ static void guess_times(const struct transcription *t, int p, double *x)
     else if (tf <= t0 && start <= -MORAY_ENDLESS)
         t0 = within(tf - 1, phase->t0);
     else if (tf - t0 <= no_length * width) {
-        t0 = layout->t0 < 0 ? start : within(start + width * p / t->ocp->phases, phase->t0);
-        tf = layout->tf < 0 ? phase->tf.upper : within(start + width * (p + 1) / t->ocp->phases, phase->tf);
+        t0 = layout->t0 == absent ? start : within(start + width * p / t->ocp->phases, phase->t0);
+        tf = layout->tf == absent ? phase->tf.upper : within(start + width * (p + 1) / t->ocp->phases, phase->tf);
     }
     if (phase->has_duration && (tf - t0 < phase->duration.lower || tf - t0 > phase->duration.upper)) {
         const double length = within(moray_bounds_middle(phase->duration), moray_between(0, MORAY_INFINITY));
         tf = within(t0 + length, phase->tf);
         t0 = within(tf - length, phase->t0);
     }
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         x[layout->t0] = t0;
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         x[layout->tf] = tf;
 }
 
@@ -140,7 +140,7 @@ static moray_status guess_endless_time(struct transcription *t, int p, double *x
         return moray_error(MORAY_MEMORY, "no memory for the guess of phase %s", phase->name);
     const double needed = moray_needed_duration(t, p, x, size);
     x[layout->tf] = fmax(phase->tf.lower, t0 + (needed > 0 ? needed : t->phase[p].tf - t->phase[p].t0));
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         x[layout->t0] = t0;
     free(size);
     return moray_ok();
@@ -151,7 +151,7 @@ static moray_status guess_endless_times(struct transcription *t, const moray_gue
     for (int p = 0; p < t->ocp->phases; p++) {
         const struct phase *phase = &t->ocp->phase[p];
         const bool sampled = guess && (guess->from || (guess->phase && guess->phase[p].n != 0));
-        if (!sampled && t->layout.phase[p].tf >= 0 && phase->tf.upper >= MORAY_ENDLESS && !phase->has_duration &&
+        if (!sampled && t->layout.phase[p].tf != absent && phase->tf.upper >= MORAY_ENDLESS && !phase->has_duration &&
             moray_transcription_jacobians(t, x))
             MORAY_TRY(guess_endless_time(t, p, x));
     }
@@ -187,9 +187,9 @@ static void guess_from_solution(const struct transcription *t, int p, const mora
     const size_t nodes = (size_t)(layout->q - layout->node[0].x);
     double t0, tf;
     moray_solution_times(from, p, &t0, &tf);
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         x[layout->t0] = t0;
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         x[layout->tf] = tf;
     if (!guess->along_time && moray_mesh_equal(&old->mesh, &layout->mesh)) {
         memcpy(x + layout->node[0].x, from->iterate.x + old->node[0].x, nodes * sizeof *x);
@@ -217,7 +217,7 @@ static void guess_defined(const struct transcription *t, const double *g, double
         for (int m = 0; m < t->ocp->phase[p].nq; m++)
             x[layout->q + m] -= g[layout->integral_row + m];
         for (int end = 0; end < 2; end++)
-            for (int r = 0; r < t->ocp->phase[p].nu && layout->u_row[end] >= 0; r++)
+            for (int r = 0; r < t->ocp->phase[p].nu && layout->u_row[end] != absent; r++)
                 x[layout->u_end[end] + r] -= g[layout->u_row[end] + r];
         for (int k = 0; layout->sight && k < t->ocp->phase[p].observed.n; k++)
             for (int r = 0; r < t->ocp->phase[p].nx + t->ocp->phase[p].nu; r++)
@@ -239,7 +239,7 @@ static moray_status fill_phase(struct transcription *t, int p, const moray_guess
     if (layout->sight)
         memset(x + layout->sight[0].x, 0, (size_t)(phase->observed.n * (phase->nx + phase->nu)) * sizeof *x);
     for (int end = 0; end < 2; end++)
-        for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
+        for (int r = 0; r < phase->nu && layout->u_row[end] != absent; r++)
             x[layout->u_end[end] + r] = moray_bounds_middle(phase->u[r]);
     if (guess && guess->from) {
         guess_from_solution(t, p, guess, x);

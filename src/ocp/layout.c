@@ -60,7 +60,7 @@ static void number_end_controls(struct layout *layout, struct phase_layout *phas
 {
     const struct node *node = &phase->node[end ? phase->nodes - 1 : 0];
     const bool wanted = p->end_controls || p->bounds_end_controls;
-    phase->u_end[end] = phase->u_row[end] = -1;
+    phase->u_end[end] = phase->u_row[end] = absent;
     if (node->collocated) {
         phase->u_end[end] = node->x + p->nx;
     } else if (wanted) {
@@ -95,11 +95,11 @@ static moray_status number_phase(struct layout *layout, struct phase_layout *pha
         phase->node[n].hold = layout->rows;
         layout->rows += phase->node[n].before >= 0 ? p->n_held : 0;
     }
-    phase->t0 = moray_bounds_are_fixed(p->t0) ? -1 : layout->columns++;
-    phase->tf = moray_bounds_are_fixed(p->tf) ? -1 : layout->columns++;
-    const bool may_turn = phase->t0 >= 0 && phase->tf >= 0 && p->t0.upper > p->tf.lower;
-    const bool measured = phase->t0 >= 0 && phase->tf >= 0 && p->has_duration;
-    phase->length_row = may_turn || measured ? layout->rows++ : -1;
+    phase->t0 = moray_bounds_are_fixed(p->t0) ? absent : layout->columns++;
+    phase->tf = moray_bounds_are_fixed(p->tf) ? absent : layout->columns++;
+    const bool may_turn = phase->t0 != absent && phase->tf != absent && p->t0.upper > p->tf.lower;
+    const bool measured = phase->t0 != absent && phase->tf != absent && p->has_duration;
+    phase->length_row = may_turn || measured ? layout->rows++ : absent;
     return moray_place_sights(layout, phase, p);
 }
 
@@ -155,8 +155,8 @@ void moray_layout_span(const struct layout *layout, const moray_ocp *ocp, const 
                        double *tf)
 {
     const struct phase_layout *phase = &layout->phase[p];
-    *t0 = phase->t0 < 0 ? ocp->phase[p].t0.lower : x[phase->t0];
-    *tf = phase->tf < 0 ? ocp->phase[p].tf.lower : x[phase->tf];
+    *t0 = phase->t0 == absent ? ocp->phase[p].t0.lower : x[phase->t0];
+    *tf = phase->tf == absent ? ocp->phase[p].tf.lower : x[phase->tf];
 }
 
 double moray_layout_time(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, double tau)

@@ -29,18 +29,20 @@ struct sight {
     int interval, x, row;
 };
 
+enum { absent = -1 }; // in the place of a column or row
+
 struct phase_layout {
     struct mesh mesh;
     int nodes;
     struct node *node;
     struct interval *interval;
-    int t0, tf;          // columns, -1 where fixed
+    int t0, tf;          // columns, absent where fixed
     int q;               // first column of the integrals
     int integral_row;    // first row of their definitions
-    int u_end[2];        // first columns of the controls at the ends: of a node, or after q; -1 where nothing asks
-    int u_row[2];        // first rows of the definitions of those after q, after those of the integrals; else -1
+    int u_end[2];        // first columns of the controls at the ends: of a node, or after q; absent where nothing asks
+    int u_row[2];        // first rows of the definitions of those after q, after those of the integrals; else absent
     int hold_row;        // first row of all that hold controls
-    int length_row;      // tf - t0 >= 0, or within its bounds; -1 where the bounds of the times say so already
+    int length_row;      // tf - t0 >= 0, or within its bounds; absent where those of the times say so already
     struct sight *sight; // [observations] of data that move; else NULL
 };
 

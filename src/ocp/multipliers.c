@@ -73,12 +73,12 @@ static void carry_bounds(const struct transfer *t, const double *source, double 
     memcpy(target + t->new->node[0].x, source + t->old->node[0].x, state);
     memcpy(target + t->new->node[t->new->nodes - 1].x, source + t->old->node[t->old->nodes - 1].x, state);
     for (int end = 0; end < 2 && phase->bounds_end_controls; end++)
-        if (t->new->u_end[end] >= 0 && t->old->u_end[end] >= 0)
+        if (t->new->u_end[end] != absent && t->old->u_end[end] != absent)
             memcpy(target + t->new->u_end[end], source + t->old->u_end[end], (size_t)phase->nu * sizeof *target);
     memcpy(target + t->new->q, source + t->old->q, (size_t)phase->nq * sizeof *target);
-    if (t->new->t0 >= 0 && t->old->t0 >= 0)
+    if (t->new->t0 != absent && t->old->t0 != absent)
         target[t->new->t0] = source[t->old->t0];
-    if (t->new->tf >= 0 && t->old->tf >= 0)
+    if (t->new->tf != absent && t->old->tf != absent)
         target[t->new->tf] = source[t->old->tf];
 }
 
@@ -122,10 +122,10 @@ static moray_status carry_phase(const moray_guess *guess, moray_solution *to, in
     memcpy(to->iterate.lambda + t.new->integral_row, from->iterate.lambda + t.old->integral_row,
            (size_t)phase->nq * sizeof *t.here);
     for (int end = 0; end < 2; end++)
-        if (t.new->u_row[end] >= 0 && t.old->u_row[end] >= 0)
+        if (t.new->u_row[end] != absent && t.old->u_row[end] != absent)
             memcpy(to->iterate.lambda + t.new->u_row[end], from->iterate.lambda + t.old->u_row[end],
                    (size_t)phase->nu * sizeof *t.here);
-    if (t.new->length_row >= 0 && t.old->length_row >= 0)
+    if (t.new->length_row != absent && t.old->length_row != absent)
         to->iterate.lambda[t.new->length_row] = from->iterate.lambda[t.old->length_row];
     free(t.density);
     return moray_ok();

@@ -41,7 +41,7 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
             for (int r = 0; r < phase->nx; r++)
                 g_scale[layout->interval[k].defect + i * phase->nx + r] = 1 / size[r];
     for (int end = 0; end < 2; end++)
-        for (int r = 0; r < phase->nu && layout->u_row[end] >= 0; r++)
+        for (int r = 0; r < phase->nu && layout->u_row[end] != absent; r++)
             x_scale[layout->u_end[end] + r] = g_scale[layout->u_row[end] + r] = 1 / size[phase->nx + r];
     const double *in_node = x_scale + layout->node[1].x; // which every scheme collocates
     moray_fill_holds(layout, phase, in_node + phase->nx, g_scale);
@@ -53,9 +53,9 @@ static void scale_phase(struct transcription *t, int p, const double *x, bool fo
         x_scale[layout->q + m] = g_scale[layout->integral_row + m] =
             1 / (found && !moray_is_rounding(here, usual) ? here : usual);
     }
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         x_scale[layout->t0] = 1 / size_of_time(phase->t0, t0, tf, phase->tf.upper, found);
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         x_scale[layout->tf] = 1 / size_of_time(phase->tf, tf, t0, phase->t0.lower, found);
 }
 

@@ -215,8 +215,8 @@ const double *moray_sensitivity_integrals(const moray_sensitivity *s, int phase)
 void moray_sensitivity_times(const moray_sensitivity *s, int phase, double *t0, double *tf)
 {
     const struct phase_layout *layout = &s->solution->transcription->layout.phase[phase];
-    *t0 = layout->t0 >= 0 ? s->slope.x[layout->t0] : s->t0[phase];
-    *tf = layout->tf >= 0 ? s->slope.x[layout->tf] : s->tf[phase];
+    *t0 = layout->t0 != absent ? s->slope.x[layout->t0] : s->t0[phase];
+    *tf = layout->tf != absent ? s->slope.x[layout->tf] : s->tf[phase];
 }
 
 void moray_sensitivity_ends(const moray_sensitivity *s, int phase, double *x0, double *xf)

@@ -107,7 +107,7 @@ static bool is_out_of_scale(const moray_solution *solution)
         double t0, tf;
         const struct phase_layout *layout = &t->layout.phase[p];
         moray_layout_span(&t->layout, t->ocp, solution->iterate.x, p, &t0, &tf);
-        if (layout->tf >= 0 && is_small((tf - t0) * t->nlp.x_scale[layout->tf]))
+        if (layout->tf != absent && is_small((tf - t0) * t->nlp.x_scale[layout->tf]))
             return true;
         for (int m = layout->q; m < layout->q + t->ocp->phase[p].nq; m++)
             if (is_small(solution->iterate.x[m] * t->nlp.x_scale[m]))

@@ -23,15 +23,15 @@ static void set_column(struct transcription *t, int column, moray_bounds bounds)
 static void set_times(struct transcription *t, const struct phase *phase, const struct phase_layout *layout)
 {
     moray_bounds t0 = phase->t0, tf = phase->tf;
-    if (layout->tf < 0)
+    if (layout->tf == absent)
         t0.upper = fmax(fmin(t0.upper, tf.upper), t0.lower);
-    if (layout->t0 < 0)
+    if (layout->t0 == absent)
         tf.lower = fmin(fmax(tf.lower, t0.lower), tf.upper);
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         set_column(t, layout->t0, t0);
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         set_column(t, layout->tf, tf);
-    if (layout->length_row >= 0)
+    if (layout->length_row != absent)
         set_row(t, layout->length_row, phase->duration);
 }
 
@@ -59,7 +59,7 @@ static void set_phase_bounds(struct transcription *t, int p)
             set_row(t, node->path + r, phase->c[r]);
     }
     for (int end = 0; end < 2; end++)
-        for (int r = 0; r < phase->nu && layout->u_end[end] >= 0; r++)
+        for (int r = 0; r < phase->nu && layout->u_end[end] != absent; r++)
             set_column(t, layout->u_end[end] + r, end ? phase->uf[r] : phase->u0[r]);
     free_held(t, phase, layout);
     for (int r = 0; r < phase->nq; r++)

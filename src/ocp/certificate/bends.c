@@ -171,7 +171,7 @@ static void check_phase(const struct witness *w, struct bending *b, int p, struc
     b->size = w->phase[p].size;
     b->box = w->phase[p].box;
     b->column = NULL;
-    b->timeless = t->layout.phase[p].t0 < 0 && t->layout.phase[p].tf < 0;
+    b->timeless = t->layout.phase[p].t0 == absent && t->layout.phase[p].tf == absent;
     moray_dynamics_multipliers(t, p, lambda, t->phase[p].lambda);
     for (int n = 0; n < t->layout.phase[p].nodes; n++) {
         const struct node *node = &t->layout.phase[p].node[n];

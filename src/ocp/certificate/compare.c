@@ -37,7 +37,8 @@ static void compare(const struct witness *w, int p, int n, const double *in_use,
     const double *jac = found->jac, *doubt = found->doubt, *kink = found->kink;
     const double *size = p < 0 ? w->end_size : w->phase[p].size;
     const double *out_size = p < 0 ? w->end_out_size : w->phase[p].out_size;
-    const bool timeless = p >= 0 && t->layout.phase[p].t0 < 0 && t->layout.phase[p].tf < 0; // no variable moves t
+    const bool timeless =
+        p >= 0 && t->layout.phase[p].t0 == absent && t->layout.phase[p].tf == absent; // no variable moves t
     for (int k = 0; k < block - (timeless ? map->n_out : 0); k++) {
         const int row = k % map->n_out, col = k / map->n_out;
         const double far = (distance(in_use[k], jac[k], kink[k]) - certain * doubt[k]) * size[col];

@@ -37,9 +37,9 @@ static double weighted(const struct measure *m, const struct phase_witness *p, i
 
 static void add_time(struct measure *m, const struct phase_layout *layout, double to_t0, double to_tf)
 {
-    if (layout->t0 >= 0)
+    if (layout->t0 != absent)
         m->gradient[layout->t0] += to_t0;
-    if (layout->tf >= 0)
+    if (layout->tf != absent)
         m->gradient[layout->tf] += to_tf;
 }
 
@@ -102,11 +102,11 @@ static void add_linear(struct measure *m, int p)
     for (int q = 0; q < m->t->ocp->phase[p].nq; q++)
         m->gradient[layout->q + q] += lambda[layout->integral_row + q];
     for (int end = 0; end < 2; end++)
-        if (layout->u_row[end] >= 0)
+        if (layout->u_row[end] != absent)
             add_end_controls(m, p, end);
     moray_add_holds(m->t, p, lambda, m->gradient);
     moray_add_sights(m->t, p, lambda, m->gradient);
-    if (layout->length_row >= 0)
+    if (layout->length_row != absent)
         add_time(m, layout, -lambda[layout->length_row], lambda[layout->length_row]);
 }
 

@@ -20,12 +20,12 @@ void moray_witness_columns(const struct witness *e, double *size)
                    (size_t)(phase->nx + (layout->node[n].collocated ? phase->nu : 0)) * sizeof *size);
         memcpy(size + layout->q, e->phase[p].integral, (size_t)phase->nq * sizeof *size);
         for (int end = 0; end < 2; end++)
-            if (layout->u_row[end] >= 0)
+            if (layout->u_row[end] != absent)
                 memcpy(size + layout->u_end[end], e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
         moray_fill_sights(layout, phase, e->phase[p].size, false, size);
-        if (layout->t0 >= 0)
+        if (layout->t0 != absent)
             size[layout->t0] = e->duration;
-        if (layout->tf >= 0)
+        if (layout->tf != absent)
             size[layout->tf] = e->duration;
     }
     memcpy(size + t->layout.s, e->end_size + moray_endpoint_inputs(t->ocp) - t->ocp->ns,
@@ -50,11 +50,11 @@ void moray_witness_rows(const struct witness *e, double *size)
                        (size_t)phase->nx * sizeof *size);
         memcpy(size + layout->integral_row, e->phase[p].integral, (size_t)phase->nq * sizeof *size);
         for (int end = 0; end < 2; end++)
-            if (layout->u_row[end] >= 0)
+            if (layout->u_row[end] != absent)
                 memcpy(size + layout->u_row[end], e->phase[p].size + phase->nx, (size_t)phase->nu * sizeof *size);
         moray_fill_holds(layout, phase, e->phase[p].size + phase->nx, size);
         moray_fill_sights(layout, phase, e->phase[p].size, true, size);
-        if (layout->length_row >= 0)
+        if (layout->length_row != absent)
             size[layout->length_row] = e->duration;
     }
     memcpy(size + t->layout.events, e->end_out_size + 1, (size_t)(t->endpoint->n_out - 1) * sizeof *size);

@@ -25,7 +25,7 @@ void moray_visit_bands(const struct transcription *t, void (*visit)(const struct
             visit(&(struct band){band_dynamics, true, p, r}, self);
         for (int m = 0; m < phase->nq; m++)
             visit(&(struct band){band_single, true, -1, layout->phase[p].integral_row + m}, self);
-        if (layout->phase[p].length_row >= 0)
+        if (layout->phase[p].length_row != absent)
             visit(&(struct band){band_single, true, -1, layout->phase[p].length_row}, self);
         const int next = p + 1 < layout->phases ? layout->phase[p + 1].node[0].x : layout->s;
         for (int j = layout->phase[p].q; j < next; j++)

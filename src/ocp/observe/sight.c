@@ -177,9 +177,9 @@ void moray_walk_sights(const struct transcription *t, int p, triplets *out)
         const struct view v = look(t, p, k);
         for (int r = 0; r < nx + nu; r++) {
             triplets_put(out, v.sight->row + r, v.sight->x + r, 1);
-            if (layout->t0 >= 0)
+            if (layout->t0 != absent)
                 triplets_put(out, v.sight->row + r, layout->t0, slope_by(t, p, &v, r, 0));
-            if (layout->tf >= 0)
+            if (layout->tf != absent)
                 triplets_put(out, v.sight->row + r, layout->tf, slope_by(t, p, &v, r, 1));
         }
         for (int r = 0; r < nx; r++)
@@ -215,7 +215,7 @@ void moray_add_sights(const struct transcription *t, int p, const double *lambda
         for (int r = 0; r < nx + nu; r++) {
             gradient[v.sight->x + r] += own[r];
             for (int end = 0; end < 2; end++)
-                if (time[end] >= 0)
+                if (time[end] != absent)
                     gradient[time[end]] +=
                         own[r] * (r < nx ? -v.T * by[end] * sum_of_f(t, p, &v, v.ell, r) : slope_by(t, p, &v, r, end));
         }
@@ -273,10 +273,10 @@ void moray_bend_sights(const struct transcription *t, int p, const double *lambd
                 double sum = 0;
                 for (int r = 0; r < nx + nu; r++)
                     sum += own[r] * bend_by(t, p, &v, r, one, other);
-                if (time[one] >= 0 && time[other] >= 0)
+                if (time[one] != absent && time[other] != absent)
                     triplets_put_lower(out, time[one], time[other], sum);
             }
-            for (int j = v.scheme->first; j <= v.scheme->last && time[one] >= 0; j++)
+            for (int j = v.scheme->first; j <= v.scheme->last && time[one] != absent; j++)
                 for (int r = 0; r < nu; r++)
                     triplets_put_lower(out, time[one], control_of(t, p, &v, j) + r,
                                        -own[nx + r] * v.slope[j] * by[one] / v.w);
