@@ -301,6 +301,39 @@ static void test_weak(void)
     moray_nlp_sensitivity_free(s);
 }
 
+// Whether it is told of a bound of x0 with this slack and multiplier, which the solver sees in these scales.
+static bool told(double slack, double multiplier, double x_scale, double f_scale)
+{
+    struct dense d = {.facts = quadratic, .g_lower = {1}, .g_upper = {1}};
+    const double scales[] = {x_scale, 1, 1};
+    moray_nlp_sensitivity *s;
+    int weak = -1;
+    dense_new(&d, 3, 1);
+    d.nlp.x_scale = scales, d.nlp.f_scale = f_scale;
+    d.x_lower[0] = -slack;
+    d.z_lower[0] = multiplier;
+    d.x[1] = 0.6, d.x[2] = 0.4;
+    CHECK_OK(moray_nlp_sensitivity_new(&s, &d.nlp, &d.at), "a slack and a multiplier");
+    const int n = moray_nlp_sensitivity_weak(s, &weak, 1);
+    moray_nlp_sensitivity_free(s);
+    return n == 1 && weak == 1;
+}
+
+// In doubt is what is small and of one size, or nothing; in the scales of the solver, at whose points slack and
+// multiplier have one product.
+static void test_doubt(void)
+{
+    CHECK(told(5e-5, 5e-5, 1, 1), "both are small");
+    CHECK(!told(1e-3, 1e-3, 1, 1), "alike, but large");
+    CHECK(told(5e-5, 4e-6, 1, 1) && told(4e-6, 5e-5, 1, 1), "small, one a few times the other");
+    CHECK(!told(5e-5, 1e-7, 1, 1) && !told(1e-7, 5e-5, 1, 1), "small, but one is hundreds of times the other");
+    CHECK(told(5e-9, 0, 1, 1) && told(0, 5e-9, 1, 1), "one is 0, the other nothing");
+    CHECK(!told(1e-7, 0, 1, 1) && !told(0, 1e-7, 1, 1), "one is 0, the other small but there");
+    CHECK(told(5e-9, -5e-9, 1, 1), "nothing, with the wrong sign");
+    CHECK(told(4e-7, 4e-3, 100, 1) && !told(4e-5, 4e-5, 100, 1), "in the scale of the variable both are small");
+    CHECK(told(4e-5, 4e-2, 1, 1e-3) && !told(4e-5, 4e-5, 1, 1e-3), "in that of the objective");
+}
+
 static void twice(const double *x, const double *p, struct facts *f)
 {
     quadratic(x, p, f);
@@ -360,6 +393,7 @@ int main(void)
     test_least_norm();
     test_disc();
     test_weak();
+    test_doubt();
     test_dependent();
     test_refusals();
     return tap_done();
