@@ -41,10 +41,12 @@ static void interpolate(const struct transfer *t, double tau_new, int width)
         t->here[i] = (1 - part) * t->density[k * width + i] + part * t->density[next * width + i];
 }
 
+// Ends may not be collocated, and those of states have bounds of their own.
 static void take_densities(const struct transfer *t, const double *source, enum kind kind, int width)
 {
     for (int n = 0; n < t->old->nodes; n++) {
-        const int near = t->old->node[n].collocated ? n : n > 0 ? n - 1 : 1; // only ends are not collocated
+        const bool end = n == 0 || n == t->old->nodes - 1;
+        const int near = t->old->node[n].collocated && !(end && kind == of_state) ? n : n > 0 ? n - 1 : 1;
         const struct node *node = &t->old->node[near];
         for (int i = 0; i < width; i++)
             t->density[n * width + i] = source[place(t, node, kind) + i] / node->weight;
@@ -64,6 +66,12 @@ static void carry(const struct transfer *t, const double *source, double *target
     }
 }
 
+// Whether controls at an end, which are no node's, have columns on both meshes.
+static bool have_own_controls(const struct transfer *t, int end)
+{
+    return t->new->u_row[end] != absent && t->old->u_row[end] != absent;
+}
+
 static void carry_bounds(const struct transfer *t, const double *source, double *target)
 {
     const struct phase *phase = &t->to->transcription->ocp->phase[t->p];
@@ -72,8 +80,8 @@ static void carry_bounds(const struct transfer *t, const double *source, double 
     const size_t state = (size_t)phase->nx * sizeof *target; // at the ends they are no densities
     memcpy(target + t->new->node[0].x, source + t->old->node[0].x, state);
     memcpy(target + t->new->node[t->new->nodes - 1].x, source + t->old->node[t->old->nodes - 1].x, state);
-    for (int end = 0; end < 2 && phase->bounds_end_controls; end++)
-        if (t->new->u_end[end] != absent && t->old->u_end[end] != absent)
+    for (int end = 0; end < 2; end++)
+        if (have_own_controls(t, end) || (phase->bounds_end_controls && t->new->u_end[end] != absent))
             memcpy(target + t->new->u_end[end], source + t->old->u_end[end], (size_t)phase->nu * sizeof *target);
     memcpy(target + t->new->q, source + t->old->q, (size_t)phase->nq * sizeof *target);
     if (t->new->t0 != absent && t->old->t0 != absent)
@@ -122,7 +130,7 @@ static moray_status carry_phase(const moray_guess *guess, moray_solution *to, in
     memcpy(to->iterate.lambda + t.new->integral_row, from->iterate.lambda + t.old->integral_row,
            (size_t)phase->nq * sizeof *t.here);
     for (int end = 0; end < 2; end++)
-        if (t.new->u_row[end] != absent && t.old->u_row[end] != absent)
+        if (have_own_controls(&t, end))
             memcpy(to->iterate.lambda + t.new->u_row[end], from->iterate.lambda + t.old->u_row[end],
                    (size_t)phase->nu * sizeof *t.here);
     if (t.new->length_row != absent && t.old->length_row != absent)
