@@ -99,7 +99,6 @@ moray_status moray_solution_failure(const moray_solution *solution)
         }
         line += length;
     }
-    needed[used] = 0;
     moray_status failure = moray_error(MORAY_NOT_SOLVED, "%s", solution->diagnosis);
     if (strlen(solution->diagnosis) >= sizeof failure.text)
         failure = moray_error(MORAY_NOT_SOLVED, "%s", needed);

@@ -42,7 +42,7 @@ int moray_band_members(const struct transcription *t, const struct band *band)
     return band->kind == band_single ? 1 : t->layout.phase[band->p].nodes;
 }
 
-// Column or row of the n-th node of a band, -1 where it has none (controls and path constraints stand at collocated
+// Column or row of the n-th node of a band, absent where it has none (controls and path constraints stand at collocated
 // nodes only, dynamics behind the first).
 int moray_band_member(const struct transcription *t, const struct band *band, int n)
 {
@@ -54,11 +54,11 @@ int moray_band_member(const struct transcription *t, const struct band *band, in
     case band_state:
         return layout->node[n].x + band->index;
     case band_control:
-        return layout->node[n].collocated ? layout->node[n].x + nx + band->index : -1;
+        return layout->node[n].collocated ? layout->node[n].x + nx + band->index : absent;
     case band_path:
-        return layout->node[n].collocated ? layout->node[n].path + band->index : -1;
+        return layout->node[n].collocated ? layout->node[n].path + band->index : absent;
     default:
-        return n > 0 ? layout->interval[0].defect + (n - 1) * nx + band->index : -1;
+        return n > 0 ? layout->interval[0].defect + (n - 1) * nx + band->index : absent;
     }
 }
 

@@ -40,7 +40,7 @@ static void rank_band(const struct band *band, void *self)
     double part = 0;
     for (int n = 0; band->rows && n < moray_band_members(ranking->e->t, band); n++) {
         const int i = moray_band_member(ranking->e->t, band, n);
-        part = i < 0 ? part : hypot(part, ranking->e->weight[i]);
+        part = i == absent ? part : hypot(part, ranking->e->weight[i]);
     }
     if (part < 1e-3)
         return;
@@ -126,7 +126,7 @@ static void search_band(const struct band *band, void *self)
     for (int n = 0; n < moray_band_members(e->t, band); n++) {
         const int i = moray_band_member(e->t, band, n);
         const struct standing s =
-            i < 0 ? (struct standing){.fixed = true} : moray_standing_of(e->solution, band->rows, i);
+            i == absent ? (struct standing){.fixed = true} : moray_standing_of(e->solution, band->rows, i);
         if (s.fixed || !(s.at_lower || s.at_upper))
             continue;
         const double outward = band->rows ? e->weight[i] : -e->pull[i]; // if it could, it would go this way

@@ -75,7 +75,7 @@ static void find_runaway(const struct band *band, void *self)
     const struct evidence *e = search->e;
     for (int n = 0; !band->rows && n < moray_band_members(e->t, band); n++) {
         const int j = moray_band_member(e->t, band, n);
-        if (j < 0)
+        if (j == absent)
             continue;
         const struct standing s = moray_standing_of(e->solution, false, j);
         const bool free = s.value > 0 ? s.upper >= MORAY_INFINITY : s.lower <= -MORAY_INFINITY;
@@ -96,7 +96,7 @@ static bool runaway(const struct evidence *e)
     moray_band_name(e->solution, &search.band, name, name_size);
     for (int n = 0; n < moray_band_members(e->t, &search.band); n++) {
         const int j = moray_band_member(e->t, &search.band, n);
-        if (j >= 0) {
+        if (j != absent) {
             reached = fmax(reached, fabs(e->solution->iterate.x[j]));
             guessed = fmax(guessed, fabs(e->solution->guess[j]));
         }

@@ -255,40 +255,6 @@ static void test_runs_away(void)
                      "Try: a lower bound for control force of phase cart, which went to -");
 }
 
-static void gain(const moray_ends *at, moray_end_values *out, const void *data)
-{
-    const double *share = data;
-    out->objective = -share[0] * at->s[0] - share[1] * at->s[1];
-}
-
-static void rest(const moray_node *at, moray_rates *out, const void *data)
-{
-    (void)data;
-    out->f[0] = -at->x[0];
-}
-
-// Named is what went furthest, and of two that went as far the first.
-static void test_runs_furthest(void)
-{
-    static const double share[][2] = {{1, 1}, {1, 2}, {2, 1}, {-1, -1}};
-    static const char *const texts[] = {
-        "Try: an upper bound for parameter here, ", "Try: an upper bound for parameter there, ",
-        "Try: an upper bound for parameter here, ", "Try: a lower bound for parameter here, "};
-    static const char *const s_names[] = {"here", "there"};
-    const moray_phase_spec phase = {
-        .name = "still", .nx = 1, .continuous = rest, .tf = moray_fixed(1), .x0 = MORAY_BOUNDS(moray_fixed(1))};
-    for (int k = 0; k < 4; k++) {
-        const moray_ocp_spec spec = {.name = "still",
-                                     .phases = 1,
-                                     .phase = &phase,
-                                     .ns = 2,
-                                     .s_names = s_names,
-                                     .endpoint = gain,
-                                     .data = share[k]};
-        check_suggestion(&spec, *usual(), GAVE_UP, texts[k]);
-    }
-}
-
 static void test_leaves_domain(void)
 {
     enum plant plant = root;
@@ -505,7 +471,6 @@ int main(void)
     test_many_dependent();
     test_another_guess();
     test_runs_away();
-    test_runs_furthest();
     test_leaves_domain();
     test_stopped();
     test_noise();
