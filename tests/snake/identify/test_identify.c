@@ -295,6 +295,43 @@ static void test_refusals(void)
 
 // ---- Noise ---------------------------------------------------------------------------------------------------------
 
+static double *line(double *y, int n, int stride, double from, double to)
+{
+    for (int k = 0; k < n; k++)
+        y[k * stride] = from + (to - from) * k / (n - 1);
+    return y;
+}
+
+// Channels that a spline goes through leave nothing to tell the noise by: it is that of the best instrument, a
+// ten-thousandth of the range, of both coordinates together and of the joint that ranges furthest.
+static void test_least_noise(void)
+{
+    static const double best = 1e-4;
+    story s = {.model = MORAY_FIRST_PRINCIPLES, .duration = 8, .step = 0.1};
+    moray_swim_log log[MOST_LOGS];
+    wanted w;
+    moray_identify *identify;
+    const double unknown[MORAY_CHANNELS] = {NAN, NAN, NAN, NAN};
+    swim_logs(&s, log);
+    moray_identify_spec spec = spec_of(&s, "c_t,c_n", &w);
+    memcpy(spec.sigma, unknown, sizeof unknown);
+    const int n = log[0].n, joints = log[0].joints;
+    line(log[0].p_x, n, 1, -1.5, 0.9);
+    line(log[0].p_y, n, 1, 0.2, 0.2); // at rest: a range of 1 is taken
+    line(log[0].heading, n, 1, 0.3, -0.4)[n / 2] = NAN;
+    log[0].heading[n - 1] = NAN;
+    for (int i = 0; i < joints; i++)
+        line(log[0].u + i, n, joints, -1 - i % 3, -4);
+    CHECK_OK(moray_identify_new(&identify, &spec, log, 1), "without noise");
+    const double position = sqrt((2.4 * 2.4 + 1) / 2), heading = 0.7 * (n - 2) / (n - 1);
+    const double range[MORAY_CHANNELS] = {position, position, heading, 3};
+    for (int kind = 0; kind < MORAY_CHANNELS; kind++)
+        CHECK_NEAR(moray_identify_sigma(identify, 0, kind) / (best * range[kind]), 1, 1e-9,
+                   moray_channel_name((moray_channel_kind)kind));
+    moray_identify_free(identify);
+    free_logs(log);
+}
+
 enum { MOST_SEEDS = 1000 };
 
 // How often the interval of 95 % holds the truth; the scatter beside the mean of the claimed variances; and the errors
@@ -678,6 +715,7 @@ int main(int argc, char **argv)
     test_zero();
     test_motors();
     test_refusals();
+    test_least_noise();
     test_guess();
     test_open();
     test_simple();
