@@ -112,11 +112,11 @@ static moray_status take_memory(struct casadi_function *f, void *object)
     int (*take)(void) = (int (*)(void))find(object, f->name, checkout ? "_checkout" : "_alloc_mem");
     int (*begin)(int) = checkout ? NULL : (int (*)(int))find(object, f->name, "_init_mem");
     f->mem = take ? take() : 0;
-    if (f->mem < 0 || (begin && begin(f->mem) != 0))
-        return moray_error(MORAY_INPUT, "%s gives no memory to work in", f->name);
-    if (take)
+    if (take && f->mem >= 0)
         f->give_back = (void (*)(int))find(object, f->name, checkout ? "_release" : "_free_mem");
-    return moray_ok();
+    return f->mem >= 0 && (!begin || begin(f->mem) == 0)
+               ? moray_ok()
+               : moray_error(MORAY_INPUT, "%s gives no memory to work in", f->name);
 }
 
 moray_status moray_casadi_open(struct casadi_function *f, void *object, const char *name)
