@@ -2,7 +2,6 @@
 #include "base/casadi.h"
 
 #include <dlfcn.h>
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,19 +39,19 @@ static moray_status count(void *object, const char *name, const char *suffix, in
 static bool is_sound(const long long *s)
 {
     const long long rows = s[0], cols = s[1];
-    if (rows < 0 || cols < 0 || rows > 1000000 || cols > 1000000 || rows * cols > INT_MAX)
+    if (rows < 0 || cols < 0 || rows > 1000000 || cols > 1000000 || rows * cols > 1000000000)
         return false;
     if (s[2] == 1)
         return true;
     const long long *start = s + 2, *row = start + cols + 1;
-    for (long long c = 0; c < cols; c++) {
-        if (start[c] < 0 || start[c + 1] < start[c] || start[c + 1] > rows * cols)
-            return false;
+    bool sound = start[0] == 0;
+    for (long long c = 0; c < cols; c++)
+        sound = sound && start[c] <= start[c + 1];
+    sound = sound && start[cols] <= rows * cols;
+    for (long long c = 0; sound && c < cols; c++)
         for (long long k = start[c]; k < start[c + 1]; k++)
-            if (row[k] < 0 || row[k] >= rows || (k > start[c] && row[k] <= row[k - 1]))
-                return false;
-    }
-    return start[0] == 0;
+            sound = sound && row[k] >= 0 && row[k] < rows && (k == start[c] || row[k] > row[k - 1]);
+    return sound;
 }
 
 static moray_status read_block(struct casadi_block *block, const long long *s)

@@ -164,7 +164,7 @@ static void test_shapes(void)
 {
     static long long most_rows[] = {1000000, 1, 0, 0}, too_many_rows[] = {1000001, 1, 0, 0};
     static long long most_cols[1000004] = {1, 1000000}, too_many_cols[1000005] = {1, 1000001};
-    static long long too_large[46345] = {46342, 46341}, largest[46345] = {46341, 46340};
+    static long long too_large[1004] = {1000000, 1001}, largest[1003] = {1000000, 1000};
     check_shape(pair, (int[]){0, 1}, 2, "dense in short");
     check_shape((long long[]){2, 3, 1}, (int[]){0, 1, 2, 3, 4, 5}, 6, "dense in short, of columns");
     check_shape((long long[]){2, 1, 0, 2, 0, 1}, (int[]){0, 1}, 2, "dense in full");
@@ -173,7 +173,7 @@ static void test_shapes(void)
     check_shape((long long[]){0, 0, 0}, NULL, 0, "nothing at all");
     check_shape(most_rows, NULL, 0, "a million rows");
     check_shape(most_cols, NULL, 0, "a million columns");
-    check_shape(largest, NULL, 0, "as many places as an int counts");
+    check_shape(largest, NULL, 0, "a thousand million places");
     const struct {
         const long long *shape;
         const char *what;
@@ -181,7 +181,7 @@ static void test_shapes(void)
                    {(long long[]){1, -1, 0, 0}, "columns below 0"},
                    {too_many_rows, "more than a million rows"},
                    {too_many_cols, "more than a million columns"},
-                   {too_large, "more places than an int counts"},
+                   {too_large, "more than a thousand million places"},
                    {(long long[]){3, 2, 0, -1, 0, 0}, "a column that ends before 0"},
                    {(long long[]){3, 3, 0, 2, 1, 2, 0, 1, 0}, "columns that descend"},
                    {(long long[]){2, 1, 0, 3, 0, 1, 1}, "more entries than places"},

@@ -51,11 +51,11 @@ static double product_without(const moray_scheme *scheme, double sigma, int j, i
     return product;
 }
 
+// Adds to slope and bend, which are 0.
 static void differentiate(struct view *v, double sigma)
 {
     const moray_scheme *s = v->scheme;
     for (int j = s->first; j <= s->last; j++) {
-        v->slope[j] = v->bend[j] = 0;
         for (int a = s->first; a <= s->last; a++) {
             if (a == j)
                 continue;
@@ -250,13 +250,13 @@ void moray_sights_by_time(const struct transcription *t, int p, const double *la
 static double bend_by(const struct transcription *t, int p, const struct view *v, int r, int one, int other)
 {
     const int nx = t->ocp->phase[p].nx;
-    const double T = v->T, w = v->w, twice[2][2] = {{-2 * (1 - v->tau), 1 - 2 * v->tau}, {1 - 2 * v->tau, 2 * v->tau}};
+    const double T = v->T, w = v->w, twice[] = {-2 * (1 - v->tau), 1 - 2 * v->tau, 2 * v->tau};
     double by[2];
     tau_slopes(v, by);
     if (r < nx)
         return -T / w * by[one] * by[other] * sum_of_f(t, p, v, v->slope, r);
     return -sum_of_u(t, p, v, v->bend, r - nx) * by[one] * by[other] / (w * w) -
-           sum_of_u(t, p, v, v->slope, r - nx) * (T > 0 ? twice[one][other] / (T * T) : 0) / w;
+           sum_of_u(t, p, v, v->slope, r - nx) * (T > 0 ? twice[one + other] / (T * T) : 0) / w;
 }
 
 void moray_bend_sights(const struct transcription *t, int p, const double *lambda, triplets *out)

@@ -42,10 +42,9 @@ static int width_of(const moray_swim_log *log, moray_channel_kind kind)
 
 static double range_of(const double *y, int n, int stride)
 {
-    double low = INFINITY, high = -INFINITY;
+    double low = INFINITY, high = -INFINITY; // fmin and fmax pass over NaN
     for (int k = 0; k < n; k++)
-        if (!isnan(y[k * stride]))
-            low = fmin(low, y[k * stride]), high = fmax(high, y[k * stride]);
+        low = fmin(low, y[k * stride]), high = fmax(high, y[k * stride]);
     return high > low ? high - low : 1;
 }
 

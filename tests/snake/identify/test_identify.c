@@ -321,7 +321,7 @@ static void test_least_noise(void)
     line(log[0].heading, n, 1, 0.3, -0.4)[n / 2] = NAN;
     log[0].heading[n - 1] = NAN;
     for (int i = 0; i < joints; i++)
-        line(log[0].u + i, n, joints, -1 - i % 3, -4);
+        line(log[0].u + i, n, joints, -4, -1 - i % 3)[n / 3 * joints] = NAN;
     CHECK_OK(moray_identify_new(&identify, &spec, log, 1), "without noise");
     const double position = sqrt((2.4 * 2.4 + 1) / 2), heading = 0.7 * (n - 2) / (n - 1);
     const double range[MORAY_CHANNELS] = {position, position, heading, 3};
