@@ -61,6 +61,37 @@ static double worst_slope(orbit_system *system, double *z)
     return worst;
 }
 
+// The largest difference between a weighted sum's slopes by the given parameters and central differences of it, added to
+// what was there; a parameter that is found has none.
+static double worst_by_parameters(orbit_system *system, double *z)
+{
+    enum { BEFORE = 3 };
+    static double weight[UNKNOWN], up[UNKNOWN], down[UNKNOWN];
+    const double h = 1e-5, factor = 1.7;
+    unsigned long long seed = 5;
+    double by[NS + 1], worst = 0;
+    for (int i = 0; i < system->unknowns; i++)
+        weight[i] = tap_random(&seed, 0.5, 2);
+    for (int k = 0; k <= NS; k++)
+        by[k] = BEFORE;
+    moray_orbit_residual(system, z, up);
+    moray_orbit_slopes(system, z);
+    moray_orbit_by_parameters(system, weight, factor, by);
+    for (int k = 0; k <= NS; k++) {
+        const double at = system->p[k];
+        double slope = BEFORE;
+        system->p[k] = at + h;
+        moray_orbit_residual(system, z, up);
+        system->p[k] = at - h;
+        moray_orbit_residual(system, z, down);
+        system->p[k] = at;
+        for (int i = 0; i < system->unknowns; i++)
+            slope += factor * weight[i] * (up[i] - down[i]) / (2 * h);
+        worst = fmax(worst, fabs(by[k] - (system->column[k] < 0 ? slope : 0)));
+    }
+    return worst;
+}
+
 static void test_slopes(void)
 {
     static const int found[][2] = {{0, 1}, {0, NS}, {1, NS}}; // stiffness, force, period
@@ -90,6 +121,8 @@ static void test_slopes(void)
         const double worst = worst_slope(&system, z);
         CHECK(worst < 1e-8, "slopes where parameters %d and %d are found: off by %.1e", found[k][0], found[k][1],
               worst);
+        const double given = worst_by_parameters(&system, z);
+        CHECK(given < 1e-8, "and by the one that is given: off by %.1e", given);
         moray_orbit_system_free(&system);
         moray_map_release(&plant);
         moray_map_release(&closing);

@@ -169,6 +169,28 @@ static void test_failure(void)
     moray_receding_horizon_free(receding);
 }
 
+// The first plan is due whenever the first measurement comes, the others an interval after the one before, but for
+// rounding.
+static void test_due(void)
+{
+    static const struct {
+        double t;
+        int plans;
+    } expected[] = {{-7, 1},    {-6.6, 1}, {-6.5 - 1e-6, 1}, {-6.5 - 1e-10, 2},
+                    {-6.01, 2}, {-5.9, 3}, {-5.5, 3},        {-5.4, 4}};
+    planner p = {.horizon = 1, .fail_from = 1000};
+    const double x[2] = {1, 0};
+    moray_receding_horizon *receding;
+    const moray_receding_horizon_spec spec = spec_of(&p, 0.5);
+    CHECK_OK(moray_receding_horizon_new(&receding, &spec), "receding horizon");
+    for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
+        CHECK_OK(moray_receding_horizon_measure(receding, expected[k].t, x), "measured");
+        const int plans = moray_receding_horizon_record_of(receding)->plans;
+        CHECK(plans == expected[k].plans, "at %.10g there are %d plans", expected[k].t, plans);
+    }
+    moray_receding_horizon_free(receding);
+}
+
 static void test_change(void)
 {
     static const double expected[] = {0, 0.5, 0.7, 1.2};
@@ -362,6 +384,7 @@ int main(void)
 {
     test_regulator();
     test_failure();
+    test_due();
     test_change();
     test_refusals();
     test_pendulum();

@@ -138,6 +138,87 @@ static void test_feasibility_of_large_numbers(void)
     CHECK_NEAR(kkt.feasibility, 1e3 / 2.0001e7, 1e-9, "a kilometre is not");
 }
 
+// ---- A linear programme whose optimum is a corner of bounds that all differ ----
+
+static const double price[] = {1, -2, 3, -4, 0.5};
+static const double room_below[] = {1, -3, 5, -7, 2}, room_above[] = {2, -1, 9, -6.5, 4};
+
+static bool cost(void *self, const double *x, bool is_new, double *f)
+{
+    (void)self;
+    (void)is_new;
+    *f = 0;
+    for (int j = 0; j < 5; j++)
+        *f += price[j] * x[j];
+    return true;
+}
+
+static bool cost_gradient(void *self, const double *x, bool is_new, double *g)
+{
+    (void)self;
+    (void)x;
+    (void)is_new;
+    memcpy(g, price, sizeof price);
+    return true;
+}
+
+static bool third(void *self, const double *x, bool is_new, double *g)
+{
+    (void)self;
+    (void)is_new;
+    g[0] = 3 * x[2];
+    return true;
+}
+
+static bool slope_of_third(void *self, const double *x, bool is_new, double *v)
+{
+    (void)self;
+    (void)x;
+    (void)is_new;
+    v[0] = 3;
+    return true;
+}
+
+static bool straight(void *self, const double *x, bool is_new, double sigma, const double *lambda, double *v)
+{
+    (void)self, (void)x, (void)is_new, (void)sigma, (void)lambda, (void)v;
+    return true;
+}
+
+// Ipopt lets bounds give way; what comes back does not go beyond them, with the values that belong to it.
+static void test_corner(void)
+{
+    const moray_nlp nlp = {.n = 5,
+                           .m = 1,
+                           .x_lower = room_below,
+                           .x_upper = room_above,
+                           .g_lower = (const double[]){-100},
+                           .g_upper = (const double[]){100},
+                           .nnz_jac = 1,
+                           .jac_row = (const int[]){0},
+                           .jac_col = (const int[]){2},
+                           .objective = cost,
+                           .gradient = cost_gradient,
+                           .constraints = third,
+                           .jacobian = slope_of_third,
+                           .hessian = straight};
+    double x[5] = {1.5, -2, 7, -6.7, 3}, z_lower[5], z_upper[5], g[1], lambda[1], f, row;
+    moray_iterate it = {x, z_lower, z_upper, g, lambda, 0};
+    moray_nlp_settings settings = moray_nlp_settings_default();
+    moray_nlp_info info;
+    settings.tolerance = 1e-10;
+    CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "a corner");
+    for (int j = 0; j < 5; j++) {
+        const double corner = price[j] > 0 ? room_below[j] : room_above[j];
+        CHECK(x[j] >= room_below[j] && x[j] <= room_above[j] && fabs(x[j] - corner) < 1e-8,
+              "x[%d] = %.12g is within its bounds, at %g", j, x[j], corner);
+    }
+    cost(NULL, x, true, &f);
+    third(NULL, x, true, &row);
+    CHECK(it.objective == f && g[0] == row, "objective and row are those of that corner, off by %.1e and %.1e",
+          it.objective - f, g[0] - row);
+}
+
 // ---- sign x^2 at x = 1 with g = x: stationary by one multiplier or another, of 2 each, which is not due ----
 
 static bool half_square(void *self, const double *x, bool is_new, double *f)
@@ -272,6 +353,7 @@ int main(void)
     moray_kkt kkt;
     test_feasibility_of_large_numbers();
     test_complementarity();
+    test_corner();
     CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "HS71");
     CHECK(info.outcome == MORAY_NLP_SOLVED, "outcome: %s", moray_nlp_outcome_text(info.outcome));
     CHECK_NEAR(it.objective, 17.0140173, 1e-6, "published optimum");

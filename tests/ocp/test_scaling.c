@@ -160,6 +160,45 @@ static void test_rows(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Parameters and times: by their boxes, else by the guess, a time from the other end of its phase ----
+
+static void nothing_of(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].xf[0];
+}
+
+static void test_parameters(void)
+{
+    static const double guess[] = {-250, 250, -0.5, 0.5, 0, 1, -3};
+    static const double size[] = {250, 250, 8, 9, 1, 1, 3};
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .continuous = level,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(0)),
+                                    .u = MORAY_BOUNDS(moray_between(-1, 1))};
+    moray_ocp *ocp;
+    moray_solution *solution;
+    moray_settings settings = moray_settings_default();
+    settings.max_iterations = 1;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1,
+                                                   .phase = &phase,
+                                                   .endpoint = nothing_of,
+                                                   .ns = 7,
+                                                   .s = MORAY_BOUNDS(moray_free(), moray_free(), moray_between(-8, 2),
+                                                                     moray_between(-8, 9), moray_free(),
+                                                                     moray_between(0, 1), moray_at_most(-1))}),
+             "parameters");
+    CHECK_OK(moray_solve(ocp, &settings, &(moray_guess){.s = guess}, &solution), "begun");
+    const struct transcription *t = solution->transcription;
+    for (int k = 0; k < 7; k++)
+        CHECK_NEAR(t->nlp.x_scale[t->layout.s + k] * size[k], 1, 1e-12, "a parameter's box, else its guess, else 1");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- The objective: divided by its largest slope, as far as a factor of 1e12 either way ----
 
 static void slope_of(const moray_ends *at, moray_end_values *out, const void *data)
@@ -289,6 +328,25 @@ static void test_many_bounds(void)
     moray_ocp_free(ocp);
 }
 
+static bool follows(double after, double before)
+{
+    return after >= before && after < before + 900;
+}
+
+// What was spent before has what was spent again added to it.
+static void check_spent(const moray_nlp_info *before, const moray_nlp_info *after)
+{
+    CHECK(follows(after->seconds, before->seconds) && follows(after->cpu_seconds, before->cpu_seconds) &&
+              follows(after->evaluation_seconds, before->evaluation_seconds) &&
+              follows(after->linear_seconds, before->linear_seconds),
+          "seconds add up: %g, %g, %g, %g", after->seconds, after->cpu_seconds, after->evaluation_seconds,
+          after->linear_seconds);
+    for (int k = 0; k < 5; k++)
+        CHECK(follows(after->evaluations[k], before->evaluations[k]) &&
+                  follows(after->evaluation_by[k], before->evaluation_by[k]),
+              "and so do evaluations: %d in %g s", after->evaluations[k], after->evaluation_by[k]);
+}
+
 // A solution in which a multiplier of 1 times the slack of its row is as much of the objective as the certificate
 // allows: in a row of the dynamics, which are equations, or of a path constraint. *more: the iterations that follow.
 static void solve_with_gap(bool equation, int *more)
@@ -301,8 +359,18 @@ static void solve_with_gap(bool equation, int *more)
     solution->iterate.lambda[row] = -1;
     solution->iterate.g[row] =
         solution->transcription->nlp.g_lower[row] + MORAY_LIMIT_GAP * fabs(solution->iterate.objective);
+    const moray_nlp_info before = {.seconds = 1000,
+                                   .cpu_seconds = 2000,
+                                   .evaluation_seconds = 3000,
+                                   .linear_seconds = 4000,
+                                   .evaluations = {10000, 20000, 30000, 40000, 50000},
+                                   .evaluation_by = {5000, 6000, 7000, 8000, 9000},
+                                   .outcome = solution->info.outcome,
+                                   .iterations = first};
+    solution->info = before;
     CHECK_OK(moray_solve_again(solution), "again where the solver stopped well inside");
     *more = solution->info.iterations - first;
+    check_spent(&before, &solution->info);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
@@ -320,6 +388,7 @@ int main(void)
 {
     test_equations_have_no_inside();
     test_rows();
+    test_parameters();
     test_objective();
     test_integrals();
     test_many_bounds();

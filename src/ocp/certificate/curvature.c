@@ -20,7 +20,7 @@ struct bend {
     const struct witness *w;
     const moray_nlp *nlp;
     double *column, *row, *weight;  // sizes [n], [m]; S [n + m]
-    double *g, *jac, *hess, *d, *v; // [m], [nnz], [nnz], [n + m] twice
+    double *g, *jac, *hess, *d, *v; // [m], [nnz], [nnz], [n], [n + m]
     bool *held;                     // [n + m] columns at a bound, rows that are not
     double *values;
     moray_pattern pattern;
@@ -48,7 +48,7 @@ static void weigh(struct bend *b)
     }
 }
 
-// One side of a bound, in sizes and per part of the phase.
+// One side of a bound, in sizes and per part of the phase; an absent one is too far away.
 static bool holds(const struct bend *b, double multiplier, double slack, double size, double weight)
 {
     return multiplier * size / (weight * moray_witness_objective(b->w)) > held_part * slack / size;
@@ -60,14 +60,13 @@ static void find_held(struct bend *b)
     const moray_iterate *at = &b->w->solution->iterate;
     for (int j = 0; j < nlp->n; j++) {
         const double low = nlp->x_lower[j], high = nlp->x_upper[j], size = b->column[j], weight = b->weight[j];
-        b->held[j] = low == high || (low > -MORAY_INFINITY && holds(b, at->z_lower[j], at->x[j] - low, size, weight)) ||
-                     (high < MORAY_INFINITY && holds(b, at->z_upper[j], high - at->x[j], size, weight));
+        b->held[j] = low == high || holds(b, at->z_lower[j], at->x[j] - low, size, weight) ||
+                     holds(b, at->z_upper[j], high - at->x[j], size, weight);
     }
     for (int i = 0; i < nlp->m; i++) {
         const double low = nlp->g_lower[i], high = nlp->g_upper[i], size = b->row[i], weight = b->weight[nlp->n + i];
-        b->held[nlp->n + i] = low != high &&
-                              !(low > -MORAY_INFINITY && holds(b, -at->lambda[i], b->g[i] - low, size, weight)) &&
-                              !(high < MORAY_INFINITY && holds(b, at->lambda[i], high - b->g[i], size, weight));
+        b->held[nlp->n + i] = low != high && !holds(b, -at->lambda[i], b->g[i] - low, size, weight) &&
+                              !holds(b, at->lambda[i], high - b->g[i], size, weight);
     }
 }
 
@@ -177,7 +176,7 @@ static moray_status allocate(struct bend *b)
 {
     const size_t n = (size_t)b->nlp->n, m = (size_t)b->nlp->m, jac = (size_t)b->nlp->nnz_jac;
     const size_t hess = (size_t)b->nlp->nnz_hess;
-    b->column = calloc(n + 2 * m + 4 * (n + m) + 2 * (jac + hess), sizeof *b->column);
+    b->column = calloc(5 * (n + m) + 2 * (jac + hess), sizeof *b->column);
     b->held = calloc(n + m, sizeof *b->held);
     if (!b->column || !b->held)
         return moray_error(MORAY_MEMORY, "no memory for the inertia of %d variables", b->nlp->n);
@@ -185,7 +184,7 @@ static moray_status allocate(struct bend *b)
     b->g = b->row + m;
     b->weight = b->g + m;
     b->d = b->weight + n + m;
-    b->v = b->d + n + m;
+    b->v = b->d + n;
     b->jac = b->v + n + m;
     b->hess = b->jac + jac;
     b->values = b->hess + hess;
