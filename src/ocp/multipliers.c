@@ -81,7 +81,7 @@ static void carry_bounds(const struct transfer *t, const double *source, double 
     memcpy(target + t->new->node[0].x, source + t->old->node[0].x, state);
     memcpy(target + t->new->node[t->new->nodes - 1].x, source + t->old->node[t->old->nodes - 1].x, state);
     for (int end = 0; end < 2; end++)
-        if (have_own_controls(t, end) || (phase->bounds_end_controls && t->new->u_end[end] != absent))
+        if (have_own_controls(t, end) || phase->bounds_end_controls)
             memcpy(target + t->new->u_end[end], source + t->old->u_end[end], (size_t)phase->nu * sizeof *target);
     memcpy(target + t->new->q, source + t->old->q, (size_t)phase->nq * sizeof *target);
     if (t->new->t0 != absent && t->old->t0 != absent)

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "moray/ocp.h"
+#include "ocp/problem.h"
 #include "rk4.h"
 
 static const double z0 = 1, zf = 3, c = 2;
@@ -183,8 +184,99 @@ static void test_refusals(void)
     refuses(&phase, "uf[1] sum of phase: lower bound 2 is above upper bound 1");
 }
 
+// ---- What the endpoint is handed, in phases of sizes that differ, of which not all read controls ----
+
+enum { phases = 3, parameters = 2, inputs = 36 };
+static const struct {
+    int nx, nu, nq;
+    bool end_controls;
+} size[phases] = {{2, 3, 1, true}, {3, 1, 2, false}, {1, 2, 3, true}};
+
+#define ADD(from, count)                                                                                               \
+    for (int i = 0; i < (count); i++)                                                                                  \
+    sum += ++k * (from)[i]
+
+// All that it is handed, times its place.
+static void add_up(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    moray_num sum = 0;
+    int k = 0;
+    for (int p = 0; p < phases; p++) {
+        const moray_phase_ends *end = &at->phase[p];
+        ADD(end->x0, size[p].nx);
+        ADD(&end->t0, 1);
+        ADD(end->xf, size[p].nx);
+        ADD(&end->tf, 1);
+        ADD(end->q, size[p].nq);
+        ADD(end->u0, end->u0 ? size[p].nu : 0);
+        ADD(end->uf, end->uf ? size[p].nu : 0);
+    }
+    ADD(at->s, parameters);
+    out->objective = sum, out->e[0] = 2 * sum, out->e[1] = 3 * sum;
+}
+
+static void add_up_real(const moray_real_ends *at, moray_real_end_values *out, const void *data)
+{
+    (void)data;
+    double sum = 0;
+    int k = 0;
+    for (int p = 0; p < phases; p++) {
+        const moray_real_phase_ends *end = &at->phase[p];
+        ADD(end->x0, size[p].nx);
+        ADD(&end->t0, 1);
+        ADD(end->xf, size[p].nx);
+        ADD(&end->tf, 1);
+        ADD(end->q, size[p].nq);
+        ADD(end->u0, end->u0 ? size[p].nu : 0);
+        ADD(end->uf, end->uf ? size[p].nu : 0);
+    }
+    ADD(at->s, parameters);
+    out->objective = sum, out->e[0] = 2 * sum, out->e[1] = 3 * sum;
+}
+
+static void still(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)at, (void)out, (void)data;
+}
+
+static void test_handed(bool real)
+{
+    moray_phase_spec phase[phases];
+    for (int p = 0; p < phases; p++)
+        phase[p] = (moray_phase_spec){.nx = size[p].nx,
+                                      .nu = size[p].nu,
+                                      .nq = size[p].nq,
+                                      .continuous = still,
+                                      .tf = moray_fixed(1),
+                                      .end_controls = size[p].end_controls};
+    moray_ocp *ocp;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = phases,
+                                                   .phase = phase,
+                                                   .ns = parameters,
+                                                   .ne = 2,
+                                                   .e = MORAY_BOUNDS(moray_free(), moray_free()),
+                                                   .s = MORAY_BOUNDS(moray_free(), moray_free()),
+                                                   .endpoint = real ? NULL : add_up,
+                                                   .endpoint_real = real ? add_up_real : NULL}),
+             "problem");
+    const moray_map *map = ocp->endpoint->map;
+    CHECK(map->n_in == inputs, "%d inputs", map->n_in);
+    double in[inputs], out[3], sum = 0;
+    for (int k = 0; k < inputs; k++) {
+        in[k] = k % 7 + 1;
+        sum += (k + 1) * in[k];
+    }
+    map->value(map->self, in, out);
+    CHECK(out[0] == sum && out[1] == 2 * sum && out[2] == 3 * sum, "each input is where it belongs: %g, expected %g",
+          out[0], sum);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
+    test_handed(false);
+    test_handed(true);
     test_schemes();
     test_sizes();
     test_refusals();
