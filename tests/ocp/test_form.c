@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "moray/ocp.h"
+#include "ocp/solution.h"
 #include "rk4.h"
 
 static moray_solution *solve(const moray_ocp *ocp, const char *scheme, int intervals)
@@ -99,6 +100,52 @@ static void test_duration_refusals(void)
     refuses(moray_at_least(5), "does not meet t0 in [1, 1] and tf in [2, 3]");
     refuses(moray_at_most(0.5), "does not meet t0");
     refuses(moray_fixed(NAN), "not a number");
+}
+
+// A way of 1 at a speed of at most 1, begun as late as may be, or ended as soon: backwards in time it would be more so.
+static void depart(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].tf - 2 * at->phase[0].t0;
+}
+
+static void arrive(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = 2 * at->phase[0].tf - at->phase[0].t0;
+}
+
+// One time is free, over a box that holds the fixed one: time runs forwards all the same.
+static void test_direction(void)
+{
+    for (int late = 0; late < 2; late++) {
+        const moray_bounds any = moray_between(0, 5);
+        const moray_phase_spec phase = {.nx = 1,
+                                        .nu = 1,
+                                        .nq = 1,
+                                        .continuous = walk,
+                                        .t0 = late ? any : moray_fixed(3),
+                                        .tf = late ? moray_fixed(2) : any,
+                                        .x0 = {zero, 1},
+                                        .xf = {one, 1},
+                                        .u = MORAY_BOUNDS(moray_between(-1, 1))};
+        moray_ocp *ocp;
+        double t0, tf;
+        CHECK_OK(
+            moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = late ? depart : arrive}),
+            "a free time beside a fixed one");
+        moray_solution *solution = solve(ocp, "hermite-simpson", 3);
+        const moray_nlp *nlp = &solution->transcription->nlp;
+        const struct phase_layout *layout = &solution->transcription->layout.phase[0];
+        const int column = late ? layout->t0 : layout->tf;
+        CHECK(nlp->x_lower[column] == (late ? 0 : 3) && nlp->x_upper[column] == (late ? 2 : 5),
+              "the free time is in [%g, %g]", nlp->x_lower[column], nlp->x_upper[column]);
+        moray_solution_times(solution, 0, &t0, &tf);
+        CHECK_NEAR(t0, late ? 1 : 3, 1e-6, "begins as late as the speed allows");
+        CHECK_NEAR(tf, late ? 2 : 4, 1e-6, "ends as soon");
+        moray_solution_free(solution);
+        moray_ocp_free(ocp);
+    }
 }
 
 // ---- Meshes that the user gives ------------------------------------------------------------------------------------
@@ -283,6 +330,7 @@ int main(void)
 {
     test_durations();
     test_duration_refusals();
+    test_direction();
     test_meshes();
     test_control_multipliers();
     test_state_multipliers();

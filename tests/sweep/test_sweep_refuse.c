@@ -158,6 +158,40 @@ static void test_files_of_others(void)
     refused(&spec, "configuration: null there");
 }
 
+// Refuses what is not below *self, as it does a key that it has not.
+static moray_status accept_below(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    fprintf(summary, "{}\n");
+    return point->value[0] < *(const double *)self ? moray_ok() : moray_error(MORAY_INPUT, "that is too much");
+}
+
+// Where every point is refused the sweep is: when there are no more, or after a thousand.
+static void test_all_refused(void)
+{
+    enum { many = 1500 };
+    double value[many], least;
+    for (int k = 0; k < many; k++)
+        value[k] = k;
+    moray_sweep_axis axis = {.key = "x", .value = value, .n = 4};
+    moray_sweep_spec spec = spec_of("all.nc", &axis);
+    moray_sweep_result result;
+    spec.solve = accept_below, spec.self = &least;
+    least = 0;
+    refused(&spec, "every point so far is refused: that is too much");
+    CHECK(access("all.nc", F_OK) != 0 && access("all.nc.journal", F_OK) != 0, "and no file is left");
+    axis.n = many;
+    const moray_status status = moray_sweep(&spec, &result);
+    CHECK(status.code == MORAY_INPUT && result.failed == 1000, "of %d points %ld are tried", many, result.failed);
+    least = 1;
+    axis.n = 4;
+    CHECK_OK(moray_sweep(&spec, &result), "one that is accepted makes of the others failures");
+    CHECK(result.solved == 1 && result.failed == 3, "%ld solved, %ld failed", result.solved, result.failed);
+    remove("all.nc"), remove("all.nc.journal");
+    axis.n = many;
+    CHECK_OK(moray_sweep(&spec, &result), "however many these are");
+    CHECK(result.solved == 1 && result.failed == many - 1, "%ld solved, %ld failed", result.solved, result.failed);
+}
+
 // Of the journal's lines one is damaged in its middle, and one at its end is torn.
 static void test_damage(void)
 {
@@ -232,6 +266,7 @@ int main(void)
     test_grids();
     test_names();
     test_files_of_others();
+    test_all_refused();
     test_damage();
     test_processes();
     snprintf(command, sizeof command, "rm -rf %s", folder);
