@@ -134,32 +134,36 @@ static void test_not_finite(void)
 
 // ---- What runs away ----
 
-static void test_how_far(void)
+static void test_how_far(double of_place)
 {
     const double time[] = {0, 0.5, 1}, x[6] = {0}, u[] = {-70, 0, 30};
     const moray_samples samples = {3, time, x, u};
-    const ride endless = {.of_place = -1,
+    const ride endless = {.of_place = of_place,
                           .end = moray_free(),
                           .force = moray_free(),
                           .iterations = 100,
                           .guess = &(moray_guess){.phase = &samples}};
     moray_ocp *ocp;
-    double node[100], most = 0, told = 0, guessed = 0;
+    double node[100], low = 0, high = 0, told = 0, guessed = 0;
+    char side[20] = "";
     moray_solution *solution = run(&ocp, &endless);
     const int nodes = moray_solution_nodes(solution, 0, NULL, NULL);
     moray_solution_nodes(solution, 0, node, NULL);
     for (int n = 0; n < nodes; n++) {
         double force;
         moray_solution_at(solution, 0, node[n], NULL, &force);
-        most = fmax(most, fabs(force));
+        low = fmin(low, force), high = fmax(high, force);
     }
     const char *line = strstr(moray_solution_diagnosis(solution), "Try: ");
     CHECK(line && sscanf(line,
-                         "Try: an upper bound for control u[0] of phase cart, which went to %lf from a guess of "
-                         "at most %lf.",
-                         &told, &guessed) == 2,
-          "%s", line);
-    CHECK_NEAR(told, most, 0.01 * most, "the largest force");
+                         "Try: a%*[n ]%19s bound for control u[0] of phase cart, which went to %lf from a guess of at "
+                         "most %lf.",
+                         side, &told, &guessed) == 3,
+          "%s", line ? line : "nothing");
+    printf("# from %g to %g\n", low, high);
+    const double furthest = high > -low ? high : low;
+    CHECK(strcmp(side, furthest > 0 ? "upper" : "lower") == 0, "an end on that side");
+    CHECK_NEAR(told, furthest, 0.01 * fabs(furthest), "the largest force");
     CHECK_NEAR(guessed, 70, 0.5, "the largest of the guess");
     moray_solution_free(solution);
     moray_ocp_free(ocp);
@@ -235,7 +239,8 @@ static void test_length(void)
 int main(void)
 {
     test_not_finite();
-    test_how_far();
+    test_how_far(-1);
+    test_how_far(1);
     test_runs_furthest();
     test_length();
     return tap_done();
