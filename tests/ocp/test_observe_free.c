@@ -220,8 +220,58 @@ static void test_bounded_sum(void)
     moray_ocp_free(ocp);
 }
 
+// ---- What the data are too large to tell ----
+
+static void see_both(const moray_node *at, moray_num *y, const void *data)
+{
+    y[0] = *(const double *)data * at->x[0];
+    y[1] = at->s[0];
+}
+
+// A channel of constant readings far from a constant prediction, which nothing moves, beside one that reads s = 1.
+// Where that is less than 1e-9 of all squares, observed or predicted, s is open; else its error is 1 / sqrt(weight n).
+static void test_size_of_data(double observed, double predicted, bool open)
+{
+    enum { n = 4 };
+    static const double weight[] = {0.25, 9};
+    double time[n], value[2 * n];
+    for (int k = 0; k < n; k++)
+        time[k] = 0.2 * (k + 1), value[2 * k] = observed, value[2 * k + 1] = 1;
+    const moray_phase_spec phase = {
+        .nx = 1,
+        .continuous = level,
+        .tf = moray_fixed(1),
+        .x0 = MORAY_BOUNDS(moray_fixed(1)),
+        .observed = {.n = n, .ny = 2, .time = time, .value = value, .weight = weight, .observe = see_both}};
+    moray_ocp *ocp;
+    moray_fit fit;
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(
+        moray_ocp_new(
+            &ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .ns = 1, .endpoint = nothing, .data = &predicted}),
+        "two channels");
+    moray_solution *solution = solve(ocp, &settings, NULL);
+    CHECK_OK(moray_fit_new(&fit, solution, true), "fit");
+    CHECK(fit.undetermined == open && fit.observations == 2 * n && fabs(fit.value[0] - 1) < 1e-3,
+          "%g observed, %g predicted: %d open, s = %.9g", observed, predicted, fit.undetermined, fit.value[0]);
+    if (!open)
+        CHECK_NEAR(fit.error[0], 1 / sqrt(9 * n), 2e-3 * fit.error[0], "as its channel tells it");
+    CHECK_NEAR(fit.sum, 0.25 * n * pow(observed - predicted, 2), 1e-9 * fit.sum, "sum of squares");
+    moray_fit_free(&fit);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
+    const double most = sqrt(9 / 0.25 / 1e-9); // of the constant channel, that leaves s closed
+    for (int k = 0; k < 2; k++) {
+        const double size = (k ? 1.05 : 0.95) * most;
+        test_size_of_data(0, size, k);
+        test_size_of_data(size, 0, k);
+        test_size_of_data(-size, 0, k);
+        test_size_of_data(size, -0.5 * size, k);
+    }
     test_free_times("gauss3");
     test_free_times("radau3");
     test_free_times("hermite-simpson");
