@@ -62,6 +62,32 @@ static void test_subset(void)
     CHECK(info.cost == 1, "and is no worse than it: %g", info.cost);
 }
 
+// A plain that ends at a slope, down which a search from elsewhere runs, to no less than the plain: on the plain
+// nothing is better than the point that is told, which therefore stays.
+static bool plain(void *self, const double *x, double *cost)
+{
+    (void)self;
+    *cost = x[0] < -0.2 ? 1 : 2 - 0.1 * x[0] + 0.01 * x[1] * x[1];
+    return true;
+}
+
+static void test_no_better(void)
+{
+    static const moray_tuned_number all[] = {{MORAY_TUNED_LINEAR, -1, 1, 0}, {MORAY_TUNED_LINEAR, -1, 1, 0}};
+    static const double told[][2] = {{-0.7, 0.3}, {-1 + 1e-6, 0.3}, {-0.7, 1 - 1e-6}, {-1, -1}};
+    const moray_tuning_problem problem = {2, all, plain, NULL};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    settings.starts = 1;
+    settings.jobs = 1;
+    for (int k = 0; k < 4; k++) {
+        moray_tuning_info info;
+        double x[2];
+        CHECK_OK(moray_tune(&problem, &settings, told[k], 1, x, &info), "tunes");
+        CHECK(info.cost == 1 && fabs(x[0] - told[k][0]) < 1e-12 && fabs(x[1] - told[k][1]) < 1e-12,
+              "no better than %g, %g: %.9g, %.9g", told[k][0], told[k][1], x[0], x[1]);
+    }
+}
+
 static bool nowhere(void *self, const double *x, double *cost)
 {
     (void)self, (void)x;
@@ -96,6 +122,7 @@ int main(void)
 {
     test_many_optima();
     test_subset();
+    test_no_better();
     test_refusals();
     return tap_done();
 }
