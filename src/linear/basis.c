@@ -21,7 +21,7 @@ static moray_status no_memory(int m)
 
 // Constraints as lists of the variables that may be theirs, those of few constraints first.
 struct choice {
-    int *degree, *begin, *list, *match, *work; // [variables + 1], [m + 1], [entries], [variables], [5 m]
+    int *degree, *begin, *list, *match, *work; // [variables], [m + 1], [entries], [variables], [5 m]
     double strong;
     double *column_scale, *column_largest, *row_scale, *row_largest; // [variables], [m] each
 };
@@ -124,8 +124,8 @@ static moray_status choose(struct basis *basis, const moray_pattern *pattern, co
                            const struct view *view, bool *found)
 {
     const size_t v = (size_t)basis->variables, m = (size_t)basis->m, entries = (size_t)basis->entries;
-    int *block = calloc(2 * v + 1 + (m + 1) + 2 * entries + 5 * m + (m + 3), sizeof *block);
-    double *scales = calloc(2 * (v + m) + 1, sizeof *scales);
+    int *block = calloc(v + (m + 1) + entries + v + 5 * m + entries + (m + 3), sizeof *block);
+    double *scales = calloc(v + v + m + m, sizeof *scales);
     struct choice c = {.column_scale = scales};
     moray_status status = no_memory(basis->m);
     if (block && scales) {
@@ -133,7 +133,7 @@ static moray_status choose(struct basis *basis, const moray_pattern *pattern, co
         c.row_scale = c.column_largest + v;
         c.row_largest = c.row_scale + m;
         c.degree = block;
-        c.begin = c.degree + v + 1;
+        c.begin = c.degree + v;
         c.list = c.begin + m + 1;
         c.match = c.list + entries;
         c.work = c.match + v;
@@ -208,7 +208,8 @@ static moray_status make_matrix(struct basis *basis, const moray_pattern *patter
 
 moray_status moray_basis_remake(struct basis *basis, const moray_pattern *pattern)
 {
-    int *work = calloc((size_t)(2 * basis->m + 1 + basis->entries) + 1, sizeof *work);
+    const size_t m = (size_t)basis->m;
+    int *work = calloc((m + 1) + m + (size_t)basis->entries, sizeof *work);
     if (!work)
         return no_memory(basis->m);
     moray_sparse_lu_free(basis->lu);
@@ -217,7 +218,7 @@ moray_status moray_basis_remake(struct basis *basis, const moray_pattern *patter
     basis->values = NULL;
     basis->slots = 0;
     basis->factored = false;
-    const moray_status status = make_matrix(basis, pattern, work, work + basis->m + 1, work + 2 * (size_t)basis->m + 1);
+    const moray_status status = make_matrix(basis, pattern, work, work + m + 1, work + m + 1 + m);
     free(work);
     return status;
 }
