@@ -28,9 +28,9 @@ bool moray_holds_at(const struct phase *phase, double tau)
 
 moray_status moray_link_holds(struct phase_layout *layout, const struct phase *phase)
 {
-    int last = -1, hold = 0;
+    int last = absent, hold = 0;
     for (int n = 0; n < layout->nodes; n++)
-        layout->node[n].before = -1;
+        layout->node[n].before = absent;
     if (phase->n_held == 0)
         return moray_ok();
     if (layout->mesh.method.family == MORAY_LOBATTO)
@@ -45,7 +45,7 @@ moray_status moray_link_holds(struct phase_layout *layout, const struct phase *p
             last = interval->first + j;
         }
         if (fabs(layout->mesh.edge[k + 1] - edge_of(phase, hold + 1)) <= same)
-            hold++, last = -1;
+            hold++, last = absent;
         else if (layout->mesh.edge[k + 1] > edge_of(phase, hold + 1))
             break;
     }
@@ -66,7 +66,7 @@ void moray_assemble_holds(const struct transcription *t, int p, double *g)
 {
     const struct phase_layout *layout = &t->layout.phase[p];
     for (int n = 0; n < layout->nodes; n++)
-        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before >= 0; i++)
+        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before != absent; i++)
             g[layout->node[n].hold + i] =
                 t->x[column_of(t, p, n, i)] - t->x[column_of(t, p, layout->node[n].before, i)];
 }
@@ -75,7 +75,7 @@ void moray_walk_holds(const struct transcription *t, int p, triplets *out)
 {
     const struct phase_layout *layout = &t->layout.phase[p];
     for (int n = 0; n < layout->nodes; n++)
-        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before >= 0; i++) {
+        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before != absent; i++) {
             triplets_put(out, layout->node[n].hold + i, column_of(t, p, n, i), 1);
             triplets_put(out, layout->node[n].hold + i, column_of(t, p, layout->node[n].before, i), -1);
         }
@@ -85,7 +85,7 @@ void moray_add_holds(const struct transcription *t, int p, const double *lambda,
 {
     const struct phase_layout *layout = &t->layout.phase[p];
     for (int n = 0; n < layout->nodes; n++)
-        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before >= 0; i++) {
+        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before != absent; i++) {
             gradient[column_of(t, p, n, i)] += lambda[layout->node[n].hold + i];
             gradient[column_of(t, p, layout->node[n].before, i)] -= lambda[layout->node[n].hold + i];
         }
@@ -94,7 +94,7 @@ void moray_add_holds(const struct transcription *t, int p, const double *lambda,
 void moray_fill_holds(const struct phase_layout *layout, const struct phase *phase, const double *control, double *row)
 {
     for (int n = 0; n < layout->nodes; n++)
-        for (int i = 0; i < phase->n_held && layout->node[n].before >= 0; i++)
+        for (int i = 0; i < phase->n_held && layout->node[n].before != absent; i++)
             row[layout->node[n].hold + i] = control[phase->held[i]];
 }
 
@@ -102,6 +102,6 @@ void moray_guess_holds(const struct transcription *t, int p, double *x)
 {
     const struct phase_layout *layout = &t->layout.phase[p];
     for (int n = 0; n < layout->nodes; n++)
-        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before >= 0; i++)
+        for (int i = 0; i < t->ocp->phase[p].n_held && layout->node[n].before != absent; i++)
             x[column_of(t, p, n, i)] = x[column_of(t, p, layout->node[n].before, i)];
 }

@@ -93,7 +93,7 @@ static moray_status number_phase(struct layout *layout, struct phase_layout *pha
     phase->hold_row = layout->rows;
     for (int n = 0; n < phase->nodes; n++) {
         phase->node[n].hold = layout->rows;
-        layout->rows += phase->node[n].before >= 0 ? p->n_held : 0;
+        layout->rows += phase->node[n].before != absent ? p->n_held : 0;
     }
     phase->t0 = moray_bounds_are_fixed(p->t0) ? absent : layout->columns++;
     phase->tf = moray_bounds_are_fixed(p->tf) ? absent : layout->columns++;

@@ -7,6 +7,8 @@
 #include "ocp/mesh.h"
 #include "ocp/problem.h"
 
+enum { absent = -1 }; // in the place of a node, column or row
+
 // A point of the mesh. Neighbouring intervals share the point between them.
 struct node {
     double tau;    // time in the phase, 0..1
@@ -14,7 +16,7 @@ struct node {
     bool collocated;
     int x;            // first column of the state; the control follows where collocated
     int path;         // first row of the path constraints, where collocated
-    int before, hold; // the node whose held controls it has, -1 if none; first of the rows that say so
+    int before, hold; // the node whose held controls it has, or absent; first of the rows that say so
 };
 
 struct interval {
@@ -28,8 +30,6 @@ struct interval {
 struct sight {
     int interval, x, row;
 };
-
-enum { absent = -1 }; // in the place of a column or row
 
 struct phase_layout {
     struct mesh mesh;

@@ -40,7 +40,7 @@ static void free_held(struct transcription *t, const struct phase *phase, const 
 {
     const int last = layout->nodes - (phase->bounds_end_controls ? 1 : 0);
     for (int n = 0; n < last; n++)
-        for (int i = 0; i < phase->n_held && layout->node[n].before >= 0; i++)
+        for (int i = 0; i < phase->n_held && layout->node[n].before != absent; i++)
             set_column(t, layout->node[n].x + phase->nx + phase->held[i], moray_free());
 }
 

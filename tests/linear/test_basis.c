@@ -181,6 +181,28 @@ static void test_own(void)
     CHECK(wrong == 0, "each its own, but for %d", wrong);
 }
 
+// One of one entry rather than one of two, if it is just strong enough: a hundredth of the largest.
+static void test_just_strong(void)
+{
+    static sample s;
+    for (int k = 0; k < 4; k++) {
+        const bool strong = k % 2 == 0, first = k < 2;
+        struct basis basis;
+        bool found;
+        s.m = 1;
+        start(&s, 3);
+        for (int part = 0; part < 3; part++)
+            if (part == (first ? 0 : 2))
+                put(&s, 2, 0, strong ? 1e-2 : nextafter(1e-2, 0));
+            else
+                put(&s, 2, 1, 1);
+        CHECK_OK(moray_basis_choose(&basis, 2, 1, &s.pattern, s.value, 0, &found), "chosen");
+        CHECK(found && basis.place[strong ? 0 : 1] == 0 && basis.place[strong ? 1 : 0] == -1, "%s strong enough",
+              strong ? "just" : "hardly not");
+        moray_basis_free(&basis);
+    }
+}
+
 // The columns of the basis and the others are those of the matrix, in their places; new values are factored anew, the
 // same ones again need not be.
 static void test_matrix(void)
@@ -229,6 +251,7 @@ static void test_matrix(void)
 int main(void)
 {
     test_own();
+    test_just_strong();
     test_matrix();
     for (int view = 0; view < MORAY_BASIS_VIEWS; view++)
         test_choice(view);

@@ -78,9 +78,9 @@ static void find_runaway(const struct band *band, void *self)
         if (j == absent)
             continue;
         const struct standing s = moray_standing_of(e->solution, false, j);
-        const bool free = s.value > 0 ? s.upper >= MORAY_INFINITY : s.lower <= -MORAY_INFINITY;
+        const bool upper = s.value > 0, free = upper ? s.upper >= MORAY_INFINITY : s.lower <= -MORAY_INFINITY;
         if (free && s.scale * fabs(s.value) > search->most)
-            *search = (struct search){e, s.scale * fabs(s.value), *band, s.value > 0};
+            *search = (struct search){e, s.scale * fabs(s.value), *band, upper};
     }
 }
 
