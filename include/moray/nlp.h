@@ -84,8 +84,8 @@ typedef struct moray_nlp_info {
     int iterations;
     double seconds;            // whole solve, by the clock on the wall
     double cpu_seconds;        // whole solve, of the processor
-    double evaluation_seconds; // of cpu_seconds, in the callbacks
-    double linear_seconds;     // of cpu_seconds, in the linear solver; of MUMPS and MA57 to 1e-3, NaN unless asked for
+    double evaluation_seconds; // of seconds, in the callbacks
+    double linear_seconds;     // of seconds, in the linear solver; of MUMPS and MA57 to 1e-3, NaN unless asked for
     int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
     double evaluation_by[5];   // evaluation_seconds of each
     double regularisation;     // delta_w that the last step needed for a descent direction; NaN without a step

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "base/clock.h"
+#include "moray/clock.h"
 
 #include <time.h>
 
@@ -18,9 +18,4 @@ double moray_clock(void)
 double moray_processor_clock(void)
 {
     return seconds(CLOCK_PROCESS_CPUTIME_ID);
-}
-
-double moray_thread_clock(void)
-{
-    return seconds(CLOCK_THREAD_CPUTIME_ID);
 }

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "linear/parts.h"
 
 static const double worn = 4; // factorisations' worth of work by delayed pivots that another order costs
@@ -119,7 +118,6 @@ static moray_status make_room(moray_ldl *ldl)
 
 static moray_status order(moray_ldl *ldl, const double *values)
 {
-    const double start = moray_thread_clock();
     moray_status status = make_plan(ldl, values);
     if (!moray_failed(status))
         status = make_room(ldl);
@@ -132,7 +130,6 @@ static moray_status order(moray_ldl *ldl, const double *values)
     ldl->statistics.largest = ldl->plan.tallest;
     ldl->statistics.planned = ldl->plan.flops;
     ldl->statistics.entries = (double)ldl->plan.panel_room;
-    ldl->statistics.order_seconds += moray_thread_clock() - start;
     return status;
 }
 
@@ -183,13 +180,11 @@ static moray_status factor(moray_ldl *ldl, const double *values)
 
 moray_status moray_ldl_factor(moray_ldl *ldl, const double *values, double threshold)
 {
-    const double start = moray_thread_clock(), ordering = ldl->statistics.order_seconds;
     ldl->factored = false;
     ldl->threshold = threshold;
     const moray_status status = factor(ldl, values);
     ldl->factored = !moray_failed(status);
     ldl->statistics.factors++;
-    ldl->statistics.factor_seconds += moray_thread_clock() - start - (ldl->statistics.order_seconds - ordering);
     return status;
 }
 

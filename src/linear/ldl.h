@@ -25,7 +25,6 @@ typedef struct moray_ldl_statistics {
     double entries;       // in the factors, without delays
     double filled;        // in the factors, with delays, at most so far
     double error; // backward error of the last solve: residual over matrix times solution, in the scale of the factors
-    double order_seconds, factor_seconds, solve_seconds; // of the processor, so far
 } moray_ldl_statistics;
 
 // Copies the pattern of an n x n matrix: each entry off the diagonal in one of the triangles, whichever; repeated

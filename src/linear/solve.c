@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "linear/parts.h"
 
 static const double accurate = 1e-14; // backward error that refinement would hardly better
@@ -137,12 +136,10 @@ moray_status moray_ldl_solve(moray_ldl *ldl, int columns, double *B)
 {
     if (!ldl->factored)
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", ldl->n);
-    const double start = moray_thread_clock();
     double error = 0;
     for (int j = 0; j < columns && ldl->n > 0; j++)
         error = fmax(error, solve_one(ldl, B + (size_t)j * (size_t)ldl->n));
     ldl->statistics.error = error;
     ldl->statistics.solves += columns;
-    ldl->statistics.solve_seconds += moray_thread_clock() - start;
     return moray_ok();
 }
