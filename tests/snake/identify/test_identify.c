@@ -328,6 +328,29 @@ static void test_least_noise(void)
     for (int kind = 0; kind < MORAY_CHANNELS; kind++)
         CHECK_NEAR(moray_identify_sigma(identify, 0, kind) / (best * range[kind]), 1, 1e-9,
                    moray_channel_name((moray_channel_kind)kind));
+    moray_estimate at;
+    const double T = log[0].t[n - 1] - log[0].t[0];
+    moray_identify_start(identify, 0, &at);
+    CHECK_NEAR(at.first[0][MORAY_STATE_P_X], -1.5, 1e-9, "begins where the line begins");
+    CHECK_NEAR(at.first[0][MORAY_STATE_P_Y], 0.2, 1e-9, "on either axis");
+    CHECK_NEAR(at.first[0][MORAY_STATE_THETA], 0.3, 1e-9, "in its heading");
+    CHECK_NEAR(at.first[0][MORAY_STATE_V_THETA], -0.7 / T, 1e-8, "which turns");
+    CHECK_NEAR(at.first[0][MORAY_STATE_V_1], 2.4 / T, 1e-8, "at its speed");
+    CHECK_NEAR(at.first[0][MORAY_STATE_V_2], 0, 1e-8, "along it");
+    moray_identify_free(identify);
+
+    // a coordinate whose noise is known says nothing of the other's; without headings it looks where it goes
+    double *const heading_of_log = log[0].heading;
+    log[0].heading = NULL;
+    line(log[0].p_y, n, 1, 0.2, 1);
+    spec.sigma[MORAY_CHANNEL_X] = 5e-3;
+    CHECK_OK(moray_identify_new(&identify, &spec, log, 1), "one coordinate's noise known");
+    CHECK_NEAR(moray_identify_sigma(identify, 0, MORAY_CHANNEL_X), 5e-3, 1e-15, "it stays");
+    CHECK_NEAR(moray_identify_sigma(identify, 0, MORAY_CHANNEL_Y) / (0.8 * best), 1, 1e-9,
+               "and so does the other's own");
+    moray_identify_start(identify, 0, &at);
+    CHECK_NEAR(at.first[0][MORAY_STATE_THETA], atan2(0.8, 2.4), 1e-9, "where it goes");
+    log[0].heading = heading_of_log;
     moray_identify_free(identify);
     free_logs(log);
 }
