@@ -63,10 +63,45 @@ static void test_smooth(void)
     CHECK(kink[0] == 0, "has no kink: %g", kink[0]);
 }
 
+// out = in and a little of its power: of two steps the extrapolate is exact, a quotient is not.
+struct bow {
+    double much;
+    int power;
+};
+
+static void bowed(void *self, const double *in, double *out)
+{
+    const struct bow *bow = self;
+    out[0] = in[0] + bow->much * pow(in[0], bow->power);
+    out[1] = in[0];
+}
+
+static void test_extrapolates(void)
+{
+    static const struct {
+        const char *what;
+        struct bow bow;
+        moray_bounds box;
+    } cases[] = {{"a cubic from both sides", {2e-7, 3}, {-1, 1}},
+                 {"a parabola from above", {4e-9, 2}, {0, 1}},
+                 {"a parabola from below", {4e-9, 2}, {-1, 0}}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct bow self = cases[k].bow;
+        const moray_map map = {.n_in = 1, .n_out = 2, .value = bowed, .self = &self};
+        const double at = 0, size = 1;
+        double jac[2], doubt[2], kink[2];
+        CHECK_OK(moray_difference_columns(&map, &at, &size, &cases[k].box, jac, doubt, kink), "differences");
+        CHECK(fabs(jac[0] - 1) < 1e-14 && fabs(jac[1] - 1) < 1e-14, "%s: its slope is exact, to %.1e", cases[k].what,
+              jac[0] - 1);
+        CHECK(doubt[0] > 1e-12 && doubt[0] < 1e-9 && doubt[1] < 1e-14, "as far as two steps tell: %.1e", doubt[0]);
+    }
+}
+
 int main(void)
 {
     test_beside();
     test_mean();
     test_smooth();
+    test_extrapolates();
     return tap_done();
 }
