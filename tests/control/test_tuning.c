@@ -3,6 +3,8 @@
 // The tuner on functions of many optima, and what a controller with more freedom owes to its subset.
 #include "moray/control/tuning.h"
 
+#include <string.h>
+
 #include "tap.h"
 
 // Ripples on a bowl, each a trap for a single start; the least is 0 at x[0] = 0.03, x[1] = 2.
@@ -88,6 +90,151 @@ static void test_no_better(void)
     }
 }
 
+// ---- Where it looks ------------------------------------------------------------------------------------------------
+
+enum { ROOM = 20000 };
+
+typedef struct diary {
+    int n, calls;
+    double x[ROOM][MORAY_TUNED_NUMBERS];
+    int last; // after so many it is told to end; 0: never
+} diary;
+
+// A curved valley in the first two numbers, a bowl in all others.
+static bool valley(void *self, const double *x, double *cost)
+{
+    diary *d = self;
+    for (int j = 0; j < d->n && d->calls < ROOM; j++)
+        d->x[d->calls][j] = x[j];
+    d->calls++;
+    *cost = 1;
+    for (int j = 0; j < d->n; j++) {
+        const double off = j == 1 ? 5 * (x[1] - x[0] * x[0]) : x[j] - 0.3;
+        *cost += off * off;
+    }
+    return true;
+}
+
+static bool until(void *observer)
+{
+    const diary *d = observer;
+    return d->last == 0 || d->calls < d->last;
+}
+
+// g^(n + 1) = g + 1, by bisection.
+static double ratio(int n)
+{
+    double low = 1, high = 2;
+    for (int k = 0; k < 60; k++) {
+        const double middle = (low + high) / 2;
+        *(pow(middle, n + 1) < middle + 1 ? &low : &high) = middle;
+    }
+    return low;
+}
+
+// First the points that are told, then a Kronecker sequence; in no search more calls than are allowed.
+static void test_looks(int n)
+{
+    static diary d;
+    enum { told = 2, starts = 3, of_each = 7, looks = told + 4 * starts, rounds = 8, polished = 3 };
+    moray_tuned_number all[MORAY_TUNED_NUMBERS];
+    double from[told * MORAY_TUNED_NUMBERS], x[MORAY_TUNED_NUMBERS], worst = 0;
+    for (int j = 0; j < n; j++)
+        all[j] = (moray_tuned_number){MORAY_TUNED_LINEAR, -1 - j, 2, 0};
+    for (int i = 0; i < told * n; i++)
+        from[i] = 0.9 - 0.17 * i / n;
+    d = (diary){.n = n};
+    const moray_tuning_problem problem = {n, all, valley, &d};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    settings.starts = starts, settings.evaluations = of_each, settings.jobs = 1;
+    CHECK_OK(moray_tune(&problem, &settings, from, told, x, &info), "tunes");
+    for (int i = 0; i < looks; i++)
+        for (int j = 0; j < n; j++) {
+            double part;
+            const double z = modf(0.5 + (i - told + 1) * pow(ratio(n), -(j + 1)), &part);
+            const double want = i < told ? from[i * n + j] : all[j].lower + z * (all[j].upper - all[j].lower);
+            worst = fmax(worst, fabs(d.x[i][j] - want));
+        }
+    CHECK(worst < 1e-11, "%d numbers: it looks where it should, to %.1e", n, worst);
+    CHECK(info.searches == told + starts && info.evaluations == d.calls &&
+              d.calls <= looks + (told + starts + rounds * polished) * of_each * n,
+          "%d calls", d.calls);
+    bool inside = true;
+    for (int k = 0; k < d.calls && k < ROOM; k++)
+        for (int j = 0; j < n; j++)
+            inside = inside && d.x[k][j] >= all[j].lower && d.x[k][j] <= all[j].upper;
+    CHECK(inside, "and nowhere outside");
+}
+
+static void test_precise(int n)
+{
+    static diary d;
+    moray_tuned_number all[MORAY_TUNED_NUMBERS];
+    double x[MORAY_TUNED_NUMBERS], worst = 0;
+    for (int j = 0; j < n; j++)
+        all[j] = (moray_tuned_number){MORAY_TUNED_LINEAR, -1, 2, 0};
+    d = (diary){.n = n};
+    const moray_tuning_problem problem = {n, all, valley, &d};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    settings.jobs = 1;
+    CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x, &info), "tunes");
+    for (int j = 0; j < n; j++)
+        worst = fmax(worst, fabs(x[j] - (j == 1 ? 0.09 : 0.3)));
+    CHECK(info.cost - 1 < 1e-4 && worst < 1e-2, "%d numbers: least to %.1e, where it is to %.1e", n, info.cost - 1,
+          worst);
+    const int calls = d.calls;
+    CHECK(calls < ROOM, "%d calls", calls);
+    const int ends[] = {1, 20, 60, calls / 2, calls - 1};
+    settings.go_on = until;
+    settings.observer = &d;
+    for (int k = 0; k < 5; k++) {
+        d = (diary){.n = n, .last = ends[k]};
+        CHECK(moray_tune(&problem, &settings, NULL, 0, x, &info).code == MORAY_INTERRUPTED && d.calls == ends[k] &&
+                  info.evaluations == d.calls,
+              "told to end after %d of %d calls", ends[k], calls);
+    }
+}
+
+static void test_ranges(void)
+{
+    static diary d;
+    const moray_tuned_number good = {MORAY_TUNED_LINEAR, 0, 1, 0};
+    const struct {
+        moray_tuned_number number;
+        bool sound;
+    } cases[] = {{{MORAY_TUNED_LINEAR, 1, 1, 0}, false},      {{MORAY_TUNED_LINEAR, 2, 1, 0}, false},
+                 {{MORAY_TUNED_LOGARITHMIC, 0, 1, 0}, false}, {{MORAY_TUNED_LOGARITHMIC, 0.1, 1, 0}, true},
+                 {{MORAY_TUNED_WITH_ZERO, 0, 1, 0}, false},   {{MORAY_TUNED_WITH_ZERO, -1, 1, 0.1}, true},
+                 {{MORAY_TUNED_LINEAR, NAN, 1, 0}, false}};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    double x[MORAY_TUNED_NUMBERS + 1];
+    settings.starts = settings.evaluations = settings.jobs = 1;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const moray_tuned_number both[] = {good, cases[k].number};
+        const moray_tuning_problem problem = {2, both, valley, &d};
+        d = (diary){.n = 2};
+        const moray_status status = moray_tune(&problem, &settings, NULL, 0, x, &info);
+        CHECK(cases[k].sound ? !moray_failed(status)
+                             : status.code == MORAY_INPUT && strstr(status.text, "number 2 to tune"),
+              "%s", status.text);
+    }
+    moray_tuned_number many[MORAY_TUNED_NUMBERS + 1];
+    for (int n = 0; n <= MORAY_TUNED_NUMBERS + 1; n++) {
+        if (n > 0)
+            many[n - 1] = good;
+        const moray_tuning_problem problem = {n, many, valley, &d};
+        d = (diary){.n = n};
+        const moray_status status =
+            n <= 1 || n >= MORAY_TUNED_NUMBERS ? moray_tune(&problem, &settings, NULL, 0, x, &info) : moray_ok();
+        CHECK((status.code == MORAY_INPUT) == (n < 1 || n > MORAY_TUNED_NUMBERS), "%d numbers: %s", n, status.text);
+    }
+}
+
+// ---- What is refused -----------------------------------------------------------------------------------------------
+
 static bool nowhere(void *self, const double *x, double *cost)
 {
     (void)self, (void)x;
@@ -123,6 +270,11 @@ int main(void)
     test_many_optima();
     test_subset();
     test_no_better();
+    for (int n = 1; n <= 3; n++)
+        test_looks(n);
+    test_precise(1);
+    test_precise(3);
+    test_ranges();
     test_refusals();
     return tap_done();
 }
