@@ -32,7 +32,7 @@ static void nothing(const moray_ends *at, moray_end_values *out, const void *dat
     out->objective = at->phase[0].tf;
 }
 
-static moray_ocp *problem(void)
+static moray_ocp *problem(moray_bounds t0, moray_bounds tf)
 {
     static const double value[DATA] = {0};
     const moray_phase_spec phase = {
@@ -41,8 +41,8 @@ static moray_ocp *problem(void)
         .nu = NU,
         .nc = 1,
         .continuous = go,
-        .t0 = moray_between(0, 0.9),
-        .tf = moray_between(2.2, 4),
+        .t0 = t0,
+        .tf = tf,
         .c = MORAY_BOUNDS(moray_at_most(3)),
         .observed = {.n = DATA, .ny = 1, .time = time_of, .value = value, .observe = watch}};
     moray_ocp *ocp;
@@ -70,7 +70,11 @@ static double *random_point(const struct transcription *t, double t0, double tf)
     double *x = calloc((size_t)t->nlp.n, sizeof *x);
     for (int j = 0; j < t->nlp.n; j++)
         x[j] = tap_random(&seed, 0.2, 1);
-    x[t->layout.phase[0].t0] = t0, x[t->layout.phase[0].tf] = tf;
+    const struct phase_layout *layout = &t->layout.phase[0];
+    if (layout->t0 != absent)
+        x[layout->t0] = t0;
+    if (layout->tf != absent)
+        x[layout->tf] = tf;
     return x;
 }
 
@@ -103,9 +107,9 @@ static double integral(const struct phase_layout *layout, const struct interval 
 static void test_rows(struct transcription *t, const double *x, const char *scheme)
 {
     const struct phase_layout *layout = &t->layout.phase[0];
-    const double t0 = x[layout->t0], T = x[layout->tf] - t0;
     double *g = calloc((size_t)t->nlp.m, sizeof *g), worst = 0;
     CHECK(t->nlp.constraints(t->nlp.self, x, true, g), "values");
+    const double t0 = t->phase[0].t0, T = t->phase[0].tf - t0;
     for (int k = 0; k < DATA; k++) {
         const struct sight *sight = &layout->sight[k];
         const struct interval *interval = &layout->interval[sight->interval];
@@ -128,6 +132,15 @@ static void test_rows(struct transcription *t, const double *x, const char *sche
 // ---- Gradient ----
 
 // f's part of the gradient, for multipliers of f: through its inputs, the times of its node, and T.
+static void add_times(const struct transcription *t, double by_t0, double by_tf, double *gradient)
+{
+    const struct phase_layout *layout = &t->layout.phase[0];
+    if (layout->t0 != absent)
+        gradient[layout->t0] += by_t0;
+    if (layout->tf != absent)
+        gradient[layout->tf] += by_tf;
+}
+
 static void add_dynamics(const struct transcription *t, const double *lambda_f, double *gradient)
 {
     const struct phase_layout *layout = &t->layout.phase[0];
@@ -139,17 +152,14 @@ static void add_dynamics(const struct transcription *t, const double *lambda_f, 
             if (map->jac.row[e] >= NX)
                 continue;
             const double slope = lambda_f[n * NX + map->jac.row[e]] * t->phase[0].jac[n * map->jac.nnz + e];
-            if (map->jac.col[e] < NX + NU) {
+            if (map->jac.col[e] < NX + NU)
                 gradient[node->x + map->jac.col[e]] += slope;
-            } else {
-                gradient[layout->t0] += (1 - node->tau) * slope;
-                gradient[layout->tf] += node->tau * slope;
-            }
+            else
+                add_times(t, (1 - node->tau) * slope, node->tau * slope, gradient);
         }
         for (int r = 0; r < NX && node->collocated; r++) {
             const double by_T = lambda_f[n * NX + r] * t->phase[0].out[n * map->n_out + r] / T;
-            gradient[layout->t0] -= by_T;
-            gradient[layout->tf] += by_T;
+            add_times(t, -by_T, by_T, gradient);
         }
     }
 }
@@ -179,6 +189,17 @@ static void test_gradient(struct transcription *t, const double *x, const char *
     CHECK(largest > 0.5 && worst < 1e-12 * largest, "%s: what they add to the gradient is J' lambda: %.1e of %.2g",
           scheme, worst, largest);
     free(lambda), free(jac), free(want), free(got), free(lambda_f);
+}
+
+// No entry stands for a time that is fixed.
+static void test_pattern(const moray_nlp *nlp)
+{
+    int outside = 0;
+    for (int k = 0; k < nlp->nnz_jac; k++)
+        outside += nlp->jac_row[k] < 0 || nlp->jac_col[k] < 0 || nlp->jac_col[k] >= nlp->n;
+    for (int k = 0; k < nlp->nnz_hess; k++)
+        outside += nlp->hess_col[k] < 0 || nlp->hess_row[k] < nlp->hess_col[k] || nlp->hess_row[k] >= nlp->n;
+    CHECK(outside == 0, "every entry has a place, but for %d", outside);
 }
 
 // What it writes to does not matter.
@@ -248,32 +269,32 @@ static void test_intervals(const moray_ocp *ocp)
 static void test_left(const moray_ocp *ocp)
 {
     static const double edge[] = {0, 0.4, 0.7, 1};
-    struct transcription *t = transcribe(ocp, MORAY_RADAU, 2, edge, 0.6, 2.9);
-    const struct phase_layout *layout = &t->layout.phase[0];
-    unsigned long long seed = 3;
-    int either[2] = {0, 0}, right = 0, trials = 0;
-    double *x = random_point(t, 0.6, 2.9), *g = calloc((size_t)t->nlp.m, sizeof *g);
-    for (int trial = 0; trial < 600; trial++, trials++) {
-        const int k = trial % DATA, e = trial / DATA % 4; // datum k a little beside edge e
-        const double little[] = {-1e-3, -6e-7, -2.5e-7, 0, 2.5e-7, 6e-7, 1e-3}, d = little[trial / (4 * DATA) % 7];
-        const double T = 2.3 + tap_random(&seed, -0.1, 0.1), t0 = time_of[k] - (edge[e] + d) * T;
+    static const double little[] = {-1e-3, -6e-7, -2.5e-7, 0, 2.5e-7, 6e-7, 1e-3};
+    int either[2] = {0, 0}, right = 0;
+    for (int trial = 0; trial < DATA * 4 * 7 * 2; trial++) { // datum k a little beside edge e
+        const int k = trial % DATA, e = trial / DATA % 4;
+        const double T = 2.3 + 0.01 * k, at_edge = time_of[k] - edge[e] * T,
+                     moved = at_edge - little[trial / (4 * DATA) % 7] * T;
+        const double t0 = at_edge + (trial < DATA * 4 * 7 ? -1e-10 : 1e-10); // placed behind it, or before
+        struct transcription *t = transcribe(ocp, MORAY_RADAU, 2, edge, t0, t0 + T);
+        const struct phase_layout *layout = &t->layout.phase[0];
+        double *x = random_point(t, moved, moved + T), *g = calloc((size_t)t->nlp.m, sizeof *g);
+        struct mesh mesh = {0};
         bool want = false;
         for (int i = 0; i < DATA; i++) {
-            const double tau = (time_of[i] - t0) / T, *own = edge + layout->sight[i].interval;
+            const double tau = (time_of[i] - moved) / T, *own = edge + layout->sight[i].interval;
             const double slack = 1e-6 * (own[1] - own[0]);
             want = want || (tau < own[0] - slack && own[0] > 0) || (tau > own[1] + slack && own[1] < 1);
         }
-        struct mesh mesh = {0};
-        x[layout->t0] = t0, x[layout->tf] = t0 + T;
         t->nlp.constraints(t->nlp.self, x, true, g);
         const bool left = moray_sights_left(t, &mesh);
-        right += left == want && mesh.t0 == t0 && mesh.tf == t0 + T;
+        right += left == want && mesh.t0 == moved && mesh.tf == moved + T;
         either[left]++;
+        free(x), free(g);
+        moray_transcription_free(t);
     }
-    CHECK(right == trials && either[0] > 20 && either[1] > 20, "left or not as it should be: %d of %d, %d left", right,
-          trials, either[1]);
-    free(x), free(g);
-    moray_transcription_free(t);
+    CHECK(right == DATA * 4 * 7 * 2 && either[0] > 20 && either[1] > 20,
+          "left or not as it should be: %d, %d of them left", right, either[1]);
 }
 
 // A phase without length has finite rows and derivatives.
@@ -305,14 +326,19 @@ int main(void)
     } schemes[] = {{MORAY_LOBATTO, 3, "lobatto3"}, {MORAY_LOBATTO, 4, "lobatto4"}, {MORAY_RADAU, 1, "radau1"},
                    {MORAY_RADAU, 3, "radau3"},     {MORAY_GAUSS, 2, "gauss2"},     {MORAY_GAUSS, 4, "gauss4"}};
     static const double edge[] = {0, 0.4, 0.7, 1};
-    moray_ocp *ocp = problem();
-    for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++) {
-        struct transcription *t = transcribe(ocp, schemes[k].family, schemes[k].stages, edge, 0.6, 2.9);
+    moray_ocp *ocp = problem(moray_between(0, 0.9), moray_between(2.2, 4));
+    moray_ocp *from = problem(moray_fixed(0.7), moray_between(2.2, 4)),
+              *to = problem(moray_between(0, 0.9), moray_fixed(2.8));
+    moray_ocp *const problems[] = {ocp, from, to};
+    for (size_t k = 0; k < 3 * sizeof schemes / sizeof *schemes; k++) {
+        const moray_ocp *one = problems[k % 3];
+        struct transcription *t = transcribe(one, schemes[k / 3].family, schemes[k / 3].stages, edge, 0.6, 2.9);
         double *x = random_point(t, 0.7, 2.8);
-        test_rows(t, x, schemes[k].name);
-        test_gradient(t, x, schemes[k].name);
+        test_rows(t, x, schemes[k / 3].name);
+        test_gradient(t, x, schemes[k / 3].name);
         test_by_time(t);
-        test_fill(ocp, t);
+        test_fill(one, t);
+        test_pattern(&t->nlp);
         free(x);
         moray_transcription_free(t);
     }
@@ -320,5 +346,7 @@ int main(void)
     test_left(ocp);
     test_no_length(ocp);
     moray_ocp_free(ocp);
+    moray_ocp_free(from);
+    moray_ocp_free(to);
     return tap_done();
 }
