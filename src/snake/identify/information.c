@@ -57,13 +57,18 @@ moray_status moray_identify_information(const moray_identify *v, const moray_est
 
 // ---- Directions ----------------------------------------------------------------------------------------------------
 
+static bool is_known(double variance)
+{
+    return sqrt(variance) < poor;
+}
+
 static void spread(moray_information *info)
 {
     const int n = info->n;
     double largest = info->value[0];
     info->rank = 0;
     for (int k = 0; k < n; k++)
-        info->rank += info->value[k] > fmax(nothing * largest, 1 / (poor * poor));
+        info->rank += info->value[k] > nothing * largest && is_known(1 / info->value[k]);
     memset(info->covariance, 0, sizeof info->covariance);
     for (int i = 0; i < n; i++) {
         double variance = 0, open = 0;
@@ -74,9 +79,9 @@ static void spread(moray_information *info)
             else
                 open += share;
         }
-        info->error[i] = info->held[i]                          ? 0
-                         : open > part || sqrt(variance) > poor ? INFINITY
-                                                                : sqrt(variance) * info->scale[i];
+        info->error[i] = info->held[i]                        ? 0
+                         : open > part || !is_known(variance) ? INFINITY
+                                                              : sqrt(variance) * info->scale[i];
     }
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)

@@ -28,9 +28,9 @@ static void drift(const moray_node *at, moray_rates *out, const void *data)
     const moray_num t = at->t, *x = at->x, *u = at->u;
     out->f[0] = u[0] + part->f * t * x[1];
     out->f[1] = u[1] - x[1];
-    out->c[0] = x[0];
-    out->c[1] = u[1] - 1 - part->c * t * t;
-    out->g[0] = u[0] * u[0] + x[0] * x[0] + (u[1] - 8) * (u[1] - 8);
+    out->c[0] = u[1] - 1 - part->c * t * t;
+    out->c[1] = x[0];
+    out->g[0] = (1 + part->g * t * t) * u[0] * u[0] + x[0] * x[0] + (u[1] - 8) * (u[1] - 8);
     out->g[1] = (1 + part->g * t * t) * (x[1] - 3) * (x[1] - 3);
 }
 
@@ -52,7 +52,7 @@ static moray_solution *solve(moray_ocp **ocp, const struct part *part)
                                     .t0 = moray_fixed(-0.5),
                                     .tf = moray_fixed(1.5),
                                     .x0 = MORAY_BOUNDS(moray_fixed(1), moray_fixed(0.5)),
-                                    .c = MORAY_BOUNDS(moray_between(-50, 50), moray_at_most(0))};
+                                    .c = MORAY_BOUNDS(moray_at_most(0), moray_between(-50, 50))};
     settings.scheme = "radau4";
     settings.intervals = 10;
     settings.tolerance = 1e-10;
@@ -94,13 +94,17 @@ static void test_size(void)
     const struct transcription *t = solution->transcription;
     const struct phase_layout *layout = &t->layout.phase[0];
     const int nodes = layout->nodes;
-    double *H = calloc((size_t)nodes, sizeof *H), mean = 0, off = 0;
+    double *H = calloc((size_t)nodes, sizeof *H), mean = 0, off = 0, worst = 0, when = 0;
     solution->iterate.lambda[layout->integral_row] *= 1.5;
     moray_solution_hamiltonian(solution, 0, H);
     for (int n = 0; n < nodes; n++)
         mean += layout->node[n].collocated ? layout->node[n].weight * H[n] : 0;
-    for (int n = 0; n < nodes; n++)
-        off += layout->node[n].collocated ? layout->node[n].weight * fabs(H[n] - mean) : 0;
+    for (int n = 0; n < nodes; n++) {
+        const double far = layout->node[n].collocated ? fabs(H[n] - mean) : 0;
+        off += layout->node[n].weight * far;
+        when = far > worst ? -0.5 + 2 * layout->node[n].tau : when;
+        worst = fmax(worst, far);
+    }
     double *costate = calloc(2 * (size_t)nodes, sizeof *costate), size = 0;
     moray_solution_nodes(solution, 0, NULL, costate);
     for (int n = 0; n < nodes; n++) {
@@ -113,6 +117,7 @@ static void test_size(void)
     const struct finding found = drift_of(solution, &autonomous);
     CHECK(fabs(found.value * size / off - 1) < 1e-9 && off > 1e-3 * size,
           "the mean departure is told relative to the largest sum of terms: %g of %g", found.value * size, off);
+    CHECK_NEAR(found.time, when, 1e-12, "when it is largest");
     free(costate);
     free(H);
     moray_solution_free(solution);

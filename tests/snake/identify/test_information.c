@@ -79,6 +79,11 @@ static void test_known(void)
     CHECK(info.rank == 3, "three of them where one is held: %d", info.rank);
     CHECK(info.error[1] == 0, "which has no error");
     check_inverse(&info, "three");
+    moray_information again = examined((const double[N]){9, 8, 7, 6}, none);
+    memcpy(again.matrix, info.matrix, sizeof info.matrix);
+    memcpy(again.held, info.held, sizeof info.held);
+    CHECK_OK(moray_information_examine(&again), "examined again");
+    CHECK(memcmp(&again, &info, sizeof info) == 0, "what was there before has no part in it");
 }
 
 // A direction is known where its standard error is below its scale and its eigenvalue is no rounding of the largest.
@@ -96,6 +101,8 @@ static void test_rank(void)
         CHECK(info.rank == cases[k].rank, "%g, %g, %g, %g: %d are known", cases[k].value[0], cases[k].value[1],
               cases[k].value[2], cases[k].value[3], info.rank);
         double trace = 0, told = 0;
+        for (int i = 0; i < N && cases[k].open > 0; i++)
+            CHECK(isinf(info.error[i]), "with a part in what is open an unknown has no error: %g", info.error[i]);
         for (int i = 0; i < N; i++)
             trace += info.covariance[i * N + i] / (scale[i] * scale[i]);
         for (int i = 0; i < N - cases[k].open; i++)
@@ -107,8 +114,8 @@ static void test_rank(void)
 // Of one unknown apart from the others the error is told by itself, however little is known of them.
 static void test_apart(void)
 {
-    static const double known[] = {4, 1.1, 0.9};
-    for (int k = 0; k < 3; k++) {
+    static const double known[] = {4, 1.1, 1, 0.9};
+    for (int k = 0; k < 4; k++) {
         moray_information info = {.n = 2, .scale = {3, 1}, .matrix = {known[k], 0, 0, 1e-20}};
         CHECK_OK(moray_information_examine(&info), "examined");
         const double error = known[k] > 1 ? 3 / sqrt(known[k]) : INFINITY;
