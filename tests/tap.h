@@ -57,6 +57,12 @@ static inline bool tap_relative(double got, double want, double tolerance, const
 // |got - want| <= tolerance (1 + |want|)
 #define CHECK_RELATIVE(got, want, tolerance, what) tap_relative((got), (want), (tolerance), (what), __FILE__, __LINE__)
 
+// The larger of both; a NaN, which fmax passes over, is the worst.
+static inline double tap_worse(double worst, double error)
+{
+    return isnan(error) ? INFINITY : fmax(worst, error);
+}
+
 // A failed status shows its text.
 #define CHECK_OK(status, what)                                                                                         \
     do {                                                                                                               \

@@ -54,15 +54,15 @@ static double worst_slope(orbit_system *system, double *z)
         const bool below = moray_orbit_residual(system, z, down);
         z[j] = at;
         for (int i = 0; i < n; i++)
-            worst = fmax(worst, fabs(slope[i * n + j] - (up[i] - down[i]) / (2 * h)));
+            worst = tap_worse(worst, fabs(slope[i * n + j] - (up[i] - down[i]) / (2 * h)));
         if (!above || !below)
             return INFINITY;
     }
     return worst;
 }
 
-// The largest difference between a weighted sum's slopes by the given parameters and central differences of it, added to
-// what was there; a parameter that is found has none.
+// The largest difference between a weighted sum's slopes by the given parameters and central differences of it, added
+// to what was there; a parameter that is found has none.
 static double worst_by_parameters(orbit_system *system, double *z)
 {
     enum { BEFORE = 3 };
@@ -87,7 +87,7 @@ static double worst_by_parameters(orbit_system *system, double *z)
         system->p[k] = at;
         for (int i = 0; i < system->unknowns; i++)
             slope += factor * weight[i] * (up[i] - down[i]) / (2 * h);
-        worst = fmax(worst, fabs(by[k] - (system->column[k] < 0 ? slope : 0)));
+        worst = tap_worse(worst, fabs(by[k] - (system->column[k] < 0 ? slope : 0)));
     }
     return worst;
 }
@@ -162,7 +162,7 @@ static void test_no_parameters(void)
             const double t = T * k / 50;
             double x;
             moray_periodic_orbit_state(orbit, t, &x);
-            worst = fmax(worst, fabs(x - (cos(t) + sin(t)) / 2));
+            worst = tap_worse(worst, fabs(x - (cos(t) + sin(t)) / 2));
         }
         CHECK(worst < 1e-8, "the lagging motion: %.1e", worst);
         CHECK_OK(moray_periodic_orbit_monodromy(orbit, &M), "monodromy");

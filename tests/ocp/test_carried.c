@@ -149,7 +149,7 @@ static void check_densities(moray_solution *solution, const struct phase_layout 
                         ? (left ? 1000 : 2000) + 10 * what + i
                         : layout->node[n].weight *
                               density(what, i, slope, had(old, layout->node[n].tau, what != PATH && i < 2));
-                worst = fmax(worst, fabs(multipliers_of(solution, &layout->node[n], what)[i] - told));
+                worst = tap_worse(worst, fabs(multipliers_of(solution, &layout->node[n], what)[i] - told));
             }
         CHECK(worst < 1e-12, "%s: %s keep their density: off by %.1e", scheme, names[what], worst);
     }
@@ -163,8 +163,8 @@ static double defect_error(const moray_solution *carried, const double *solved)
     double worst = 0;
     for (int k = 0; k < layout->mesh.intervals; k++)
         for (int i = 0; i < 2 * (layout->interval[k].scheme->points - 1); i++)
-            worst = fmax(worst, fabs(carried->iterate.lambda[layout->interval[k].defect + i] -
-                                     solved[layout->interval[k].defect + i]));
+            worst = tap_worse(worst, fabs(carried->iterate.lambda[layout->interval[k].defect + i] -
+                                          solved[layout->interval[k].defect + i]));
     return worst;
 }
 
