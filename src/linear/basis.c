@@ -76,21 +76,23 @@ static bool may_match(const struct choice *c, const struct basis *basis, const m
     return size > 0 && size >= c->strong * c->row_largest[basis->row[k]];
 }
 
+// The degree of the variable of an entry, at most m + 1.
+static int degree_of(const struct choice *c, const struct basis *basis, const moray_pattern *pattern, int k)
+{
+    const int degree = c->degree[variable_of(basis, pattern, k)], most = basis->m + 1;
+    return degree < most ? degree : most;
+}
+
 // Sorted by degree: entries are dealt out to the lists in the order of the degrees of their variables. order[entries].
 static void list_matches(struct choice *c, const struct basis *basis, const moray_pattern *pattern,
                          const double *values, int *order, int *bucket)
 {
-    const int most = basis->m + 1;
-    for (int k = 0; k < basis->entries; k++) {
-        const int d = c->degree[variable_of(basis, pattern, k)];
-        bucket[(d < most ? d : most) + 1]++;
-    }
-    for (int d = 0; d <= most; d++)
+    for (int k = 0; k < basis->entries; k++)
+        bucket[degree_of(c, basis, pattern, k) + 1]++;
+    for (int d = 0; d <= basis->m; d++)
         bucket[d + 1] += bucket[d];
-    for (int k = 0; k < basis->entries; k++) {
-        const int d = c->degree[variable_of(basis, pattern, k)];
-        order[bucket[d < most ? d : most]++] = k;
-    }
+    for (int k = 0; k < basis->entries; k++)
+        order[bucket[degree_of(c, basis, pattern, k)]++] = k;
     for (int k = 0; k < basis->entries; k++)
         c->begin[basis->row[k] + 1] += may_match(c, basis, pattern, values, k);
     for (int i = 0; i < basis->m; i++)
