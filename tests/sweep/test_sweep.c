@@ -212,6 +212,41 @@ static void test_rounding(void)
     CHECK(result.solved == points && result.improved == 0, "%ld points are bettered by rounding", result.improved);
 }
 
+// Of 0, 1, 2, 3, 4 nobody solves the last, and the one before has a better branch by itself.
+static moray_status solve_edge(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    const double x = point->value[0];
+    FILE *guess = point->guess ? fopen(point->guess, "r") : NULL, *solution = fopen(point->solution, "w");
+    int better = 0;
+    (void)self;
+    if (x == 4 || !solution || (guess && fscanf(guess, "%d", &better) != 1))
+        return moray_error(MORAY_NOT_SOLVED, "nobody solves this");
+    better = better || x == 3;
+    if (guess)
+        fclose(guess);
+    fprintf(solution, "%d\n", better);
+    fclose(solution);
+    fprintf(summary, "{\"solver\": {\"objective\": %d}}\n", better ? 1 : 5);
+    return moray_ok();
+}
+
+// What a neighbour has is tried though there is no line through it, for the point behind it is not solved.
+static void test_edge(void)
+{
+    const double value[] = {0, 1, 2, 3, 4};
+    const moray_sweep_axis axis = {.key = "x", .value = value, .n = 5};
+    moray_sweep_spec spec = spec_of("edge.nc", &no_time);
+    moray_sweep_result result;
+    spec.axis = &axis, spec.axes = 1;
+    spec.solve = solve_edge;
+    CHECK_OK(moray_sweep(&spec, &result), "a sweep up to what cannot be solved");
+    double *objective = numbers("edge.nc", "solver.objective", 5);
+    for (int k = 0; objective && k < 4; k++)
+        CHECK(objective[k] == 1, "the branch of 3 is found at %d: %g", k, objective[k]);
+    CHECK(result.improved == 3 && result.failed == 1, "%ld are bettered", result.improved);
+    free(objective);
+}
+
 // No start solves x = 1, and x = 4 only its own: every attempt is noted, by the point and what it began with.
 static moray_status solve_some(const moray_sweep_point *point, FILE *summary, void *self)
 {
@@ -552,6 +587,7 @@ int main(void)
     test_closed_form();
     test_branches();
     test_rounding();
+    test_edge();
     test_attempts();
     test_misbehaviour();
     test_going_on();
