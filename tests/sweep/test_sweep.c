@@ -212,39 +212,54 @@ static void test_rounding(void)
     CHECK(result.solved == points && result.improved == 0, "%ld points are bettered by rounding", result.improved);
 }
 
-// Of 0, 1, 2, 3, 4 nobody solves the last, and the one before has a better branch by itself.
-static moray_status solve_edge(const moray_sweep_point *point, FILE *summary, void *self)
+// Points at 0, 1, 2, 3, 4, or at 4 to 0, of which the last two are always on a branch of 1 + slope (x - 2) that the
+// others, which have what is their own, only find from a neighbour.
+struct two_ways {
+    double own, slope;
+    bool last_solved, mirrored;
+    int bettered;
+};
+
+static moray_status solve_two_ways(const moray_sweep_point *point, FILE *summary, void *self)
 {
-    const double x = point->value[0];
+    const struct two_ways *ways = self;
+    const double x = ways->mirrored ? 4 - point->value[0] : point->value[0];
     FILE *guess = point->guess ? fopen(point->guess, "r") : NULL, *solution = fopen(point->solution, "w");
-    int better = 0;
-    (void)self;
-    if (x == 4 || !solution || (guess && fscanf(guess, "%d", &better) != 1))
+    int branch = 0;
+    if (!solution || (guess && fscanf(guess, "%d", &branch) != 1) || (x == 4 && !ways->last_solved))
         return moray_error(MORAY_NOT_SOLVED, "nobody solves this");
-    better = better || x == 3;
+    branch = branch || x >= 3;
+    fprintf(solution, "%d\n", branch);
+    fclose(solution);
     if (guess)
         fclose(guess);
-    fprintf(solution, "%d\n", better);
-    fclose(solution);
-    fprintf(summary, "{\"solver\": {\"objective\": %d}}\n", better ? 1 : 5);
+    fprintf(summary, "{\"solver\": {\"objective\": %.17g}}\n", branch ? 1 + ways->slope * (x - 2) : ways->own);
     return moray_ok();
 }
 
-// What a neighbour has is tried though there is no line through it, for the point behind it is not solved.
-static void test_edge(void)
+// A start from a neighbour is tried where the line through it and the point behind it promises more than it may be
+// wrong by: half of its rise and the ten thousandth part; where nothing is solved behind, what the neighbour has.
+static void test_lines(void)
 {
+    const struct two_ways cases[] = {{5, 0, false, false, 3},    {4, 4, true, false, 3},
+                                     {2.9, 4, true, false, 0},   {1.00005, 0, true, false, 0},
+                                     {1.001, 0, true, false, 3}, {0.5, 0, true, false, 0}};
     const double value[] = {0, 1, 2, 3, 4};
     const moray_sweep_axis axis = {.key = "x", .value = value, .n = 5};
-    moray_sweep_spec spec = spec_of("edge.nc", &no_time);
-    moray_sweep_result result;
-    spec.axis = &axis, spec.axes = 1;
-    spec.solve = solve_edge;
-    CHECK_OK(moray_sweep(&spec, &result), "a sweep up to what cannot be solved");
-    double *objective = numbers("edge.nc", "solver.objective", 5);
-    for (int k = 0; objective && k < 4; k++)
-        CHECK(objective[k] == 1, "the branch of 3 is found at %d: %g", k, objective[k]);
-    CHECK(result.improved == 3 && result.failed == 1, "%ld are bettered", result.improved);
-    free(objective);
+    for (unsigned k = 0; k < 2 * sizeof cases / sizeof *cases; k++) {
+        struct two_ways ways = cases[k / 2];
+        moray_sweep_result result;
+        ways.mirrored = k % 2;
+        moray_sweep_spec spec = spec_of("lines.nc", &no_time);
+        spec.axis = &axis, spec.axes = 1;
+        spec.solve = solve_two_ways, spec.self = &ways;
+        CHECK_OK(moray_sweep(&spec, &result), "two branches, one with a slope");
+        CHECK(result.improved == ways.bettered, "%ld are bettered, of own values of %g", result.improved, ways.own);
+        double *objective = numbers("lines.nc", "solver.objective", 5);
+        CHECK(objective && objective[2] == (ways.bettered ? 1 : ways.own), "the middle has the better");
+        free(objective);
+        remove_sweep("lines.nc");
+    }
 }
 
 // No start solves x = 1, and x = 4 only its own: every attempt is noted, by the point and what it began with.
@@ -587,7 +602,7 @@ int main(void)
     test_closed_form();
     test_branches();
     test_rounding();
-    test_edge();
+    test_lines();
     test_attempts();
     test_misbehaviour();
     test_going_on();
