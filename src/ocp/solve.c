@@ -29,8 +29,6 @@ static moray_status check_settings(const moray_settings *settings, const moray_g
     if (settings->intervals < (guess && guess->from ? 0 : 1))
         return moray_error(MORAY_INPUT, "intervals = %d: must be at least 1 (0 with a guess from a solution)",
                            settings->intervals);
-    if (!(settings->tolerance > 0 && settings->tolerance < 1))
-        return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
     if (!(settings->mesh_tolerance > 0))
         return moray_error(MORAY_INPUT, "mesh_tolerance = %g: must be positive", settings->mesh_tolerance);
     if (settings->max_iterations < 0)

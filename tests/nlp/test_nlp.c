@@ -383,8 +383,12 @@ int main(void)
     nlp.g_lower = impossible;
     CHECK_OK(moray_ipopt_solve(&nlp, &settings, &it, &info), "infeasible run");
     CHECK(info.outcome == MORAY_NLP_INFEASIBLE, "infeasible is said: %s", moray_nlp_outcome_text(info.outcome));
-    settings.tolerance = -1;
-    CHECK(moray_failed(moray_ipopt_solve(&nlp, &settings, &it, &info)), "a negative tolerance is refused");
+    const double no_tolerance[] = {-1, 0, 1, NAN};
+    for (int k = 0; k < 4; k++) {
+        settings.tolerance = no_tolerance[k];
+        const moray_status status = moray_ipopt_solve(&nlp, &settings, &it, &info);
+        CHECK(status.code == MORAY_INPUT && strstr(status.text, "must lie between 0 and 1"), "%s", status.text);
+    }
     nlp.self = &nlp;
     CHECK(moray_kkt_error(&nlp, &it, &kkt).code == MORAY_NUMERIC, "an undefined constraint is an error");
     return tap_done();

@@ -145,6 +145,60 @@ static void test_scene(void)
     free(page);
 }
 
+// All that a scene may have, of two bodies.
+static void test_whole_scene(void)
+{
+    const double at[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, times[] = {0, 0.1}, lengths[] = {0.1, 0.2},
+                 effort[] = {0.5, -0.5}, force[] = {1, 2, 3, 4, 5, 6, 7, 8}, speed[] = {0.25, 0.75}, power[] = {8, 9},
+                 asked[] = {0, 1, 2}, beside[] = {0, -1, -2};
+    const moray_scene_body bodies[] = {{.name = "one", .links = 2, .length = 0.3, .width = 0.1, .at = at},
+                                       {.name = "<two>",
+                                        .colour = MORAY_COLOUR_BEST,
+                                        .links = 2,
+                                        .length = 0.4,
+                                        .width = 0.2,
+                                        .lengths = lengths,
+                                        .at = at,
+                                        .effort = effort,
+                                        .force = force}};
+    const moray_channel channels[] = {{"speed", "m/s", speed}, {"power", "W", power}};
+    const moray_scene scene = {.title = "All",
+                               .frames = 2,
+                               .t = times,
+                               .bodies = bodies,
+                               .n_bodies = 2,
+                               .effort = "Torque",
+                               .asked_x = asked,
+                               .asked_y = beside,
+                               .n_asked = 3,
+                               .channels = channels,
+                               .n_channels = 2};
+    moray_output *output = open_in("whole");
+    CHECK_OK(moray_output_report(output, &(moray_report){.title = "Seen", .scene = &scene}), "report");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *page = content("whole/report.html");
+    CHECK(strstr(page, "\"asked\":[[0,0],[1.000,-1.000],[2.000,-2.000]]"), "the path that is asked for");
+    CHECK(strstr(page, "\"channels\":[{\"name\":\"speed\",\"unit\":\"m/s\",\"values\":[0.2500,0.7500]},"
+                       "{\"name\":\"power\",\"unit\":\"W\",\"values\":[8.0000,9.0000]}]"),
+          "each number over time has its name and unit");
+    CHECK(strstr(page, "{\"name\":\"one\",\"colour\":0,\"length\":0.3000,\"width\":0.1000,\"at\":[[1.0000,"),
+          "a body of equal links without forces");
+    CHECK(strstr(page, "12.0000]]}\n,{\"name\":\"\\u003ctwo>\""), "which ends with its last place");
+    CHECK(strstr(page, "\"width\":0.2000,\"lengths\":[0.1000,0.2000],\"at\":"), "another has lengths");
+    CHECK(strstr(page, "\"effort\":[[0.5000],\n[-0.5000]],\"force\":[[1.0000,2.0000,3.0000,4.0000],\n[5.0000,6.0000,"
+                       "7.0000,8.0000]]}"),
+          "efforts and forces, frame by frame");
+    CHECK(strstr(page, "Torque in the joints") && strstr(page, "drag of the water") &&
+              strstr(page, "what is asked for"),
+          "and a key to them");
+    free(page);
+    page = content("scene/report.html");
+    CHECK(!strstr(page, "in the joints:") && !strstr(page, "drag of the water") && !strstr(page, "what is asked for"),
+          "which a scene without them has not");
+    free(page);
+}
+
 int main(void)
 {
     if (!enter())
@@ -154,6 +208,7 @@ int main(void)
     test_report_order();
     test_contents();
     test_scene();
+    test_whole_scene();
     leave();
     return tap_done();
 }
