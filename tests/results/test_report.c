@@ -185,6 +185,7 @@ static void test_whole_scene(void)
     CHECK(strstr(page, "{\"name\":\"one\",\"colour\":0,\"length\":0.3000,\"width\":0.1000,\"at\":[[1.0000,"),
           "a body of equal links without forces");
     CHECK(strstr(page, "12.0000]]}\n,{\"name\":\"\\u003ctwo>\""), "which ends with its last place");
+    CHECK(strstr(page, "\"colour\":0,\"length\":0.4000"), "another has the first of the colours that say something");
     CHECK(strstr(page, "\"width\":0.2000,\"lengths\":[0.1000,0.2000],\"at\":"), "another has lengths");
     CHECK(strstr(page, "\"effort\":[[0.5000],\n[-0.5000]],\"force\":[[1.0000,2.0000,3.0000,4.0000],\n[5.0000,6.0000,"
                        "7.0000,8.0000]]}"),

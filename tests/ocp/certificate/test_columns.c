@@ -97,11 +97,47 @@ static void test_extrapolates(void)
     }
 }
 
+// An exponential beside a large constant, which says how exact a small slope need be.
+struct counted {
+    double sign, constant;
+    int calls;
+};
+
+static void counted_value(void *self, const double *in, double *out)
+{
+    struct counted *counted = self;
+    counted->calls++;
+    out[0] = counted->sign * (counted->constant + 1e-3 * exp(9 * in[0]));
+}
+
+static int calls_for(double sign, double constant)
+{
+    static const double in = 0.3, size = 1;
+    struct counted self = {.sign = sign, .constant = constant};
+    const moray_map map = {.n_in = 1, .n_out = 1, .value = counted_value, .self = &self};
+    double jac, doubt, kink;
+    CHECK_OK(moray_difference_columns(&map, &in, &size, NULL, &jac, &doubt, &kink), "differences");
+    CHECK_NEAR(jac, sign * 9e-3 * exp(9 * in), 1e-9 * (1 + constant), "of an exponential");
+    return self.calls;
+}
+
+// What is exact enough beside values and slopes is no better with the other sign.
+static void test_effort(void)
+{
+    for (int k = 0; k < 2; k++) {
+        const double constant = k ? 1e3 : 0;
+        const int calls = calls_for(1, constant), turned = calls_for(-1, constant);
+        CHECK(calls == turned, "%d values, with the other sign %d", calls, turned);
+    }
+    CHECK(calls_for(1, 1e3) < calls_for(1, 0), "beside a large value fewer are needed");
+}
+
 int main(void)
 {
     test_beside();
     test_mean();
     test_smooth();
     test_extrapolates();
+    test_effort();
     return tap_done();
 }
