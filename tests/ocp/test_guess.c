@@ -315,6 +315,28 @@ static void test_read_solution(void)
     moray_ocp_free(ocp);
 }
 
+// The fewest stages and the most.
+static void test_stages(void)
+{
+    static const char *const scheme[] = {"gauss1", "radau64"};
+    moray_ocp *ocp = legs();
+    for (int k = 0; k < 2; k++) {
+        moray_settings settings = moray_settings_default();
+        moray_solution *loaded = NULL;
+        settings.scheme = scheme[k];
+        settings.intervals = 2;
+        settings.max_refinements = 0;
+        moray_solution *solution = solve(ocp, &settings, NULL);
+        CHECK_OK(moray_solution_save(solution, kept), "saved");
+        CHECK_OK(moray_solution_load(&loaded, ocp, NULL, kept), scheme[k]);
+        CHECK(loaded && moray_solution_objective(loaded) == moray_solution_objective(solution), "%s is read again",
+              scheme[k]);
+        moray_solution_free(loaded);
+        moray_solution_free(solution);
+    }
+    moray_ocp_free(ocp);
+}
+
 static void check_damaged(const moray_ocp *ocp, int number, const char *line, const char *expected)
 {
     moray_solution *solution;
@@ -339,7 +361,9 @@ static void test_damaged(void)
     check_damaged(ocp, 2, "scheme\n", "line 2: scheme, phases");
     check_damaged(ocp, 3, "phase 3 1 0 1 intervals 2\n", "a phase of 3 states");
     check_damaged(ocp, 3, "phase\n", "line 3: phase nx nu");
-    check_damaged(ocp, 4, "99 0.5\n", "line 4: stages and a later end");
+    static const char *const stages[] = {"99 0.5\n", "65 0.5\n", "0 0.5\n", "-1 0.5\n", "2.5 0.5\n"};
+    for (int k = 0; k < 5; k++)
+        check_damaged(ocp, 4, stages[k], "line 4: stages and a later end");
     check_damaged(ocp, 5, "3 0.9\n", "line 5: 1 as the end of the last interval");
     check_damaged(ocp, 9, "outcome 17 iterations 1 seconds 0\n", "line 9: outcome");
     check_damaged(ocp, 9, "outcome 0 iterations 1 seconds inf\n", "line 9: outcome");
@@ -367,6 +391,7 @@ int main(void)
     test_kept();
     test_continued();
     test_read_solution();
+    test_stages();
     test_damaged();
     remove(path);
     remove(kept);
