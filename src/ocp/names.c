@@ -53,12 +53,9 @@ static void defect_name(const struct layout *layout, const moray_ocp *ocp, const
     const struct phase_layout *phase = &layout->phase[p];
     const int nx = ocp->phase[p].nx;
     char what[name_size];
-    int k = 0;
-    while (k + 1 < phase->mesh.intervals && row >= phase->interval[k + 1].defect)
-        k++;
-    const int i = row - phase->interval[k].defect;
+    const int i = row - phase->interval[0].defect; // as many to a node, but for the first
     moray_function_entry_name("defect of state", "x", ocp->phase[p].x_names, i % nx, what, name_size);
-    in_phase(layout, ocp, x, p, phase->node[phase->interval[k].first + i / nx + 1].tau, what, text, size);
+    in_phase(layout, ocp, x, p, phase->node[i / nx + 1].tau, what, text, size);
 }
 
 static void hold_name(const struct layout *layout, const moray_ocp *ocp, const double *x, int p, int row, char *text,
