@@ -59,25 +59,25 @@ static void scale_row(moray_scheme *scheme, int i)
     }
 }
 
-// With M the inverse of A's part that belongs to the stages after the first point: P = M (x_i - x_0), Q = M A.
+// With M the inverse of A's part that belongs to the stages after the first point: P = M (x_i - x_0), Q = M A, of which
+// only the first column is neither 1 nor 0.
 static bool differentiate(moray_scheme *scheme, double *block, double *right)
 {
-    const int n = scheme->points, inner = scheme->last; // points 1..last are solved for
+    const int n = scheme->points, inner = scheme->last, width = n + 1; // points 1..last are solved for
     for (int i = 0; i < inner; i++) {
         for (int j = 0; j < inner; j++)
             block[i * inner + j] = scheme->A[(i + 1) * n + j + 1];
         for (int j = 0; j < n; j++)
-            right[i * 2 * n + j] = (j == i + 1) - (j == 0);
-        for (int j = 0; j < n; j++)
-            right[i * 2 * n + n + j] = scheme->A[(i + 1) * n + j];
+            right[i * width + j] = (j == i + 1) - (j == 0);
+        right[i * width + n] = scheme->A[(i + 1) * n];
     }
-    if (!moray_dense_solve(inner, block, 2 * n, right))
+    if (!moray_dense_solve(inner, block, width, right))
         return false;
     for (int i = 0; i < inner; i++)
         for (int j = 0; j < n; j++) {
             const bool own = j == i + 1, lead = j == 0 && scheme->first == 0;
-            scheme->P[i * n + j] = right[i * 2 * n + j];
-            scheme->Q[i * n + j] = own ? 1 : lead ? right[i * 2 * n + n + j] : 0; // the rest is zero but for rounding
+            scheme->P[i * n + j] = right[i * width + j];
+            scheme->Q[i * n + j] = own ? 1 : lead ? right[i * width + n] : 0;
         }
     return true;
 }
@@ -96,7 +96,7 @@ static void close_gauss(moray_scheme *scheme)
 static moray_status fill_tables(moray_scheme *scheme)
 {
     const int n = scheme->points;
-    double *block = calloc((size_t)(3 * n * n), sizeof *block), ell[MORAY_MAX_STAGES + 2];
+    double *block = calloc((size_t)(n * (2 * n + 1)), sizeof *block), ell[MORAY_MAX_STAGES + 2];
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for a scheme of %d stages", scheme->stages);
     place_nodes(scheme);
