@@ -75,9 +75,8 @@ static bool differentiate(moray_scheme *scheme, double *block, double *right)
         return false;
     for (int i = 0; i < inner; i++)
         for (int j = 0; j < n; j++) {
-            const bool own = j == i + 1, lead = j == 0 && scheme->first == 0;
             scheme->P[i * n + j] = right[i * width + j];
-            scheme->Q[i * n + j] = own ? 1 : lead ? right[i * width + n] : 0;
+            scheme->Q[i * n + j] = j == i + 1 ? 1 : j == 0 ? right[i * width + n] : 0;
         }
     return true;
 }
