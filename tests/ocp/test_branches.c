@@ -102,6 +102,33 @@ static moray_solution *solve(const moray_ocp *ocp)
     return solution;
 }
 
+static moray_nlp_size size_from(const moray_ocp *ocp, const moray_solution *start, int *fresh)
+{
+    const moray_guess guess = moray_guess_from_solution(start);
+    moray_settings settings = moray_settings_default();
+    moray_solution *solution = NULL;
+    int meshes;
+    settings.intervals = 50;
+    settings.max_refinements = 0;
+    CHECK_OK(moray_solve(ocp, &settings, &guess, &solution), "from a solution");
+    const moray_nlp_size size = moray_solution_size(solution);
+    *fresh = moray_solution_history(solution, &meshes)->dependences;
+    moray_solution_free(solution);
+    return size;
+}
+
+// What the guess shows is in the first programme.
+static void check_guess(const struct branch *hidden, const moray_ocp *known, const moray_solution *start)
+{
+    int fresh, none;
+    moray_ocp *unknown = problem(hidden);
+    const moray_nlp_size got = size_from(unknown, start, &fresh), want = size_from(known, start, &none);
+    CHECK(got.nnz_jac == want.nnz_jac && got.nnz_hess == want.nnz_hess && fresh == 0,
+          "%s: in the guess: %d and %d entries for %d and %d", kind_names[hidden->kind], got.nnz_jac, got.nnz_hess,
+          want.nnz_jac, want.nnz_hess);
+    moray_ocp_free(unknown);
+}
+
 static void check_kind(int kind)
 {
     const struct branch hidden = {kind, false}, shown = {kind, true};
@@ -120,6 +147,7 @@ static void check_kind(int kind)
           kind_names[kind], size.nnz_jac, size.nnz_hess);
     printf("# %s: %.8g, %d meshes, %d dependences found at solutions\n", kind_names[kind],
            moray_solution_objective(found), meshes, fresh);
+    check_guess(&hidden, one, found);
     moray_solution_free(found);
     moray_solution_free(reference);
     moray_ocp_free(one);
