@@ -9,6 +9,7 @@
 #include "moray/num.h"
 #include "moray/ocp.h"
 #include "moray/sim.h"
+#include "ocp/probe.h"
 #include "ocp/problem.h"
 
 enum { by_time, by_state, by_control, by_parameter, by_time_curved, by_place, by_place_curved, kinds };
@@ -154,6 +155,46 @@ static void check_kind(int kind)
     moray_ocp_free(other);
 }
 
+// ---- Where functions are looked at first ----
+
+static void drift(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+}
+
+static void rest(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].xf[0];
+}
+
+static double looked_at(double place)
+{
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .continuous = drift,
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(place)),
+                                    .xf = MORAY_BOUNDS(moray_fixed(place))};
+    double in[3] = {0};
+    moray_ocp *ocp = NULL;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = rest}), "fixed ends");
+    moray_phase_probe(ocp, &ocp->phase[0], 0, in);
+    moray_ocp_free(ocp);
+    return in[0];
+}
+
+// Of a state that is fixed at both ends, beside these, whose value may be a special one.
+static void test_probe(void)
+{
+    for (int k = 0; k < 2; k++) {
+        const double place = k ? 200 : 3, above = looked_at(place) - place, below = looked_at(-place) + place;
+        CHECK(above >= 0.05 * place && fabs(below - above) < 1e-12 * place, "%g: beside it by %g and %g", place, above,
+              below);
+    }
+}
+
 // ---- A start that is rounding ----
 
 static void cubic(const moray_node *at, moray_rates *out, const void *data)
@@ -202,6 +243,7 @@ static void test_tiny_start(void)
 
 int main(void)
 {
+    test_probe();
     test_tiny_start();
     for (int kind = 0; kind < kinds; kind++)
         check_kind(kind);
