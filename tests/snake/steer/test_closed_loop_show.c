@@ -81,12 +81,29 @@ static void test_rows(void)
     moray_swim_closed_loop_free(&closed_loop);
 }
 
+// Three joints and the offset, where the robot steers most.
+static void test_joints(void)
+{
+    moray_swim_closed_loop closed_loop = sail((double[]){0, 0});
+    moray_output *output = open_in("joints");
+    CHECK_OK(moray_swim_closed_loop_draw_joints(output, &closed_loop), "figure");
+    CHECK_OK(moray_output_commit(output), "commit");
+    char *svg = content("joints/joints.svg");
+    static const char *const labels[] = {"joint at the tail", "in the middle", "at the head", "offset"};
+    for (int k = 0; k < 4; k++)
+        CHECK(strstr(svg, labels[k]), "%s is drawn", labels[k]);
+    free(svg);
+    moray_output_free(output);
+    moray_swim_closed_loop_free(&closed_loop);
+}
+
 int main(void)
 {
     if (!enter())
         return 1;
     test_arrow();
     test_rows();
+    test_joints();
     leave();
     return tap_done();
 }
