@@ -12,7 +12,7 @@
 static const double regular = 1e-15; // reciprocal condition of a basis, by its pivots
 static const double far =
     1e3; // what one of the other variables may move a basic one by, a little of which costs no digits
-enum { most_freedom = 24, most_vain = 3, most_exchanges = 8 };
+enum { most_freedom = 24, most_vain = 3, most_exchanges = 8, most_rounds = 3 };
 
 static moray_status no_memory(int n)
 {
@@ -39,7 +39,7 @@ static moray_status allocate(null_space *ns)
     const size_t nnz = (size_t)ns->pattern.nnz;
     ns->source = malloc((3 * (size_t)ns->hessian + 1) * sizeof *ns->source);
     ns->block =
-        calloc(nnz + (size_t)ns->hessian + (2 * v + m) * f + f * (f + 1) / 2 + f + 5 * n + 1, sizeof *ns->block);
+        calloc(nnz + (size_t)ns->hessian + (2 * v + m) * f + f * (f + 1) / 2 + f + v + 5 * n + 1, sizeof *ns->block);
     if (!ns->block || !ns->source)
         return no_memory(ns->n);
     ns->i = ns->source + ns->hessian;
@@ -51,7 +51,8 @@ static moray_status allocate(null_space *ns)
     ns->columns = ns->HZ + v * f;
     ns->R = ns->columns + m * f;
     ns->r = ns->R + f * (f + 1) / 2;
-    ns->largest = ns->r + f;
+    ns->weight = ns->r + f;
+    ns->largest = ns->weight + v;
     ns->rhs = ns->largest + n;
     ns->x = ns->rhs + n;
     ns->step = ns->x + n;
@@ -223,26 +224,42 @@ static moray_status reduce(null_space *ns)
     return f > 0 ? moray_ldl_factor(ns->reduced, ns->R, 0.1) : moray_ok();
 }
 
-// With the values at hand. planned <- false where they make the basis singular.
+// With the values at hand. planned <- false where they make the basis singular, solvable where nothing else either.
 static moray_status try_basis(null_space *ns)
 {
     const moray_status status = moray_basis_factor(&ns->basis, ns->values);
-    ns->planned = !moray_failed(status) && moray_sparse_lu_condition(ns->basis.lu) >= regular;
+    ns->solvable = !moray_failed(status);
+    ns->planned = ns->solvable && moray_sparse_lu_condition(ns->basis.lu) >= regular;
     return status.code == MORAY_NUMERIC ? moray_ok() : status;
 }
 
-// The entry of Z that is largest among the basic variables.
+// What a step of each variable weighs: the root of its curvature, of which a bound nearby has much. Of little: 1.
+static void find_weights(null_space *ns)
+{
+    for (int i = 0; i < ns->variables; i++)
+        ns->weight[i] = 1;
+    for (int e = 0; e < ns->hessian; e++)
+        if (ns->i[e] == ns->j[e])
+            ns->weight[ns->i[e]] = larger(ns->weight[ns->i[e]], sqrt(fabs(ns->H[e])));
+}
+
+// The entry of Z that weighs most among the basic variables, over the weight of the one that moves it.
 static double find_largest(const null_space *ns, int *variable, int *column)
 {
     const int f = ns->freedom;
-    double largest = 0;
+    double of_other[most_freedom], largest = 0;
     for (int i = 0; i < ns->variables; i++)
-        for (int c = 0; c < f && ns->basis.place[i] >= 0; c++)
-            if (fabs(ns->Z[i * f + c]) > largest) {
-                largest = fabs(ns->Z[i * f + c]);
+        if (ns->basis.place[i] < 0)
+            of_other[-1 - ns->basis.place[i]] = ns->weight[i];
+    for (int i = 0; i < ns->variables; i++)
+        for (int c = 0; c < f && ns->basis.place[i] >= 0; c++) {
+            const double moved = fabs(ns->Z[i * f + c]) * ns->weight[i] / of_other[c];
+            if (moved > largest) {
+                largest = moved;
                 *variable = i;
                 *column = c;
             }
+        }
     return largest;
 }
 
@@ -266,21 +283,34 @@ static void exchange(null_space *ns, int variable, int column)
         ns->Z[variable * f + c] = c == column;
 }
 
-// Until the other variables move no basic one by far more than themselves: each exchange makes the determinant of the
-// basis larger by the entry of Z (a basis of nearly maximal volume), and Z is then well conditioned.
-static moray_status enlarge_basis(null_space *ns)
+// Until the other variables move no basic one by far more than themselves, both as they weigh: each exchange makes the
+// determinant of the basis larger by the entry of Z (a basis of nearly maximal volume), and Z is then well conditioned.
+// Of a basis that is singular but for rounding the entries are the direction that it lacks, so that this repairs it;
+// variables near a bound leave the basis, where their curvature would drown all other.
+static moray_status enlarge_basis(null_space *ns, bool *changed)
 {
     int variable = 0, column = 0, exchanges = 0;
     MORAY_TRY(find_null_space(ns));
+    find_weights(ns);
     while (exchanges < most_exchanges * ns->freedom && find_largest(ns, &variable, &column) > far) {
         exchange(ns, variable, column);
         exchanges++;
     }
-    if (exchanges == 0)
+    *changed = exchanges > 0;
+    if (!*changed)
         return moray_ok();
-    ns->planned = false;
+    ns->planned = ns->solvable = false;
     MORAY_TRY(moray_basis_remake(&ns->basis, &ns->pattern));
     return try_basis(ns);
+}
+
+// Z of a poor basis is poor too: once more with what it made.
+static moray_status mend_basis(null_space *ns)
+{
+    bool changed = ns->freedom > 0;
+    for (int round = 0; round < most_rounds && changed && ns->solvable; round++)
+        MORAY_TRY(enlarge_basis(ns, &changed));
+    return moray_ok();
 }
 
 // The basis of the time before, or another one that is regular; planned <- false where there is none.
@@ -292,10 +322,10 @@ static moray_status factor_basis(null_space *ns)
         bool found;
         moray_basis_free(&ns->basis);
         MORAY_TRY(moray_basis_choose(&ns->basis, ns->variables, ns->m, &ns->pattern, ns->values, view, &found));
-        if (found)
+        if (found) {
             MORAY_TRY(try_basis(ns));
-        if (ns->planned && ns->freedom > 0)
-            MORAY_TRY(enlarge_basis(ns));
+            MORAY_TRY(mend_basis(ns));
+        }
     }
     return moray_ok();
 }
@@ -331,7 +361,11 @@ moray_status moray_null_space_factor(null_space *ns, const double *values, bool 
         return moray_ok();
     const bool chosen = ns->planned;
     MORAY_TRY(reduce_by_basis(ns));
-    if (chosen && !ns->factored) { // by a basis of before: another one may tell
+    if (chosen && ns->planned && !ns->factored) { // by a basis of before, whose variables have come to their bounds
+        MORAY_TRY(mend_basis(ns));
+        MORAY_TRY(reduce_by_basis(ns));
+    }
+    if (chosen && !ns->factored) {
         moray_null_space_forget(ns);
         MORAY_TRY(reduce_by_basis(ns));
     }

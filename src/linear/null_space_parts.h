@@ -10,7 +10,8 @@ struct null_space {
     moray_pattern pattern;        // as given
     int hessian, *source, *i, *j; // entries of H, in the pattern, and where they stand; [hessian] each
     int vain;                     // matrices for which there was no basis, after some of which none is sought
-    bool planned, factored;       // the basis is chosen; and factored with the values at hand
+    bool solvable;                // the basis is factored, well conditioned or not
+    bool planned, factored;       // it is well conditioned; and all is factored with the values at hand
     struct basis basis;
     moray_ldl *reduced;                // of Z' H Z, full lower triangle
     double *block;                     // holds the arrays below
@@ -19,6 +20,7 @@ struct null_space {
     double *Z, *HZ;                    // [variables x freedom], by rows
     double *columns;                   // [m x freedom], by columns
     double *R, *r;                     // [freedom x (freedom + 1) / 2]; [freedom]
+    double *weight;                    // [variables]
     double *largest;                   // [n] entry of each row
     double *rhs, *x, *step, *residual; // [n]
 };
