@@ -288,7 +288,7 @@ typedef struct moray_settings {
     bool gauss_newton; // false; true leaves the curvature of constraints and of what is observed out of the Hessian
     int print_level;   // 0: Ipopt's log on standard error
     moray_linear_solver linear_solver; // our own, which falls back on MUMPS
-    bool timing;                       // false; true has the linear solver timed, see moray_nlp_info.linear_seconds
+    bool timing;                       // false; true has parts timed by the processor's clock, see moray_nlp_settings
     const moray_key_value *ipopt;      // [n_ipopt] further options of Ipopt, which must outlive the solution
     int n_ipopt;                       // 0
     moray_progress_fn *progress;

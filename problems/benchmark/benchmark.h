@@ -46,15 +46,17 @@ enum { FLOOR_FACTORS, FLOOR_STREAM, FLOOR_CALLS, FLOOR_TERMS };
 double cost_floor(const machine *rates, const cost *c, double term[FLOOR_TERMS]);
 const char *floor_term_text(const double term[FLOOR_TERMS]); // the largest
 
-// What is measured. `solve` builds the problem and solves it; `forget` frees what it built, the solution apart. `begin`
-// prepares what does not count as part of a solve, `end` frees that; NULL: nothing.
+// What is measured. `solve` builds the problem and solves it, its parts timed or not; `forget` frees what it built, the
+// solution apart. `begin` prepares what does not count as part of a solve, `end` frees that; NULL: nothing.
 typedef struct subject {
-    moray_status (*begin)(void *self), (*solve)(void *self, moray_linear_solver linear, moray_solution **solution);
+    moray_status (*begin)(void *self);
+    moray_status (*solve)(void *self, moray_linear_solver linear, bool timed, moray_solution **solution);
     void (*forget)(void *self), (*end)(void *self);
     void *self;
 } subject;
 
-// Medians of `repeats` measurements, piece by piece. Error: those of begin and solve.
+// Medians of `repeats` measurements, piece by piece: the total of a solve that is not timed within, the pieces of
+// another that is. Error: those of begin and solve.
 moray_status measure(const subject *of, moray_linear_solver linear, int repeats, cost *found);
 
 // Slope of log y over log x by least squares; x, y > 0 (pairs where one is not are left out; NaN with less than two).
@@ -63,7 +65,7 @@ double fitted_exponent(const double *x, const double *y, int n);
 // ---- Subjects ------------------------------------------------------------------------------------------------------
 
 // Settings of every solve here.
-moray_settings benchmark_settings(const char *scheme, int intervals, moray_linear_solver linear);
+moray_settings benchmark_settings(const char *scheme, int intervals, moray_linear_solver linear, bool timed);
 
 // The optimal-gait problem as max_speed and min_energy pose it, from the orbit of the paper's gait.
 typedef struct gait_case {

@@ -60,10 +60,10 @@ static moray_status build(chain_case *c)
     return status;
 }
 
-static moray_status solve(void *self, moray_linear_solver linear, moray_solution **solution)
+static moray_status solve(void *self, moray_linear_solver linear, bool timed, moray_solution **solution)
 {
     chain_case *c = self;
-    const moray_settings settings = benchmark_settings("hermite-simpson", 20, linear);
+    const moray_settings settings = benchmark_settings("hermite-simpson", 20, linear, timed);
     MORAY_TRY(build(c));
     return moray_solve(c->ocp, &settings, NULL, solution);
 }

@@ -46,11 +46,11 @@ static moray_gait_problem_spec spec_of(const gait_case *c)
                                                 .course_speed = fastest ? 0 : c->speed}};
 }
 
-static moray_status solve(void *self, moray_linear_solver linear, moray_solution **solution)
+static moray_status solve(void *self, moray_linear_solver linear, bool timed, moray_solution **solution)
 {
     gait_case *c = self;
     const moray_gait_problem_spec spec = spec_of(c);
-    moray_settings settings = benchmark_settings(c->scheme, c->intervals, linear);
+    moray_settings settings = benchmark_settings(c->scheme, c->intervals, linear, timed);
     settings.barrier = c->barrier > 0 ? c->barrier : settings.barrier;
     MORAY_TRY(moray_gait_problem_new(&c->problem, &spec));
     return moray_gait_problem_solve(c->problem, &settings, &c->gait, &c->orbit, solution);

@@ -34,12 +34,12 @@ static moray_steering_limits limits_of(const horizon_case *c)
     return moray_steering_limits_map(&c->robot, &limits, &paper, MORAY_CONTROL_ORIENTED, c->model);
 }
 
-static moray_status solve(void *self, moray_linear_solver linear, moray_solution **solution)
+static moray_status solve(void *self, moray_linear_solver linear, bool timed, moray_solution **solution)
 {
     horizon_case *c = self;
     const int least = (int)ceil(per_period * c->seconds * c->gait.omega / (2 * M_PI));
     const int intervals = moray_reference_intervals(&c->reference, 0, c->seconds, least);
-    const moray_settings settings = benchmark_settings("radau5", intervals, linear);
+    const moray_settings settings = benchmark_settings("radau5", intervals, linear, timed);
     const moray_heading_spec spec = {.robot = c->robot,
                                      .model = c->model,
                                      .current = {0.1, 0.1},

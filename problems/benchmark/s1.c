@@ -86,10 +86,10 @@ static moray_status make_ocp(s1_case *c)
                                                     .data = c});
 }
 
-static moray_status solve(void *self, moray_linear_solver linear, moray_solution **solution)
+static moray_status solve(void *self, moray_linear_solver linear, bool timed, moray_solution **solution)
 {
     s1_case *c = self;
-    const moray_settings settings = benchmark_settings("hermite-simpson", 20, linear);
+    const moray_settings settings = benchmark_settings("hermite-simpson", 20, linear, timed);
     const double s[] = {c->gait.amplitude, c->gait.omega, c->gait.delta, c->gait.offset, 0};
     const moray_samples orbit = {.n = c->orbit.n, .time = c->orbit.t, .x = c->orbit.x};
     const moray_guess guess = {.phase = &orbit, .s = s};

@@ -19,9 +19,10 @@ struct session {
     const moray_nlp *nlp;
     const moray_nlp_settings *settings;
     moray_nlp_info *info;
-    double *last;   // [n] where the Jacobian was last asked for: the iterate, when an iteration is reported
-    double *best;   // [n] the iterate of the least violation, then objective
-    double *bounds; // [2 n + 2 m] as Ipopt gets them
+    double (*clock)(void); // of the parts
+    double *last;          // [n] where the Jacobian was last asked for: the iterate, when an iteration is reported
+    double *best;          // [n] the iterate of the least violation, then objective
+    double *bounds;        // [2 n + 2 m] as Ipopt gets them
     double best_violation, best_objective;
 };
 
@@ -30,10 +31,9 @@ static const double as_good_as_feasible = 1e-6;
 
 enum { eval_objective, eval_gradient, eval_constraints, eval_jacobian, eval_hessian };
 
-// By the clock on the wall: the processor's costs a call of the kernel, as long as a small evaluation.
 static Bool account(struct session *session, int which, double start, bool ok)
 {
-    const double spent = moray_clock() - start;
+    const double spent = session->clock() - start;
     session->info->evaluation_seconds += spent;
     session->info->evaluation_by[which] += spent;
     session->info->evaluations[which]++;
@@ -44,7 +44,7 @@ static Bool on_objective(Index n, Number *x, Bool fresh, Number *f, UserDataPtr 
 {
     (void)n;
     struct session *session = data;
-    const double start = moray_clock();
+    const double start = session->clock();
     return account(session, eval_objective, start, session->nlp->objective(session->nlp->self, x, fresh, f));
 }
 
@@ -52,7 +52,7 @@ static Bool on_gradient(Index n, Number *x, Bool fresh, Number *gradient, UserDa
 {
     (void)n;
     struct session *session = data;
-    const double start = moray_clock();
+    const double start = session->clock();
     return account(session, eval_gradient, start, session->nlp->gradient(session->nlp->self, x, fresh, gradient));
 }
 
@@ -61,7 +61,7 @@ static Bool on_constraints(Index n, Number *x, Bool fresh, Index m, Number *g, U
     (void)n;
     (void)m;
     struct session *session = data;
-    const double start = moray_clock();
+    const double start = session->clock();
     return account(session, eval_constraints, start, session->nlp->constraints(session->nlp->self, x, fresh, g));
 }
 
@@ -77,7 +77,7 @@ static Bool on_jacobian(Index n, Number *x, Bool fresh, Index m, Index nnz, Inde
         return TRUE;
     }
     memcpy(session->last, x, (size_t)n * sizeof *x);
-    const double start = moray_clock();
+    const double start = session->clock();
     return account(session, eval_jacobian, start, nlp->jacobian(nlp->self, x, fresh, values));
 }
 
@@ -94,7 +94,7 @@ static Bool on_hessian(Index n, Number *x, Bool fresh, Number sigma, Index m, Nu
         memcpy(col, nlp->hess_col, (size_t)nnz * sizeof *col);
         return TRUE;
     }
-    const double start = moray_clock();
+    const double start = session->clock();
     return account(session, eval_hessian, start, nlp->hessian(nlp->self, x, fresh, sigma, lambda, values));
 }
 
@@ -287,7 +287,7 @@ static moray_status solve_with(struct session *session, moray_iterate *iterate)
 static moray_status solve_own(struct session *session, moray_iterate *iterate, moray_status *verdict)
 {
     struct ipopt_linear linear;
-    moray_ipopt_linear_open(&linear);
+    moray_ipopt_linear_open(&linear, session->clock);
     moray_status status = solve_with(session, iterate);
     moray_ipopt_linear_close(&linear);
     session->info->linear_seconds = linear.seconds;
@@ -337,7 +337,15 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     double *block = calloc(7 * n + 3 * m + 1, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory for %d variables", nlp->n);
-    struct session session = {nlp, settings, info, block, block + n, block + 5 * n + m, INFINITY, INFINITY};
+    struct session session = {.nlp = nlp,
+                              .settings = settings,
+                              .info = info,
+                              .clock = settings->timing ? moray_processor_clock : moray_clock,
+                              .last = block,
+                              .best = block + n,
+                              .bounds = block + 5 * n + m,
+                              .best_violation = INFINITY,
+                              .best_objective = INFINITY};
     moray_iterate start = {
         .x = block + 2 * n, .z_lower = block + 3 * n, .z_upper = block + 4 * n, .lambda = block + 5 * n};
     copy_iterate(nlp, iterate, &start);

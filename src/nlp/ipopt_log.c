@@ -40,11 +40,11 @@ bool moray_ipopt_log_find(const struct ipopt_log *log, const char *words, char *
 double moray_ipopt_log_linear_seconds(const struct ipopt_log *log)
 {
     char line[200];
-    double user, system, wall;
+    double user, system;
     if (!moray_ipopt_log_find(log, "StdAugSystemSolverMultiSolve", line, sizeof line) || !strchr(line, ':') ||
-        sscanf(strchr(line, ':'), ": %lf (sys: %lf wall: %lf", &user, &system, &wall) != 3)
+        sscanf(strchr(line, ':'), ": %lf (sys: %lf", &user, &system) != 2)
         return NAN;
-    return wall;
+    return user + system;
 }
 
 void moray_ipopt_logs_open(IpoptProblem problem, int print_level, bool timing, struct ipopt_logs *logs)
