@@ -34,6 +34,10 @@ moray_status moray_basis_remake(struct basis *basis, const moray_pattern *patter
 // whole pattern. Error: MORAY_NUMERIC where they are singular, MORAY_MEMORY.
 moray_status moray_basis_factor(struct basis *basis, const double *values);
 
+// The same of values that are wrong by a share of 1e-14: what is singular to the last digit then shows the direction
+// that it lacks. Never of use for a solution.
+moray_status moray_basis_factor_nearly(struct basis *basis, const double *values);
+
 // columns[others][m] <- the columns that are not in the basis.
 void moray_basis_others(const struct basis *basis, const double *values, double *columns);
 

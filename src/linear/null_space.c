@@ -224,12 +224,14 @@ static moray_status reduce(null_space *ns)
     return f > 0 ? moray_ldl_factor(ns->reduced, ns->R, 0.1) : moray_ok();
 }
 
-// With the values at hand. planned <- false where they make the basis singular, solvable where nothing else either.
+// With the values at hand. planned <- false where they make the basis singular, solvable where nearby ones do, too.
 static moray_status try_basis(null_space *ns)
 {
-    const moray_status status = moray_basis_factor(&ns->basis, ns->values);
+    moray_status status = moray_basis_factor(&ns->basis, ns->values);
+    ns->planned = !moray_failed(status) && moray_sparse_lu_condition(ns->basis.lu) >= regular;
+    if (status.code == MORAY_NUMERIC)
+        status = moray_basis_factor_nearly(&ns->basis, ns->values);
     ns->solvable = !moray_failed(status);
-    ns->planned = ns->solvable && moray_sparse_lu_condition(ns->basis.lu) >= regular;
     return status.code == MORAY_NUMERIC ? moray_ok() : status;
 }
 

@@ -307,6 +307,68 @@ static void test_direction(void)
     check_taken(&s, "one that grows");
 }
 
+// Of constraints whose larger columns are multiples of each other, but for rounding, what is matched first is no basis:
+// a small column has to come in.
+static void test_repair(void)
+{
+    static sample s;
+    enum { variables = 4, samples = 50 };
+    for (int k = 0; k < samples; k++) {
+        double row[2], rescue[2];
+        null_space *ns;
+        s.seed = 400 + (unsigned long long)k;
+        s.m = 2;
+        start(&s, variables + s.m);
+        for (int j = 0; j < variables; j++)
+            put(&s, j, j, tap_random(&s.seed, 1, 2));
+        for (int c = 0; c < 2; c++) {
+            row[c] = tap_random(&s.seed, 0.5, 1);
+            rescue[c] = tap_random(&s.seed, 1e-4, 1e-3);
+        }
+        for (int c = 0; c < 2; c++) {
+            put(&s, variables + c, 0, row[c]);
+            put(&s, variables + c, 1, row[c] * row[0]);
+            put(&s, variables + c, 2, rescue[c]);
+            put(&s, variables + c, 3, c * rescue[0]);
+        }
+        CHECK_OK(moray_null_space_new(&ns, s.n, &s.pattern), "made");
+        CHECK(solve_planted(ns, &s) < 1e-7, "constraints of nearly one direction, sample %d", k);
+        moray_null_space_free(ns);
+    }
+}
+
+// Variables that come to their bounds one after another, as slacks do: their curvature leaves that of others to be
+// seen.
+static void test_bounds(void)
+{
+    static sample s;
+    enum { variables = 5, rows = 2 };
+    const double coefficient[rows][variables] = {{1, 2, 0, -1, 1}, {0, 1, 1, 1, -2}};
+    for (int first = 0; first < variables; first++) {
+        null_space *ns = NULL;
+        for (int bound = 0; bound < 3; bound++) { // as many as leave no freedom
+            const int at[] = {first, (first + 1) % variables, (first + 2) % variables};
+            s.seed = 23;
+            s.m = rows;
+            start(&s, variables + rows);
+            for (int j = 0; j < variables; j++) {
+                bool near = false;
+                for (int k = 0; k < bound; k++)
+                    near = near || at[k] == j;
+                put(&s, j, j, near ? 1e13 + j : 1e-2 * (1 + j));
+            }
+            for (int c = 0; c < rows; c++)
+                for (int j = 0; j < variables; j++)
+                    put(&s, variables + c, j, coefficient[c][j]);
+            if (!ns)
+                CHECK_OK(moray_null_space_new(&ns, s.n, &s.pattern), "made");
+            CHECK(solve_planted(ns, &s) < 1e-11, "%d variables at bounds, from %d", bound, first);
+            CHECK(moray_null_space_inertia(ns).negative == rows, "and the inertia");
+        }
+        moray_null_space_free(ns);
+    }
+}
+
 int main(void)
 {
     test_random();
@@ -316,5 +378,7 @@ int main(void)
     test_unsuited();
     test_ill();
     test_direction();
+    test_repair();
+    test_bounds();
     return tap_done();
 }
