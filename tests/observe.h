@@ -92,7 +92,7 @@ static inline void test_map(const moray_map *map)
         for (int i = 0; i < map->n_out; i++)
             weight[i] = 1.3 * cos(i);
         CHECK_OK(moray_check_derivatives(map, in, weight, &report), "differences");
-        jacobian = fmax(jacobian, report.jacobian_error), hessian = fmax(hessian, report.hessian_error);
+        jacobian = tap_worse(jacobian, report.jacobian_error), hessian = tap_worse(hessian, report.hessian_error);
     }
     CHECK(jacobian < 1e-7 && hessian < 1e-6, "derivatives of the losses against differences: %.1e, %.1e", jacobian,
           hessian);

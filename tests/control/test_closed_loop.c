@@ -70,8 +70,8 @@ static void test_sampled(void)
     for (int k = 0; k < n; k++) {
         const double u = -gain[0] * exact[0] - gain[1] * exact[1], h = k % 2 * period / 2;
         const double at[2] = {exact[0] + h * exact[1] + h * h / 2 * u, exact[1] + h * u};
-        worst = fmax(worst, fmax(fabs(record.x[2 * k] - at[0]), fabs(record.x[2 * k + 1] - at[1])));
-        worst_u = fmax(worst_u, fabs(record.u[k] - u));
+        worst = tap_worse(worst, fmax(fabs(record.x[2 * k] - at[0]), fabs(record.x[2 * k + 1] - at[1])));
+        worst_u = tap_worse(worst_u, fabs(record.u[k] - u));
         if (k % 2 == 0)
             continue;
         exact[0] += period * exact[1] + period * period / 2 * u;

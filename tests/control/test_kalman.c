@@ -43,9 +43,9 @@ static void test_linear(void)
         P[1] -= K0 * P[1];
         P[0] -= K0 * P[0];
         const double *found = moray_kalman_estimate(filter);
-        worst = fmax(worst, fmax(fabs(found[0] - x[0]), fabs(found[1] - x[1])));
+        worst = tap_worse(worst, fmax(fabs(found[0] - x[0]), fabs(found[1] - x[1])));
         for (int i = 0; i < 3; i++)
-            worst = fmax(worst, fabs(moray_kalman_covariance(filter, i == 2, i > 0) - P[i]));
+            worst = tap_worse(worst, fabs(moray_kalman_covariance(filter, i == 2, i > 0) - P[i]));
     }
     CHECK_NEAR(worst, 0, 1e-12, "of a linear plant it is the linear filter");
     moray_kalman_free(filter);

@@ -80,15 +80,15 @@ static void test_continuity(void)
         for (int k = 1; k < path.n; k++) {
             const double at = path.piece[k].start, step = 1e-9;
             const moray_path_point a = moray_path_at(&path, at - step), b = moray_path_at(&path, at + step);
-            worst = fmax(worst, hypot(creal(b.x - a.x), creal(b.y - a.y)));
-            worst_course = fmax(worst_course, fabs(creal(b.course - a.course)));
+            worst = tap_worse(worst, hypot(creal(b.x - a.x), creal(b.y - a.y)));
+            worst_course = tap_worse(worst_course, fabs(creal(b.course - a.course)));
         }
         for (int k = 0; k < 40; k++) { // complex step along the path
             const double at = tap_random(&seed, -1, path.length + 1), step = 1e-30;
             const moray_path_point here = moray_path_at(&path, moray_complex(at, step));
-            worst_step = fmax(worst_step, fabs(cimag(here.x) / step - cos(creal(here.course))));
-            worst_step = fmax(worst_step, fabs(cimag(here.y) / step - sin(creal(here.course))));
-            worst_step = fmax(worst_step, fabs(cimag(here.course) / step - here.curvature));
+            worst_step = tap_worse(worst_step, fabs(cimag(here.x) / step - cos(creal(here.course))));
+            worst_step = tap_worse(worst_step, fabs(cimag(here.y) / step - sin(creal(here.course))));
+            worst_step = tap_worse(worst_step, fabs(cimag(here.course) / step - here.curvature));
         }
         CHECK(worst < 3e-9, "no jump between pieces: %.1e m", worst);
         CHECK(worst_course < 1e-8, "nor of the course: %.1e", worst_course);
@@ -120,11 +120,11 @@ static void test_eased(void)
             const moray_path_piece *piece = &path.piece[k];
             const moray_path_point a = moray_path_at(&path, piece->start * (1 - 1e-13)),
                                    b = moray_path_at(&path, piece->start);
-            kinks = fmax(kinks, fabs(a.curvature - b.curvature) + fabs(creal(a.course - b.course)));
-            worst = fmax(worst, hypot(creal(b.x - a.x), creal(b.y - a.y)));
+            kinks = tap_worse(kinks, fabs(a.curvature - b.curvature) + fabs(creal(a.course - b.course)));
+            worst = tap_worse(worst, hypot(creal(b.x - a.x), creal(b.y - a.y)));
             const moray_path_point c = moray_path_at(&path, moray_complex(piece->start + piece->length / 3, 1e-30));
-            worst = fmax(worst, fabs(cimag(c.x) / 1e-30 - cos(creal(c.course))));
-            worst = fmax(worst, fabs(cimag(c.course) / 1e-30 - c.curvature));
+            worst = tap_worse(worst, fabs(cimag(c.x) / 1e-30 - cos(creal(c.course))));
+            worst = tap_worse(worst, fabs(cimag(c.course) / 1e-30 - c.curvature));
         }
         CHECK(kinks < 1e-8, "neither course nor curvature jumps: %.1e", kinks);
         CHECK(worst < 1e-9, "one way, with its derivatives: %.1e", worst);
@@ -147,7 +147,7 @@ static void test_projection(void)
         double found = along + tap_random(&seed, -0.4, 0.4), side;
         moray_path_project(&path, creal(at.x) - across * sin(course), creal(at.y) + across * cos(course), &found,
                            &side);
-        worst = fmax(worst, fmax(fabs(found - along), fabs(side - across)));
+        worst = tap_worse(worst, fmax(fabs(found - along), fabs(side - across)));
     }
     CHECK(worst < 1e-8, "points beside the path are found again: %.1e m", worst);
     moray_path_free(&path);

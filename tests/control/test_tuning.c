@@ -44,7 +44,7 @@ static bool hole(void *self, const double *x, double *cost)
     (void)self;
     double far = 0;
     for (int k = 0; k < 3; k++)
-        far = fmax(far, fabs(x[k] - (k == 2 ? 0 : 0.123456)));
+        far = tap_worse(far, fabs(x[k] - (k == 2 ? 0 : 0.123456)));
     *cost = far < 1e-7 ? 1 : 2 + x[0] * x[0];
     return true;
 }
@@ -154,7 +154,7 @@ static void test_looks(int n)
             double part;
             const double z = modf(0.5 + (i - told + 1) * pow(ratio(n), -(j + 1)), &part);
             const double want = i < told ? from[i * n + j] : all[j].lower + z * (all[j].upper - all[j].lower);
-            worst = fmax(worst, fabs(d.x[i][j] - want));
+            worst = tap_worse(worst, fabs(d.x[i][j] - want));
         }
     CHECK(worst < 1e-11, "%d numbers: it looks where it should, to %.1e", n, worst);
     CHECK(info.searches == told + starts && info.evaluations == d.calls &&
@@ -181,7 +181,7 @@ static void test_precise(int n)
     settings.jobs = 1;
     CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x, &info), "tunes");
     for (int j = 0; j < n; j++)
-        worst = fmax(worst, fabs(x[j] - (j == 1 ? 0.09 : 0.3)));
+        worst = tap_worse(worst, fabs(x[j] - (j == 1 ? 0.09 : 0.3)));
     CHECK(info.cost - 1 < 1e-4 && worst < 1e-2, "%d numbers: least to %.1e, where it is to %.1e", n, info.cost - 1,
           worst);
     const int calls = d.calls;

@@ -238,7 +238,7 @@ static void test_matrix(void)
                     left += at < 0 ? 0 : a * x[at];
                     size += at < 0 ? 0 : fabs(a * x[at]);
                 }
-                worst = fmax(worst, fabs(left) / size);
+                worst = tap_worse(worst, fabs(left) / size);
             }
             regular++;
         }

@@ -260,7 +260,7 @@ static void test_dependent(void)
         bool ok = !moray_failed(moray_ldl_new(&ldl, s.n, &s.pattern)) &&
                   !moray_failed(moray_ldl_factor(ldl, s.value, 1e-4)) && !moray_failed(moray_ldl_solve(ldl, 1, x));
         told += ok && moray_ldl_inertia_of(ldl).zero == 1;
-        error = fmax(error, ok ? residual(&s, scale, x, b) : INFINITY);
+        error = tap_worse(error, ok ? residual(&s, scale, x, b) : INFINITY);
         moray_ldl_free(ldl);
     }
     CHECK(told == samples, "a constraint that repeats another: %d of %d told singular", told, samples);
@@ -317,7 +317,7 @@ static double stage_error(moray_ldl *ldl, const moray_pattern *pattern, const do
     if (moray_failed(moray_ldl_factor(ldl, value, 0.01)) || moray_failed(moray_ldl_solve(ldl, 1, b)))
         return INFINITY;
     for (int i = 0; i < 3 * STAGES; i++)
-        error = fmax(error, fabs(b[i] - 1));
+        error = tap_worse(error, fabs(b[i] - 1));
     return error;
 }
 
@@ -333,7 +333,7 @@ static void test_other_values(void)
     CHECK_OK(moray_ldl_new(&ldl, 3 * STAGES, &pattern), "stages");
     for (int k = 0; k < 8; k++) {
         set_stages(row, col, value, k >= 4);
-        error = fmax(error, stage_error(ldl, &pattern, value));
+        error = tap_worse(error, stage_error(ldl, &pattern, value));
         right += moray_ldl_inertia_of(ldl).negative == STAGES && moray_ldl_inertia_of(ldl).zero == 0;
     }
     const moray_ldl_statistics statistics = moray_ldl_statistics_of(ldl);

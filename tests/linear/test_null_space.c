@@ -79,8 +79,8 @@ static void test_random(void)
             plant(&s, x, b);
             failed += moray_failed(moray_null_space_solve(ns, b, &error));
             for (int i = 0; i < s.n; i++)
-                worst = fmax(worst, fabs(b[i] / x[i] - 1) * (k % 3 == 0));
-            residual = fmax(residual, error);
+                worst = tap_worse(worst, fabs(b[i] / x[i] - 1) * (k % 3 == 0));
+            residual = tap_worse(residual, error);
             const moray_ldl_inertia inertia = moray_null_space_inertia(ns);
             wrong += inertia.zero != 0 || inertia.negative != negative_eigenvalues(&s) ||
                      inertia.positive + inertia.negative != s.n;
@@ -118,7 +118,7 @@ static void test_cancelling(void)
         CHECK_OK(moray_null_space_new(&ns, s.n, &s.pattern), "made");
         CHECK_OK(moray_null_space_factor(ns, s.value, &fits), "factored");
         CHECK_OK(moray_null_space_solve(ns, b, &error), "solved");
-        worst = fmax(worst, error);
+        worst = tap_worse(worst, error);
         moray_null_space_free(ns);
     }
     CHECK(worst < 1e-14, "errors to %.1e", worst);
@@ -148,7 +148,7 @@ static void test_again(void)
         CHECK_OK(moray_null_space_solve(ns, b, &error), "solved");
         double worst = 0;
         for (int i = 0; i < s.n; i++)
-            worst = fmax(worst, fabs(b[i] / x[i] - 1));
+            worst = tap_worse(worst, fabs(b[i] / x[i] - 1));
         CHECK(fits && worst < 1e-9, "other values, turn %d: %.1e", turn, worst);
     }
     moray_null_space_free(ns);
@@ -164,7 +164,7 @@ static void check_taken(sample *s, const char *what)
     plant(s, x, b);
     CHECK_OK(moray_kkt_factors_solve(kkt, 1, b), "solved");
     for (int i = 0; i < s->n; i++)
-        worst = fmax(worst, fabs(b[i] / x[i] - 1));
+        worst = tap_worse(worst, fabs(b[i] / x[i] - 1));
     CHECK(worst < 1e-7 && moray_kkt_factors_error(kkt) < 1e-11, "%s: %.1e", what, worst);
     moray_kkt_factors_free(kkt);
 }
@@ -289,7 +289,7 @@ static double solve_planted(null_space *ns, const sample *s)
     CHECK(fits, "there is a basis");
     CHECK_OK(moray_null_space_solve(ns, b, &error), "solved");
     for (int i = 0; i < s->n; i++)
-        worst = fmax(worst, fabs(b[i] / x[i] - 1));
+        worst = tap_worse(worst, fabs(b[i] / x[i] - 1));
     return error > 1e-13 ? error : worst;
 }
 

@@ -88,7 +88,7 @@ static double away(int n, const double *x, const double *expected)
 {
     double worst = 0;
     for (int k = 0; k < n; k++)
-        worst = fmax(worst, isnan(x[k]) ? INFINITY : fabs(x[k] - expected[k]));
+        worst = tap_worse(worst, isnan(x[k]) ? INFINITY : fabs(x[k] - expected[k]));
     return worst;
 }
 

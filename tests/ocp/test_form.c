@@ -270,7 +270,7 @@ static void test_state_multipliers(void)
     double x[21], x0, xf, worst = 0;
     const int nodes = moray_solution_multipliers(solution, 0, NULL, x, NULL);
     for (int n = 1; n < nodes - 1; n++)
-        worst = fmax(worst, fabs(x[n] - 1));
+        worst = tap_worse(worst, fabs(x[n] - 1));
     moray_solution_end_multipliers(solution, 0, &x0, &xf);
     CHECK(worst < 1e-4, "multiplier of a state's bound within %.1e", worst);
     CHECK(isnan(x[0]) && isnan(x[nodes - 1]) && isnan(x0), "none of the ends, nor of a fixed start");

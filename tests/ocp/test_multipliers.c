@@ -128,7 +128,7 @@ static void check(const double *got, const double *want, int from, int to, doubl
     double worst = 0, largest = 0;
     for (int i = from; i < to; i++) {
         const double miss = fabs(got[i] - (want ? want[i] : 0));
-        worst = fmax(worst, isnan(miss) ? INFINITY : miss);
+        worst = tap_worse(worst, miss);
         largest = fmax(largest, want ? fabs(want[i]) : 0);
     }
     if (!(worst <= part * largest + left)) // there are thousands
@@ -220,7 +220,7 @@ static void check_along_time(const moray_solution *from, moray_solution *to)
             moray_solution_at(from, p, start + (last - start) * node->tau, x, u);
             const double off = p == 1 ? to->iterate.z_lower[node->x + states + P] / weight - 2 * u[P]
                                       : to->iterate.lambda[node->path] / weight + 2 * u[Z];
-            worst = fmax(worst, isnan(off) ? INFINITY : fabs(off));
+            worst = tap_worse(worst, isnan(off) ? INFINITY : fabs(off));
         }
         CHECK(worst < 2e-3, "densities at the times of phase %d are %.1e away", p, worst);
     }

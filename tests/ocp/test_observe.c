@@ -315,8 +315,8 @@ static void test_derivatives(moray_loss loss)
         double x[2], u[1], z = sqrt(residual[k].weight) * (residual[k].predicted - residual[k].observed);
         moray_solution_at(solution, residual[k].phase, residual[k].time, x, u);
         if (residual[k].channel == 0)
-            worst = fmax(worst, fabs(residual[k].predicted - x[0] * x[1] -
-                                     moray_solution_parameters(solution)[1] * residual[k].time));
+            worst = tap_worse(worst, fabs(residual[k].predicted - x[0] * x[1] -
+                                          moray_solution_parameters(solution)[1] * residual[k].time));
         loss_sum += loss == MORAY_HUBER && fabs(z) > 0.4 ? 0.8 * fabs(z) - 0.16 : z * z;
     }
     const double *s = moray_solution_parameters(solution);

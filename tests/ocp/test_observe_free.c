@@ -69,7 +69,7 @@ static void test_free_times(const char *scheme)
     for (int k = 0; k < seen_n; k++) {
         double x;
         moray_solution_at(solution, 0, seen_at[k], &x, NULL);
-        worst = fmax(worst, fabs(residual[k].predicted - x));
+        worst = tap_worse(worst, fabs(residual[k].predicted - x));
     }
     CHECK(worst < 1e-9, "%s: what is seen is on the trajectory: %.1e", scheme, worst);
     moray_solution_free(solution);

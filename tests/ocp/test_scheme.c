@@ -18,16 +18,16 @@ static void test_exactness(moray_family family, int stages)
             for (int j = 0; j < k.points; j++)
                 integral += k.A[i * k.points + j] * pow(k.node[j], degree);
             if (degree < stages)
-                worst_A = fmax(worst_A, fabs(integral - pow(k.node[i], degree + 1) / (degree + 1)));
+                worst_A = tap_worse(worst_A, fabs(integral - pow(k.node[i], degree + 1) / (degree + 1)));
             if (i == k.points - 1)
-                worst_b = fmax(worst_b, fabs(integral - 1.0 / (degree + 1)));
+                worst_b = tap_worse(worst_b, fabs(integral - 1.0 / (degree + 1)));
         }
         for (int i = 0; i < k.points - 1 && degree < stages; i++) {
             double defect = 0;
             for (int j = 0; j < k.points; j++)
                 defect += k.P[i * k.points + j] * pow(k.node[j], degree + 1) -
                           k.Q[i * k.points + j] * (degree + 1) * pow(k.node[j], degree);
-            worst_defect = fmax(worst_defect, fabs(defect));
+            worst_defect = tap_worse(worst_defect, fabs(defect));
         }
     }
     CHECK(worst_A < 2e-14 && worst_b < 2e-14 && worst_defect < 1e-12,
@@ -40,7 +40,7 @@ static void test_exactness(moray_family family, int stages)
             sum += k.P[i * k.points + j];
             largest = fmax(largest, fabs(k.P[i * k.points + j]));
         }
-        rows = fmax(rows, fmax(fabs(sum), fabs(largest - 1)));
+        rows = tap_worse(rows, fmax(fabs(sum), fabs(largest - 1)));
     }
     CHECK(rows < 1e-12, "family %d, %d stages: defects of a constant vanish, coefficients at most 1 (%.1e)", family,
           stages, rows);

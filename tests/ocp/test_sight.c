@@ -122,7 +122,7 @@ static void test_rows(struct transcription *t, const double *x, const char *sche
                             ? T * integral(layout, interval, j, tau) * t->phase[0].out[n * t->phase[0].map->n_out + r]
                             : lagrange(layout, interval, j, tau) * x[layout->node[n].x + r];
             }
-            worst = fmax(worst, fabs(g[sight->row + r] - (x[sight->x + r] - seen)));
+            worst = tap_worse(worst, fabs(g[sight->row + r] - (x[sight->x + r] - seen)));
         }
     }
     CHECK(worst < 1e-9, "%s: rows are what is seen less the polynomials: %.1e", scheme, worst);
@@ -183,7 +183,7 @@ static void test_gradient(struct transcription *t, const double *x, const char *
     add_dynamics(t, lambda_f, got);
     moray_add_sights(t, 0, lambda, got);
     for (int j = 0; j < nlp->n; j++) {
-        worst = fmax(worst, fabs(got[j] - want[j]));
+        worst = tap_worse(worst, fabs(got[j] - want[j]));
         largest = fmax(largest, fabs(want[j]));
     }
     CHECK(largest > 0.5 && worst < 1e-12 * largest, "%s: what they add to the gradient is J' lambda: %.1e of %.2g",

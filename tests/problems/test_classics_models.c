@@ -126,8 +126,8 @@ static void test_orbit(void)
         cartesian(there, ahead);
         cartesian(back, behind);
         for (int i = 0; i < 3; i++) {
-            worst = fmax(worst, fabs((ahead[i] - behind[i]) / (2 * step) - x[3 + i]) / 2e4);
-            worst = fmax(worst, fabs((ahead[3 + i] - behind[3 + i]) / (2 * step) - a[i]) / 10);
+            worst = tap_worse(worst, fabs((ahead[i] - behind[i]) / (2 * step) - x[3 + i]) / 2e4);
+            worst = tap_worse(worst, fabs((ahead[3 + i] - behind[3 + i]) / (2 * step) - a[i]) / 10);
         }
         moray_num radial, transverse;
         orbit_velocity(element, &radial, &transverse);

@@ -31,7 +31,8 @@ static void check_terms_of_link(void)
         link_force(&robot, V, &link, force);
         for (int j = 0; j < TERMS; j++)
             sum += term[j];
-        error = fmax(error, fabs(sum - (cos(link.theta[0]) * force[TANGENTIAL] - sin(link.theta[0]) * force[NORMAL])));
+        error =
+            tap_worse(error, fabs(sum - (cos(link.theta[0]) * force[TANGENTIAL] - sin(link.theta[0]) * force[NORMAL])));
     }
     CHECK_NEAR(error, 0, 1e-13, "terms I-VIII add up to the force along x");
 }
@@ -58,9 +59,9 @@ static void check_kinematics(const paper *p, const chain *c)
         moray_swimmer_links(p->rig.swimmer[MORAY_FIRST_PRINCIPLES], c->orbit->x + k * c->orbit->n_states, x, y, angle);
         for (int i = 0; i < N; i++) {
             const chain_link *link = &c->link[k * N + i], *all = &c->link[i];
-            place = fmax(place, fabs(link->x[0] - (ch * x[i] + sh * y[i])));
-            place = fmax(place, fabs(link->y[0] - (ch * y[i] - sh * x[i])));
-            place = fmax(place, fabs(link->theta[0] - (angle[i] - c->heading)));
+            place = tap_worse(place, fabs(link->x[0] - (ch * x[i] + sh * y[i])));
+            place = tap_worse(place, fabs(link->y[0] - (ch * y[i] - sh * x[i])));
+            place = tap_worse(place, fabs(link->theta[0] - (angle[i] - c->heading)));
             for (int d = 1; d < 3; d++) {
                 double *worst = d == 1 ? &velocity : &acceleration;
                 const size_t back = (size_t)(d - 1) * sizeof(double);
@@ -88,7 +89,7 @@ static void check_forces(paper *p, chain *c, force_terms *f)
         sum += f->mean[j];
         for (int i = 0; i < c->N; i++)
             mean += f->of_link[j * c->N + i];
-        of_links = fmax(of_links, fabs(mean - f->mean[j]));
+        of_links = tap_worse(of_links, fabs(mean - f->mean[j]));
     }
     CHECK_NEAR(of_links, 0, 1e-13, "means of the links add up to the means of the terms [N]");
     CHECK_NEAR(sum / f->thrust, 0, 1e-5, "in steady swimming the means balance");
@@ -148,7 +149,7 @@ static void check_paths(void)
         CHECK_OK(link_paths_of(&desk.p, (moray_model)model, &paths[model]), "paths");
     for (int i = 0; i < robot.links; i++) {
         const link_paths *rigid = &paths[MORAY_CONTROL_ORIENTED], *chain_of = &paths[MORAY_FIRST_PRINCIPLES];
-        spread = fmax(spread, fabs(rigid->along_amplitude[i] - rigid->along_amplitude[0]));
+        spread = tap_worse(spread, fabs(rigid->along_amplitude[i] - rigid->along_amplitude[0]));
         ratio = fmin(ratio, chain_of->across_amplitude[i] / chain_of->along_amplitude[i]);
     }
     CHECK_NEAR(spread, 0, 1e-9, "(9): the links share their motion along");
@@ -173,7 +174,7 @@ static void check_tangential_force(void)
         moray_swimmer_set_current(swimmer, V[0], V[1]);
         CHECK(moray_swimmer_rates(swimmer, x, ubar, dx, NULL), "regular");
         const tangential_force f = tangential_force_of(&robot, V, x, ubar, dx[2 * N + 3]);
-        error = fmax(error, fabs(f.added_mass + f.c_p + f.drag - N * robot.m * dx[2 * N + 2]));
+        error = tap_worse(error, fabs(f.added_mass + f.c_p + f.drag - N * robot.m * dx[2 * N + 2]));
         moray_swimmer_free(swimmer);
     }
     CHECK_NEAR(error, 0, 1e-12, "(14a) adds up to N m dv_t [N]");

@@ -25,9 +25,9 @@ static void check_distance(double theta_max, double delta)
         const double x = 2 * M_PI * k / 20000, exact = series_29(l, theta_max, delta, x);
         double phi[DISTANCES];
         joint_distance(l, theta_max, delta, x - delta / 2, phi);
-        error = fmax(error, fabs(phi[DISTANCE_29] - exact));
-        error = fmax(error, fabs(phi[DISTANCE_30] - theta_max * amplitude * sin(x)));
-        error = fmax(error, fabs(phi[DISTANCE_31] - sin(theta_max) * amplitude * sin(x)));
+        error = tap_worse(error, fabs(phi[DISTANCE_29] - exact));
+        error = tap_worse(error, fabs(phi[DISTANCE_30] - theta_max * amplitude * sin(x)));
+        error = tap_worse(error, fabs(phi[DISTANCE_31] - sin(theta_max) * amplitude * sin(x)));
         largest[0] = fmax(largest[0], fabs(theta_max * amplitude * sin(x) - exact));
         largest[1] = fmax(largest[1], fabs(sin(theta_max) * amplitude * sin(x) - exact));
         peak = fmax(peak, fabs(exact));

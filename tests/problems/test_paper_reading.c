@@ -58,7 +58,7 @@ static void check_links(const scene *s)
         const double shift = s->robot.l * (i - 0.5 * (N - 1)); // of a link's place along the body
         spacing_error =
             fmax(spacing_error, hypot(x[0][i] - x[1][i] - shift * cos(theta), y[0][i] - y[1][i] - shift * sin(theta)));
-        angle_error = fmax(angle_error, fabs(angle[1][i] - theta - sum / (2 * s->robot.l)));
+        angle_error = tap_worse(angle_error, fabs(angle[1][i] - theta - sum / (2 * s->robot.l)));
         largest = fmax(largest, fabs(sum / (2 * s->robot.l)));
     }
     CHECK_NEAR(spacing_error, 0, 1e-13, "(8) as printed puts the links half as far apart");

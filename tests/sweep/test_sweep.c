@@ -150,8 +150,8 @@ static void test_closed_form(void)
     double worst = 0, gap = 0;
     for (int k = 0; objective && k < points; k++) {
         const double a = branch(0, x_values[k / 3], y_values[k % 3]), b = branch(1, x_values[k / 3], y_values[k % 3]);
-        gap = fmax(gap, objective[k] - fmin(a, b));
-        worst = fmax(worst, fmin(fabs(objective[k] - a), fabs(objective[k] - b)));
+        gap = tap_worse(gap, objective[k] - fmin(a, b));
+        worst = tap_worse(worst, fmin(fabs(objective[k] - a), fabs(objective[k] - b)));
     }
     CHECK(worst == 0, "every point has the number of its function");
     CHECK(x && x[0] == -2 && x[6] == 4, "and its coordinates");
@@ -184,7 +184,7 @@ static void test_branches(void)
     double *objective = numbers("two.nc", "solver.objective", points), worst = 0;
     for (int k = 0; objective && k < points; k++) {
         const double x = x_values[k / 3], y = y_values[k % 3];
-        worst = fmax(worst, objective[k] - fmin(branch(0, x, y), branch(1, x, y)));
+        worst = tap_worse(worst, objective[k] - fmin(branch(0, x, y), branch(1, x, y)));
     }
     CHECK(worst == 0, "every point has the better branch: %g", worst);
     free(objective);
@@ -514,7 +514,7 @@ static void test_draws(void)
         inside = inside && a[k] >= 2 && a[k] <= 3 && b[k] >= -1 && b[k] <= 1;
         mean[0] += a[k] / draws;
         mean[1] += b[k] / draws;
-        worst = fmax(worst, fabs(sum[k] - (a[k] + b[k])));
+        worst = tap_worse(worst, fabs(sum[k] - (a[k] + b[k])));
     }
     CHECK(inside && worst == 0, "lie within, and every point has its own");
     // Five standard errors of the mean of an even distribution, width / sqrt(12 draws).
@@ -525,7 +525,7 @@ static void test_draws(void)
     CHECK_OK(moray_sweep_extremes("draws.nc", "o*", &least, &most, &n), "of two numbers of each point");
     worst = n == draws ? 0 : INFINITY;
     for (int k = 0; a && b && k < draws && k < n; k++)
-        worst = fmax(worst, fmax(fabs(least[k] - b[k]), fabs(most[k] - a[k])));
+        worst = tap_worse(worst, fmax(fabs(least[k] - b[k]), fabs(most[k] - a[k])));
     CHECK(worst == 0, "the lesser and the greater, point by point");
     free(least);
     free(most);

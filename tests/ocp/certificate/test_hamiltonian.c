@@ -103,7 +103,7 @@ static void test_size(void)
         const double far = layout->node[n].collocated ? fabs(H[n] - mean) : 0;
         off += layout->node[n].weight * far;
         when = far > worst ? -0.5 + 2 * layout->node[n].tau : when;
-        worst = fmax(worst, far);
+        worst = tap_worse(worst, far);
     }
     double *costate = calloc(2 * (size_t)nodes, sizeof *costate), size = 0;
     moray_solution_nodes(solution, 0, NULL, costate);

@@ -442,7 +442,7 @@ static void test_what_is_told(void)
               "phase %d has %d intervals from end to end", p, count);
         CHECK_OK(moray_solution_interval_errors(solution, p, error), "errors");
         for (int k = 0; k < count; k++) {
-            worst = fmax(worst, error[k]);
+            worst = tap_worse(worst, error[k]);
             CHECK(edge[k] < edge[k + 1], "interval %d has a length", k);
         }
         intervals += count;

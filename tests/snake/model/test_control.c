@@ -85,7 +85,7 @@ static void check_equations_of_motion(random_seed *seed, int N)
             got[i] = s.ubar[i];
         CHECK(swim(&s, got + N - 1, u), "state %d of %d links is regular", trial, N);
         solve_motion(&s, u, want);
-        error = fmax(error, relative_distance(N + 1, got, want));
+        error = tap_worse(error, relative_distance(N + 1, got, want));
         shape_matrices_free(&s.shape);
     }
     CHECK_NEAR(error, 0, 1e-10, "the forces u of (22) cause ubar, dv_t, dv_n by (14), (15)");
@@ -106,8 +106,8 @@ static void check_printed_matrices(random_seed *seed, int N)
                                 p.h_1 * (p.h_4 * v_tr + p.h_5 * v_nr - 2 * k.mu_p * p.s * bending)};
         const double swapped = p.h_1 * (p.h_4 * v_nr + p.h_5 * v_tr - 2 * k.mu_p * p.s * bending); // (23h)
         printed_forces(&s, 2 * s.robot.l, p, u_want);
-        dv_error = fmax(dv_error, relative_distance(2, dv, want));
-        u_error = fmax(u_error, relative_distance(N - 1, u, u_want));
+        dv_error = tap_worse(dv_error, relative_distance(2, dv, want));
+        u_error = tap_worse(u_error, relative_distance(N - 1, u, u_want));
         swapped_error = fmin(swapped_error, fabs(swapped - dv[1]) / fabs(dv[1]));
         shape_matrices_free(&s.shape);
     }

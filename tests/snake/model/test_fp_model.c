@@ -48,10 +48,10 @@ static void check_maximal_coordinates(random_seed *seed, int N)
         double a[MAX_STATES], a_want[MAX_STATES], u[MAX_LINKS], u_want[MAX_LINKS];
         CHECK(swim(&s, a, u), "state %d of %d links is regular", trial, N);
         maximal_with_accelerations(&s.robot, &state, s.ubar, a_want, u_want);
-        accelerations_error = fmax(accelerations_error, relative_distance(N + 2, a, a_want));
-        torques_error = fmax(torques_error, relative_distance(N - 1, u, u_want));
+        accelerations_error = tap_worse(accelerations_error, relative_distance(N + 2, a, a_want));
+        torques_error = tap_worse(torques_error, relative_distance(N - 1, u, u_want));
         maximal_with_torques(&s.robot, &state, u, a_want);
-        forward_error = fmax(forward_error, relative_distance(N + 2, a, a_want));
+        forward_error = tap_worse(forward_error, relative_distance(N + 2, a, a_want));
     }
     CHECK_NEAR(accelerations_error, 0, 1e-10, "accelerations against maximal coordinates");
     CHECK_NEAR(torques_error, 0, 1e-10, "torques against maximal coordinates");
@@ -130,7 +130,7 @@ static void check_energy_balance(random_seed *seed, int N, bool added_mass)
             v_phi[i] = s.x[N + 2 + i] - s.x[N + 3 + i];
         const double rate = cimag(energy(&s.robot, x)) / h;
         const double balance = dot(N - 1, u, v_phi) + fluid_power(&s.robot, s.V, x);
-        error = fmax(error, fabs(rate - balance) / fabs(creal(energy(&s.robot, x))));
+        error = tap_worse(error, fabs(rate - balance) / fabs(creal(energy(&s.robot, x))));
     }
     CHECK_NEAR(error, 0, 1e-11, added_mass ? "energy balance" : "energy balance without added mass");
 }
@@ -152,10 +152,10 @@ static void check_straight(random_seed *seed, int N, double v_t, double v_n)
                "slows across at c_n / (m + mu_n)");
     double turning = 0, torque = 0;
     for (int i = 0; i < N; i++)
-        turning = fmax(turning, fabs(a[i]));
+        turning = tap_worse(turning, fabs(a[i]));
     CHECK_NEAR(turning, 0, 1e-13, "a straight body does not turn");
     for (int i = 0; i < N - 1; i++)
-        torque = fmax(torque, fabs(u[i]));
+        torque = tap_worse(torque, fabs(u[i]));
     CHECK_NEAR(torque, 0, 1e-13, "nor load its joints");
 }
 

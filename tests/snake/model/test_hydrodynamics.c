@@ -129,7 +129,7 @@ static void check_geometry(int k)
     const double *of_got = &got.l, *of_want = &want.l; // l, m, J, c_t, c_n, mu_n, lambda_1..3
     double worst = 0;
     for (int i = 0; i < 9; i++)
-        worst = fmax(worst, fabs(of_got[i] / of_want[i] - 1));
+        worst = tap_worse(worst, fabs(of_got[i] / of_want[i] - 1));
     CHECK_NEAR(worst, 0, 1e-13, "the coefficients of a piece are those of a link as long as it");
 }
 

@@ -106,7 +106,7 @@ static void check_control(random_seed *seed, moray_model model, int N)
         }
         set_joints(model, N, phi, v_phi, x);
         moray_swimmer_joints(swimmer, x, got, got_v);
-        joints = fmax(joints, relative_distance(N - 1, got, phi) + relative_distance(N - 1, got_v, v_phi));
+        joints = tap_worse(joints, relative_distance(N - 1, got, phi) + relative_distance(N - 1, got_v, v_phi));
         moray_swimmer_control(swimmer, &gait, t, x, ubar);
         for (int i = 0; i < N - 1; i++) {
             const double want = -1.2 * sin(2 * t + 0.7 * i) - (robot.k_d * de + robot.k_p * e) * (i + 1);
@@ -157,7 +157,7 @@ static void check_links_fp(random_seed *seed, int N)
     for (int i = 0; i < N - 1; i++) {
         const double end_x = x_i[i] + robot.l * cos(angle[i]), start_x = x_i[i + 1] - robot.l * cos(angle[i + 1]);
         const double end_y = y_i[i] + robot.l * sin(angle[i]), start_y = y_i[i + 1] - robot.l * sin(angle[i + 1]);
-        gap = fmax(gap, hypot(end_x - start_x, end_y - start_y));
+        gap = tap_worse(gap, hypot(end_x - start_x, end_y - start_y));
     }
     CHECK_NEAR(gap, 0, 1e-13, "links meet at the joints");
     CHECK_NEAR(hypot(off_x, off_y), 0, 1e-13, "their mean is (p_x, p_y)");
@@ -183,7 +183,7 @@ static void check_links_control(random_seed *seed, int N)
     for (int i = 0; i < N - 1; i++) {
         const double d_x = x_i[i + 1] - x_i[i], d_y = y_i[i + 1] - y_i[i];
         const double d_t = d_x * cos(theta) + d_y * sin(theta), d_n = d_y * cos(theta) - d_x * sin(theta);
-        error = fmax(error, hypot(d_t - 2 * robot.l, d_n - x[i]));
+        error = tap_worse(error, hypot(d_t - 2 * robot.l, d_n - x[i]));
     }
     CHECK_NEAR(error, 0, 1e-13, "neighbours are 2l and phi_i apart");
     CHECK_NEAR(hypot(off_x, off_y), 0, 1e-13, "their mean is (p_x, p_y)");

@@ -33,7 +33,7 @@ static void test_power(random_seed *seed)
         const double u = tap_random(seed, -3, 3), v = tap_random(seed, -3, 3);
         const double u_m = u + (v < 0 ? -motor.friction : motor.friction) + motor.viscous * v, p = u_m * v;
         const double want = (p > 0 ? p / motor.forward : p * motor.backward) + motor.copper * u_m * u_m;
-        worst = fmax(worst, fabs(moray_motor_power(&motor, u, v) - want) / (1 + fabs(want)));
+        worst = tap_worse(worst, fabs(moray_motor_power(&motor, u, v) - want) / (1 + fabs(want)));
         motor.backward = 0;
         back = fmin(back, moray_motor_power(&motor, u, v));
     }

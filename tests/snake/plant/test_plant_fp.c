@@ -73,16 +73,16 @@ static void test_against_swimmer(const moray_plant_spec *spec, const moray_map *
     for (int i = 0; i < N; i++) {
         mean += dx[N + 2 + i] / N;
         mean_rate += dx[i] / N;
-        worst = fmax(worst, fabs(out[nx + N - 1 + i] - (x[i] - in[0])));
+        worst = tap_worse(worst, fabs(out[nx + N - 1 + i] - (x[i] - in[0])));
     }
     for (int i = 0; i < N - 1; i++) {
         power += u[i] * v_phi[i];
-        worst = fmax(worst, fabs(out[nx + i] - u[i]) / (1 + fabs(u[i])));
+        worst = tap_worse(worst, fabs(out[nx + i] - u[i]) / (1 + fabs(u[i])));
     }
     const double expected[] = {mean_rate, dx[N], dx[N + 1], mean, dx[2 * N + 2], dx[2 * N + 3], in[7], in[8]};
     for (int r = 0; r < nx; r++)
-        worst = fmax(worst, fabs(out[r] - expected[r]) / (1 + fabs(expected[r])));
-    worst = fmax(worst, fabs(out[map->n_out - 1] - power) / (1 + fabs(power)));
+        worst = tap_worse(worst, fabs(out[r] - expected[r]) / (1 + fabs(expected[r])));
+    worst = tap_worse(worst, fabs(out[map->n_out - 1] - power) / (1 + fabs(power)));
     CHECK(worst < 1e-12, "N = %d, %s: rates, torques, link angles and power as the swimmer has them: %.1e", N,
           form_names[spec->joints], worst);
     free(out);

@@ -63,9 +63,9 @@ static void test_late(void)
     for (int k = 0; k <= 40; k++) {
         const double t = 0.1 * k, taken = 0.5 * floor(fmax(t - 0.3, 0) / 0.5 + 1e-9);
         look(&outer, t);
-        worst = fmax(worst, fabs(l.shown.heading - (0.5 * taken + swing(t))));
-        worst = fmax(worst, fabs(l.shown.p_x - taken) + fabs(l.shown.p_y + taken));
-        worst = fmax(worst, fabs(moray_instruments_reading(w)->t - taken));
+        worst = tap_worse(worst, fabs(l.shown.heading - (0.5 * taken + swing(t))));
+        worst = tap_worse(worst, fabs(l.shown.p_x - taken) + fabs(l.shown.p_y + taken));
+        worst = tap_worse(worst, fabs(moray_instruments_reading(w)->t - taken));
     }
     CHECK_NEAR(worst, 0, 1e-9, "late readings");
     CHECK(l.looks == 41, "at every look");

@@ -53,8 +53,8 @@ static void test_against_all_joints(moray_model model, const moray_hydrodynamics
     const int last = all.track.n - 1;
     for (int k = 0; k <= last; k++) {
         const moray_pose *a = &all.track.pose[k], *b = &on.track.pose[k], *c = &rough.track.pose[k];
-        worst = fmax(worst, fmax(fabs(a->heading - b->heading), hypot(a->p_x - b->p_x, a->p_y - b->p_y)));
-        rough_worst = fmax(rough_worst, fabs(a->heading - c->heading));
+        worst = tap_worse(worst, fmax(fabs(a->heading - b->heading), hypot(a->p_x - b->p_x, a->p_y - b->p_y)));
+        rough_worst = tap_worse(rough_worst, fabs(a->heading - c->heading));
     }
     CHECK_NEAR(worst, 0, 1e-6, "heading [rad] and place [m] at 128 steps a period");
     CHECK_NEAR(rough_worst, 0, 1e-3, "and at 32");

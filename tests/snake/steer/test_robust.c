@@ -250,7 +250,7 @@ static void test_planned(const moray_robust_spec *spec, const moray_robust_plan 
         go_on(&middle, &at, h / 2, &d);
         fleet_rates(spec, &plant, plan, (i + 0.5) * h, &middle, &d);
         go_on(&at, &at, h, &d);
-        worst = fmax(worst, fabs(at.heading - moray_robust_plan_heading(plan, (i + 1) * h)));
+        worst = tap_worse(worst, fabs(at.heading - moray_robust_plan_heading(plan, (i + 1) * h)));
     }
     for (int i = 0; i + 1 < plan->n; i++)
         cost += pow((plan->point[i + 1].wanted - plan->point[i].wanted) * 10 / spec->offset_rate, 2) / 10;

@@ -249,8 +249,8 @@ static void test_water(void)
                          : moray_swim_run(swimmer, &settings, &plan, x, NULL),
                  "run");
         for (int k = 0; k < track.n; k++) { // V = (0.11 + 0.01 x, 0.04 y)
-            worst = fmax(worst, fabs(track.current[2 * k] - 0.11 - 0.01 * track.pose[k].p_x));
-            worst = fmax(worst, fabs(track.current[2 * k + 1] - 0.04 * track.pose[k].p_y));
+            worst = tap_worse(worst, fabs(track.current[2 * k] - 0.11 - 0.01 * track.pose[k].p_x));
+            worst = tap_worse(worst, fabs(track.current[2 * k + 1] - 0.04 * track.pose[k].p_y));
         }
         moray_swimmer_current(swimmer, V);
         CHECK(track.n == 3 && worst < 1e-12, "%d samples with their current, off by %.1e", track.n, worst);
@@ -628,7 +628,7 @@ static void test_equal_power(void)
     CHECK_OK(moray_gait_trial_speeds(&rig, &trial, model, 36, 13, time, turned), "from rest");
     double differ = 0;
     for (int k = 0; k < 13; k++)
-        differ = fmax(differ, fabs(turned[k] - speed[k]));
+        differ = tap_worse(differ, fabs(turned[k] - speed[k]));
     CHECK_NEAR(differ, 0, 1e-6, "as fast on that course, from rest on");
     moray_test_rig_free(&rig);
 }
