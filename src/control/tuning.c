@@ -182,15 +182,17 @@ static moray_status from_each(tuning *t, moray_task_fn *task, place *places, int
 // The best of them once more and again, in boxes around them.
 static moray_status polish(tuning *t, place *places, int n, moray_tuning_info *info)
 {
-    double before = INFINITY;
+    double enough = INFINITY; // a cost below which another round is called for
     for (int round = 0; round < ROUNDS && !t->stopped; round++) {
         t->polishing = round % 2 == 0;
         t->reach = round < ROUNDS / 2 ? 0.15 : 0.04;
         MORAY_TRY(from_each(t, improve, places, n, info));
         qsort(places, (size_t)n, sizeof *places, by_cost);
-        if (round % 2 == 1 && !(places[0].cost < (1 - worthwhile) * before))
+        if (round % 2 == 0)
+            continue;
+        if (!(places[0].cost < enough))
             break;
-        before = round % 2 == 1 ? places[0].cost : before;
+        enough = places[0].cost - worthwhile * fabs(places[0].cost);
     }
     return moray_ok();
 }
@@ -205,7 +207,7 @@ static moray_status search(tuning *t, place *places, int n, int n_from, moray_tu
         MORAY_TRY(from_each(t, improve, places, starts, info));
     qsort(places, (size_t)starts, sizeof *places, by_cost);
     for (int k = 0; k < starts; k++)
-        info->agree += places[k].cost <= 1.05 * places[0].cost;
+        info->agree += places[k].cost - places[0].cost <= 0.05 * fabs(places[0].cost);
     info->searches = starts;
     return polish(t, places, starts < POLISHED ? starts : POLISHED, info);
 }

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+//
+// The course of a tuning, read off from its calls: how often the best places are searched again, how far around them and
+// by which model. A place is as good as a script says at each visit, and nothing else is any good.
+#include "moray/control/tuning.h"
+
+#include "tap.h"
+
+enum { TOLD = 4, POLISHED = 3, STARTS = 1, SEARCHES = TOLD + STARTS, LOOKS = TOLD + 4 * STARTS, OF_EACH = 3, N = 2 };
+enum { ROUNDS = 8, CALLS = OF_EACH * N, MOST = LOOKS + CALLS * (SEARCHES + ROUNDS * POLISHED) };
+
+static const double told[TOLD][N] = {{0.3, 0.4}, {0.6, 0.7}, {0.45, 0.55}, {0.7, 0.25}};
+
+typedef struct script {
+    double level[TOLD];  // of the places told, at first
+    double gain[ROUNDS]; // of each round, of all levels' first
+    int visits[TOLD], calls;
+    double x[MOST][N];
+} script;
+
+static bool scripted(void *self, const double *x, double *cost)
+{
+    script *s = self;
+    for (int j = 0; j < N && s->calls < MOST; j++)
+        s->x[s->calls][j] = x[j];
+    s->calls++;
+    *cost = 100 + x[0] + x[1];
+    for (int i = 0; i < TOLD; i++)
+        if (x[0] == told[i][0] && x[1] == told[i][1]) {
+            *cost = s->level[i];
+            for (int round = 0; round < ROUNDS && round < s->visits[i] - 1; round++)
+                *cost -= s->gain[round] * fabs(s->level[0]);
+            s->visits[i]++;
+        }
+    return true;
+}
+
+static moray_tuning_info tune(script *s)
+{
+    static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
+    const moray_tuning_problem problem = {N, unit, scripted, s};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    double x[N];
+    settings.starts = STARTS, settings.evaluations = OF_EACH, settings.jobs = 1;
+    CHECK_OK(moray_tune(&problem, &settings, told[0], TOLD, x, &info), "tunes");
+    CHECK(x[0] == told[0][0] && x[1] == told[0][1], "to the best place: %g, %g", x[0], x[1]);
+    return info;
+}
+
+// In pairs, the second for certain, each further one where that before it gained more than 0.5 % of the cost.
+static void test_rounds(void)
+{
+    const struct {
+        const char *name;
+        double level, gain[ROUNDS];
+        int rounds;
+    } cases[] = {
+        {"no gain", 20, {0}, 4},
+        {"small gains", 20, {2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3}, 4},
+        {"gains that count together", 20, {0, 0, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3}, 8},
+        {"a gain in the first of two rounds", 20, {0, 0, 6e-3}, 6},
+        {"a gain in the second of two rounds", 20, {0, 0, 0, 6e-3}, 6},
+        {"a gain of the first pair", 20, {6e-3, 6e-3}, 4},
+        {"small gains of a cost below zero", -20, {2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3}, 4},
+        {"gains of a cost below zero", -20, {0, 0, 3e-3, 3e-3, 3e-3, 3e-3}, 8},
+        {"a gain of a cost below zero", -20, {0, 0, 6e-3}, 6},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        script s = {.level = {cases[k].level, cases[k].level + 1, cases[k].level + 2, cases[k].level + 3}};
+        for (int round = 0; round < ROUNDS; round++)
+            s.gain[round] = cases[k].gain[round];
+        const moray_tuning_info info = tune(&s);
+        const int rounds = s.visits[0] - 2;
+        CHECK(rounds == cases[k].rounds, "%s: %d rounds", cases[k].name, rounds);
+        CHECK(s.visits[1] == s.visits[0] && s.visits[2] == s.visits[0] && s.visits[3] == 2, "of the best three");
+        CHECK(info.evaluations == s.calls && s.calls == LOOKS + CALLS * (SEARCHES + rounds * POLISHED), "%d calls",
+              s.calls);
+    }
+}
+
+static void test_agree(void)
+{
+    static const double levels[][TOLD] = {
+        {20, 20.9, 21, 21.1}, {20, 21.1, 22, 23}, {-20, -19.1, -19, -18.9}, {-20, -18.9, 0, 1}};
+    for (size_t k = 0; k < sizeof levels / sizeof *levels; k++) {
+        script s = {.gain = {0}};
+        int close = 0;
+        for (int i = 0; i < TOLD; i++) {
+            s.level[i] = levels[k][i];
+            close += 20 * (s.level[i] - levels[k][0]) <= fabs(levels[k][0]);
+        }
+        const moray_tuning_info info = tune(&s);
+        CHECK(info.agree == close, "%d of %d within 5 %%: %d", close, TOLD, info.agree);
+        CHECK(info.searches == SEARCHES, "%d searches", info.searches);
+    }
+}
+
+// Of the points of a search, how many of the first that follow its place lie beside that along one number alone.
+static int on_cross(double (*x)[N], double *farthest)
+{
+    int along = 0;
+    bool still = true;
+    *farthest = 0;
+    for (int k = 1; k < CALLS; k++) {
+        const double one = fabs(x[k][0] - x[0][0]), other = fabs(x[k][1] - x[0][1]);
+        still = still && fmin(one, other) < 1e-12;
+        along += still;
+        *farthest = fmax(*farthest, fmax(one, other));
+    }
+    return along;
+}
+
+// A model that is linear has N + 1 points; one that is quadratic along each number 2 N + 1, which lie on a cross.
+static void test_models(void)
+{
+    script s = {.level = {20, 21, 22, 23}, .gain = {0, 0, 6e-3, 0, 6e-3, 0, 6e-3, 0}};
+    double farthest;
+    tune(&s);
+    for (int k = 0; k < SEARCHES; k++)
+        CHECK(on_cross(s.x + LOOKS + k * CALLS, &farthest) == N, "search %d: a linear model", k);
+    for (int round = 0; round < ROUNDS; round++)
+        for (int k = 0; k < POLISHED; k++) {
+            double(*x)[N] = s.x + LOOKS + (SEARCHES + round * POLISHED + k) * CALLS;
+            const double reach = round < 4 ? 0.15 : 0.04;
+            const int along = on_cross(x, &farthest);
+            CHECK(x[0][0] == told[k][0] && x[0][1] == told[k][1], "round %d begins at place %d", round, k);
+            CHECK(round % 2 == 0 ? along >= 2 * N : along == N, "with %d points along one number", along);
+            CHECK(farthest <= reach + 1e-12 && farthest > reach / 4, "as far as %g", farthest);
+        }
+}
+
+int main(void)
+{
+    test_rounds();
+    test_agree();
+    test_models();
+    return tap_done();
+}
