@@ -137,6 +137,8 @@ moray_status moray_kalman_update(moray_kalman *k, int m, moray_kalman_see *see, 
     double seen[most], first[most], mean[most] = {0}, S[most * most] = {0}, step[most];
     if (m < 1 || m > most)
         return moray_error(MORAY_INPUT, "%d values measured at a time: must be from 1 to %d", m, most);
+    if (m > n)
+        return moray_error(MORAY_INPUT, "%d values measured of %d states: no more than there are", m, n);
     spread(k);
     double *C = k->next; // [m][n] covariance of what is seen with the state
     memset(C, 0, (size_t)(n * n) * sizeof *C);
@@ -146,8 +148,6 @@ moray_status moray_kalman_update(moray_kalman *k, int m, moray_kalman_see *see, 
         for (int i = 0; i < m; i++)
             mean[i] += difference(seen[i], first[i], angle & 1u << i) / points; // beside the first
     }
-    if (m > n)
-        return moray_error(MORAY_INPUT, "%d values measured of %d states: no more than there are", m, n);
     for (int p = 0; p < points; p++) {
         see(self, k->points + p * n, seen);
         for (int i = 0; i < m; i++)

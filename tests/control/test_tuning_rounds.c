@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The course of a tuning, read off from its calls: how often the best places are searched again, how far around them and
-// by which model. A place is as good as a script says at each visit, and nothing else is any good.
+// The course of a tuning, read off from its calls: how often the best places are searched again, how far around them
+// and by which model. A place is as good as a script says at each visit, and nothing else is any good.
 #include "moray/control/tuning.h"
 
 #include "tap.h"
