@@ -87,6 +87,40 @@ static void test_fenced(void)
     moray_ocp_free(ocp);
 }
 
+// ---- A control that stands still at a maximum, of the integrand alone: g = 1 + x^2 - (u - m)^2 / 2, x = exp(-t) ----
+
+static void idle(const moray_node *at, moray_rates *out, const void *data)
+{
+    const double middle = *(const double *)data;
+    const moray_num away = at->u[0] - middle;
+    out->f[0] = -at->x[0];
+    out->g[0] = 1 + at->x[0] * at->x[0] - away * away / 2;
+}
+
+// Its range is nothing and its magnitude may be anything: its box tells how far it could go.
+static void test_idle_control(double middle)
+{
+    const moray_phase_spec phase = {.name = "idle",
+                                    .nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = idle,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(1)),
+                                    .u = MORAY_BOUNDS(moray_between(middle - 1, middle + 1))};
+    moray_ocp *ocp = NULL;
+    moray_certificate certificate;
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = total, .data = &middle}),
+             "an idle control");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    CHECK_NEAR(moray_solution_objective(solution), 0.5 + (1 - exp(-2)) / 2, 1e-6, "the maximum of the start is left");
+    CHECK(certificate.pass && certificate.curvature == 0, "middle %g: passes %s", middle, certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- A kink: g = 0.05 u^2 + |u| by fabs, whose complex step is 0; x' = u - 0.3 x, from 0 to 1 in 5 s ----
 
 static void kinked(const moray_node *at, moray_rates *out, const void *data)
@@ -380,6 +414,9 @@ int main(void)
                                   {1e12, 1, 0},  {1, 1e-12, 0},   {1e-6, 1, 0},    {1, 1, -1e4}};
     test_maximum();
     test_fenced();
+    test_idle_control(0);
+    test_idle_control(0.5);
+    test_idle_control(20);
     test_unseen(kinked, "fabs", "control u[0]");
     test_unseen(hidden, "a hidden creal", "state x[0]");
     for (unsigned k = 0; k < sizeof dashes / sizeof *dashes; k++)
