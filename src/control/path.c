@@ -165,31 +165,29 @@ static moray_path_point straight_on(moray_path_point at, moray_num s)
     return (moray_path_point){at.x + s * cos(at.course), at.y + s * sin(at.course), at.course, 0};
 }
 
+// At s behind the start of a piece.
+static moray_path_point point_on(const moray_path_piece *piece, moray_num s)
+{
+    const double kappa = piece->curvature;
+    const moray_path_point start = {piece->x, piece->y, piece->course, kappa};
+    if (piece->sharpness != 0)
+        return eased_at(piece, s);
+    if (kappa == 0)
+        return straight_on(start, s);
+    const moray_num course = piece->course + kappa * s;
+    return (moray_path_point){start.x + (sin(course) - sin(piece->course)) / kappa,
+                              start.y - (cos(course) - cos(piece->course)) / kappa, course, kappa};
+}
+
 moray_path_point moray_path_at(const moray_path *path, moray_num along)
 {
-    const double where = creal(along);
+    const double where = creal(along), edge = fmin(fmax(where, 0), path->length);
     int k = 0;
     while (k + 1 < path->n && where >= path->piece[k + 1].start)
         k++;
     const moray_path_piece *piece = &path->piece[k];
-    const bool outside = where < 0 || where > path->length; // straight on
-    if (piece->sharpness != 0)
-        return outside
-                   ? straight_on(eased_at(piece, where < 0 ? 0 : piece->length), along - (where < 0 ? 0 : path->length))
-                   : eased_at(piece, along - piece->start);
-    const double from = where < 0 ? 0 : outside ? piece->length : 0, kappa = outside ? 0 : piece->curvature;
-    const double course = piece->course + piece->curvature * from;
-    double x = piece->x, y = piece->y;
-    if (from > 0) {
-        const double bend = piece->curvature;
-        x += bend != 0 ? (sin(course) - sin(piece->course)) / bend : from * cos(course);
-        y -= bend != 0 ? (cos(course) - cos(piece->course)) / bend : -from * sin(course);
-    }
-    const moray_num s = along - piece->start - from, turned = course + kappa * s;
-    if (kappa == 0)
-        return (moray_path_point){x + s * cos(course), y + s * sin(course), turned, 0};
-    return (moray_path_point){x + (sin(turned) - sin(course)) / kappa, y - (cos(turned) - cos(course)) / kappa, turned,
-                              kappa};
+    return where == edge ? point_on(piece, along - piece->start)
+                         : straight_on(point_on(piece, edge - piece->start), along - edge);
 }
 
 void moray_path_project(const moray_path *path, double x, double y, double *along, double *across)

@@ -23,8 +23,7 @@ double moray_crab_angle(double speed, const double current[2], double course)
 
 double moray_course_made_good(double speed, const double current[2], double course)
 {
-    const double side = across(current, course);
-    return fabs(side) < speed ? sqrt(speed * speed - side * side) + along(current, course) : NAN;
+    return speed * cos(moray_crab_angle(speed, current, course)) + along(current, course);
 }
 
 double moray_path_duration(const moray_path *path, double from, double speed, const double current[2])

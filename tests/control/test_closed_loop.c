@@ -54,6 +54,7 @@ static void test_sampled(void)
     moray_closed_loop_record record;
     moray_sim_statistics statistics;
     double times[n], x[2] = {1, -0.5}, exact[2] = {1, -0.5}, worst = 0, worst_u = 0;
+    bool timed = true;
     for (int k = 0; k < n; k++)
         times[k] = k * period / 2;
     CHECK_OK(moray_closed_loop_record_new(&record, 2, 1, n), "record");
@@ -72,6 +73,7 @@ static void test_sampled(void)
         const double at[2] = {exact[0] + h * exact[1] + h * h / 2 * u, exact[1] + h * u};
         worst = tap_worse(worst, fmax(fabs(record.x[2 * k] - at[0]), fabs(record.x[2 * k + 1] - at[1])));
         worst_u = tap_worse(worst_u, fabs(record.u[k] - u));
+        timed = timed && record.t[k] == times[k];
         if (k % 2 == 0)
             continue;
         exact[0] += period * exact[1] + period * period / 2 * u;
@@ -79,6 +81,7 @@ static void test_sampled(void)
     }
     CHECK(record.n == n && worst < 1e-11, "states at and between measurements: %.1e", worst);
     CHECK(worst_u < 1e-11, "the new control from the measurement on: %.1e", worst_u);
+    CHECK(timed, "each with its time");
     CHECK(x[0] == record.x[2 * n - 2] && x[1] == record.x[2 * n - 1], "the end state");
     CHECK(f.measured == PERIODS + 1 && f.applied[0] == 0 && fabs(f.applied[7] - record.u[12]) < 1e-15,
           "%d measurements, each shown the control until then", f.measured);

@@ -237,6 +237,10 @@ static void test_crab(void)
     CHECK_NEAR(hypot(v[0], v[1]), moray_course_made_good(speed, current, course), 1e-14, "at the speed made good");
     CHECK(isnan(moray_crab_angle(0.1, current, 0)) && isnan(moray_course_made_good(0.1, current, 0)),
           "no heading against too strong a current");
+    for (int side = -1; side < 2; side += 2)
+        CHECK(isnan(moray_crab_angle(0.25, (double[]){0.1, side * 0.25}, 0)) &&
+                  isnan(moray_course_made_good(0.25, (double[]){0.1, side * 0.25}, 0)),
+              "nor where all speed goes across, %d", side);
 }
 
 static void test_currents(void)

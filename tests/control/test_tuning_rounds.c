@@ -130,8 +130,50 @@ static void test_models(void)
         }
 }
 
+// ---- Down a slope --------------------------------------------------------------------------------------------------
+
+// Three times one place is told, which is best until all three have been searched; then the cost falls along both axes.
+typedef struct slope {
+    double start[N], along[N];
+    int visits;
+} slope;
+
+static bool sloping(void *self, const double *x, double *cost)
+{
+    slope *s = self;
+    const bool at_start = x[0] == s->start[0] && x[1] == s->start[1];
+    s->visits += at_start;
+    *cost = at_start ? 20 : 100;
+    if (s->visits > 2 * POLISHED)
+        *cost = 20 - 10 * (s->along[0] * (x[0] - s->start[0]) + s->along[1] * (x[1] - s->start[1]));
+    return true;
+}
+
+// Each round goes to the edge of what it may search: four times 0.15 of a scale, then four times 0.04.
+static void test_walk(void)
+{
+    static const double directions[][N] = {{1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+    static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
+    for (int k = 0; k < 4; k++) {
+        slope s = {.along = {directions[k][0], directions[k][1]}};
+        double from[POLISHED * N], x[N];
+        for (int j = 0; j < N; j++)
+            s.start[j] = s.along[j] > 0 ? 0.125 : 0.875;
+        for (int i = 0; i < POLISHED * N; i++)
+            from[i] = s.start[i % N];
+        const moray_tuning_problem problem = {N, unit, sloping, &s};
+        moray_tuning_settings settings = moray_tuning_settings_default();
+        moray_tuning_info info;
+        settings.starts = settings.jobs = 1;
+        CHECK_OK(moray_tune(&problem, &settings, from, POLISHED, x, &info), "tunes");
+        for (int j = 0; j < N; j++)
+            CHECK_NEAR(fabs(x[j] - s.start[j]), 4 * (0.15 + 0.04), 2e-3, "the way of eight rounds");
+    }
+}
+
 int main(void)
 {
+    test_walk();
     test_rounds();
     test_agree();
     test_models();
