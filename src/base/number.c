@@ -48,6 +48,14 @@ int moray_count_up(double count)
     return (int)fmin(fmax(ceil(count), 0), INT_MAX);
 }
 
+bool moray_all_finite(const double *values, int n)
+{
+    for (int k = 0; k < n; k++)
+        if (!isfinite(values[k]))
+            return false;
+    return true;
+}
+
 locale_t moray_c_locale_begin(void)
 {
     return uselocale(c_locale());

@@ -5,11 +5,14 @@
 #define SRC_BASE_NUMBER_H
 
 #include <locale.h>
+#include <stdbool.h>
 
 #include "moray/number.h"
 
 // A count as an int, rounded up: 0 where it is negative or NaN, INT_MAX where no int is as large.
 int moray_count_up(double count);
+
+bool moray_all_finite(const double *values, int n);
 
 // Ascending numbers, for qsort and bsearch.
 int moray_by_value(const void *one, const void *other);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "moray/dense.h"
 
 enum { most = MORAY_KALMAN_MEASURED };
@@ -91,14 +92,6 @@ static void spread(moray_kalman *k)
             k->points[p * n + i] = k->x[i] + (p < n ? reach : -reach) * k->root[i * n + p % n];
 }
 
-static bool all_finite(const double *values, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (!isfinite(values[i]))
-            return false;
-    return true;
-}
-
 moray_status moray_kalman_predict(moray_kalman *k, double time, moray_kalman_move *move, void *self,
                                   const double *noise)
 {
@@ -108,7 +101,7 @@ moray_status moray_kalman_predict(moray_kalman *k, double time, moray_kalman_mov
     memset(k->next, 0, (size_t)(n * n) * sizeof *k->next);
     for (int p = 0; p < points; p++) {
         double *x = k->points + p * n;
-        if (!move(self, time, x) || !all_finite(x, n))
+        if (!move(self, time, x) || !moray_all_finite(x, n))
             return moray_error(MORAY_NUMERIC, "the filter's plant cannot be moved on from its point %d", p);
         for (int i = 0; i < n; i++)
             k->mean[i] += x[i] / points;
@@ -165,7 +158,7 @@ moray_status moray_kalman_update(moray_kalman *k, int m, moray_kalman_see *see, 
     }
     double *K = k->root; // [m][n] the gain, transposed: S K = C
     memcpy(K, C, (size_t)(m * n) * sizeof *K);
-    if (!all_finite(S, m * m) || !moray_dense_solve(m, S, n, K) || !all_finite(K, m * n))
+    if (!moray_all_finite(S, m * m) || !moray_dense_solve(m, S, n, K) || !moray_all_finite(K, m * n))
         return moray_error(MORAY_NUMERIC, "what is measured tells the filter nothing that is finite");
     for (int j = 0; j < n; j++) {
         for (int i = 0; i < m; i++)

@@ -4,9 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/number.h"
+
+// What is not a number is worse than any.
 static void keep_worst(double *worst, int *where, double value, int here)
 {
-    if (!(value <= *worst)) {
+    if (!(value <= *worst || isnan(*worst))) {
         *worst = value;
         *where = here;
     }
@@ -30,7 +33,8 @@ static double mean_multiplier(const moray_nlp *nlp, const moray_iterate *it)
         sum += fabs(it->lambda[i]);
     for (int j = 0; j < nlp->n; j++)
         sum += fabs(it->z_lower[j]) + fabs(it->z_upper[j]);
-    return fmax(1, sum / (nlp->m + 2.0 * nlp->n));
+    const double mean = sum / (nlp->m + 2.0 * nlp->n);
+    return mean <= 1 ? 1 : mean;
 }
 
 // A multiplier must vanish or its constraint be active.
@@ -88,20 +92,23 @@ static void measure(const moray_nlp *nlp, const moray_iterate *it, const double 
                    violation(g[i], nlp->g_lower[i], nlp->g_upper[i], size[i]), i);
         keep_worst(&kkt->complementarity, &ignored, row_complementarity(nlp, it, g, i) / kkt->dual_scale, i);
     }
-    kkt->error = fmax(kkt->stationarity, fmax(kkt->feasibility, kkt->complementarity));
+    const double parts[] = {kkt->stationarity, kkt->feasibility, kkt->complementarity};
+    for (int k = 0; k < 3; k++)
+        keep_worst(&kkt->error, &ignored, parts[k], k);
 }
 
 // gradient f + J' lambda - z_lower + z_upper, feasibility and complementarity anew from the callbacks, in unscaled
 // units.
 moray_status moray_kkt_error(const moray_nlp *nlp, const moray_iterate *iterate, moray_kkt *kkt)
 {
-    double *block = calloc((size_t)(nlp->n + 2 * nlp->m + nlp->nnz_jac) + 1, sizeof *block);
+    const int values = nlp->n + nlp->m + nlp->nnz_jac;
+    double *block = calloc((size_t)(values + nlp->m) + 1, sizeof *block);
     if (!block)
         return moray_error(MORAY_MEMORY, "no memory to check %d variables", nlp->n);
-    double *gradient = block, *g = block + nlp->n, *size = g + nlp->m, *jac = size + nlp->m;
+    double *gradient = block, *g = block + nlp->n, *jac = g + nlp->m, *size = jac + nlp->nnz_jac;
     const bool ok = nlp->constraints(nlp->self, iterate->x, true, g) &&
                     nlp->gradient(nlp->self, iterate->x, false, gradient) &&
-                    nlp->jacobian(nlp->self, iterate->x, false, jac);
+                    nlp->jacobian(nlp->self, iterate->x, false, jac) && moray_all_finite(block, values);
     if (ok) {
         lagrangian_gradient(nlp, iterate, jac, gradient);
         constraint_sizes(nlp, iterate, jac, size);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "moray/clock.h"
 
 static const struct method {
@@ -64,14 +65,6 @@ struct session {
 
 enum { MOST_REPEATS = 20 }; // a local method that asks more often for one point gets no further for rounding
 
-static bool all_finite(const double *values, int n)
-{
-    for (int k = 0; k < n; k++)
-        if (!isfinite(values[k]))
-            return false;
-    return true;
-}
-
 static bool better(const struct point *one, const struct point *other, double tolerance)
 {
     const bool inside = one->violation <= tolerance, other_inside = other->violation <= tolerance;
@@ -113,8 +106,8 @@ static void evaluate(struct session *s, const double *x, bool slopes)
     s->any = true;
     s->sloped = slopes;
     s->defined = p->evaluate(p->self, x, &s->last.f, s->c, slopes ? s->gradient : NULL, slopes ? s->jacobian : NULL) &&
-                 isfinite(s->last.f) && all_finite(s->c, p->m) &&
-                 (!slopes || (all_finite(s->gradient, p->n) && all_finite(s->jacobian, p->m * p->n)));
+                 isfinite(s->last.f) && moray_all_finite(s->c, p->m) &&
+                 (!slopes || (moray_all_finite(s->gradient, p->n) && moray_all_finite(s->jacobian, p->m * p->n)));
     s->last.violation = 0;
     for (int i = 0; i < p->m; i++)
         s->last.violation = fmax(s->last.violation, s->c[i]);
@@ -186,7 +179,8 @@ static moray_status check_settings(const moray_search_settings *settings)
 
 static bool set_tolerances(nlopt_opt opt, const moray_search_settings *settings)
 {
-    return nlopt_set_xtol_rel(opt, settings->x_tolerance) > 0 && nlopt_set_ftol_rel(opt, settings->f_tolerance) > 0;
+    return nlopt_set_xtol_rel(opt, settings->x_tolerance) == NLOPT_SUCCESS &&
+           nlopt_set_ftol_rel(opt, settings->f_tolerance) == NLOPT_SUCCESS;
 }
 
 // The methods below another: MLSL's local search, and with constraints MLSL itself below the augmented Lagrangian.
@@ -197,11 +191,11 @@ static bool set_sub_methods(nlopt_opt opt, const moray_search_problem *p, const 
     nlopt_opt middle = p->m > 0 ? nlopt_create(NLOPT_G_MLSL_LDS, n) : NULL;
     nlopt_opt global = middle ? middle : opt;
     bool ok = local && (middle || p->m == 0) && set_tolerances(local, settings) &&
-              nlopt_set_local_optimizer(global, local) > 0 &&
-              nlopt_set_population(global, (unsigned)settings->population) > 0;
+              nlopt_set_local_optimizer(global, local) == NLOPT_SUCCESS &&
+              nlopt_set_population(global, (unsigned)settings->population) == NLOPT_SUCCESS;
     if (middle) // it stops by the count alone, which the rounds of the Lagrangian share
-        ok = ok && nlopt_set_maxeval(middle, 1 + settings->max_evaluations / 4) > 0 &&
-             nlopt_set_local_optimizer(opt, middle) > 0;
+        ok = ok && nlopt_set_maxeval(middle, 1 + settings->max_evaluations / 4) == NLOPT_SUCCESS &&
+             nlopt_set_local_optimizer(opt, middle) == NLOPT_SUCCESS;
     nlopt_destroy(middle);
     nlopt_destroy(local);
     return ok;
@@ -217,18 +211,20 @@ static bool set_up(struct session *s)
     }
     for (int i = 0; i < p->m; i++)
         s->tolerance[i] = settings->constraint_tolerance;
-    bool ok = nlopt_set_min_objective(s->opt, on_objective, s) > 0 && nlopt_set_lower_bounds(s->opt, s->lower) > 0 &&
-              nlopt_set_upper_bounds(s->opt, s->upper) > 0 &&
-              nlopt_set_maxeval(s->opt, settings->max_evaluations) > 0 &&
-              nlopt_set_maxtime(s->opt, settings->max_seconds) > 0;
+    bool ok = nlopt_set_min_objective(s->opt, on_objective, s) == NLOPT_SUCCESS &&
+              nlopt_set_lower_bounds(s->opt, s->lower) == NLOPT_SUCCESS &&
+              nlopt_set_upper_bounds(s->opt, s->upper) == NLOPT_SUCCESS &&
+              nlopt_set_maxeval(s->opt, settings->max_evaluations) == NLOPT_SUCCESS &&
+              nlopt_set_maxtime(s->opt, settings->max_seconds) == NLOPT_SUCCESS;
     if (p->m > 0)
-        ok = ok && nlopt_add_inequality_mconstraint(s->opt, (unsigned)p->m, on_constraints, s, s->tolerance) > 0;
+        ok = ok &&
+             nlopt_add_inequality_mconstraint(s->opt, (unsigned)p->m, on_constraints, s, s->tolerance) == NLOPT_SUCCESS;
     if (!methods[settings->method].global)
         ok = ok && set_tolerances(s->opt, settings);
     if (settings->method == MORAY_SEARCH_MLSL)
         ok = ok && set_sub_methods(s->opt, p, settings);
     if (settings->method == MORAY_SEARCH_ISRES)
-        ok = ok && nlopt_set_population(s->opt, (unsigned)settings->population) > 0;
+        ok = ok && nlopt_set_population(s->opt, (unsigned)settings->population) == NLOPT_SUCCESS;
     return ok;
 }
 

@@ -4,7 +4,9 @@
 #include <locale.h>
 
 #include "moray/clock.h"
-#include "moray/number.h"
+#include <limits.h>
+
+#include "base/number.h"
 
 static void test_texts(void)
 {
@@ -45,8 +47,22 @@ static void test_clocks(void)
           moray_clock() - clock);
 }
 
+static void test_counts(void)
+{
+    static const double counts[] = {-1, NAN, 0, 0.1, 1, 1.5, INT_MAX, 1e18, INFINITY};
+    static const int want[] = {0, 0, 0, 1, 1, 2, INT_MAX, INT_MAX, INT_MAX};
+    for (int k = 0; k < 9; k++)
+        CHECK(moray_count_up(counts[k]) == want[k], "%g is counted as %d", counts[k], moray_count_up(counts[k]));
+    const double values[] = {1, INFINITY, 2, NAN, -INFINITY};
+    for (int k = 0; k < 5; k++)
+        CHECK(moray_all_finite(values + k, 1) == (k % 2 == 0 && k < 4), "%g", values[k]);
+    CHECK(moray_all_finite(values + 1, 0) && !moray_all_finite(values, 2) && !moray_all_finite(values + 2, 2),
+          "of none and of two");
+}
+
 int main(void)
 {
+    test_counts();
     test_texts();
     test_quantiles();
     test_clocks();
