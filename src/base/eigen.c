@@ -15,6 +15,14 @@ void dgeev_(const char *want_left, const char *want_right, const int *n, double 
 void dsyev_(const char *want, const char *triangle, const int *n, double *A, const int *lda, double *value,
             double *work, const int *lwork, int *info, size_t want_length, size_t triangle_length);
 
+static moray_status check_entries(int n, const double *A)
+{
+    for (int k = 0; k < n * n; k++)
+        if (!isfinite(A[k]))
+            return moray_error(MORAY_NUMERIC, "eigenvalues: entry (%d, %d) of the matrix is %g", k / n, k % n, A[k]);
+    return moray_ok();
+}
+
 // Descending in modulus; of conjugates the one above the real axis first.
 static int by_modulus(const void *one, const void *other)
 {
@@ -28,9 +36,7 @@ moray_status moray_eigenvalues(int n, const double *A, double complex *lambda)
 {
     const int entries = n * n, lwork = 8 * n, one = 1;
     int info = 0;
-    for (int k = 0; k < entries; k++)
-        if (!isfinite(A[k]))
-            return moray_error(MORAY_NUMERIC, "eigenvalues: entry (%d, %d) of the matrix is %g", k / n, k % n, A[k]);
+    MORAY_TRY(check_entries(n, A));
     double *copy = malloc(((size_t)entries + 2 * (size_t)n + (size_t)lwork) * sizeof *copy);
     if (!copy)
         return moray_error(MORAY_MEMORY, "no memory for the eigenvalues of a matrix of %d rows", n);
@@ -48,11 +54,9 @@ moray_status moray_eigenvalues(int n, const double *A, double complex *lambda)
 
 moray_status moray_symmetric_eigen(int n, const double *A, double *value, double *vector)
 {
-    const int entries = n * n, lwork = 34 * n + 1;
+    const int entries = n * n, lwork = 34 * n;
     int info = 0;
-    for (int k = 0; k < entries; k++)
-        if (!isfinite(A[k]))
-            return moray_error(MORAY_NUMERIC, "eigenvalues: entry (%d, %d) of the matrix is %g", k / n, k % n, A[k]);
+    MORAY_TRY(check_entries(n, A));
     double *copy = malloc(((size_t)entries + (size_t)lwork + (size_t)n) * sizeof *copy);
     if (!copy)
         return moray_error(MORAY_MEMORY, "no memory for the eigenvalues of a matrix of %d rows", n);

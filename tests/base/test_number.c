@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "tap.h"
 
+#include <limits.h>
 #include <locale.h>
 
-#include "moray/clock.h"
-#include <limits.h>
-
 #include "base/number.h"
+#include "moray/clock.h"
 
 static void test_texts(void)
 {
