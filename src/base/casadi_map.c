@@ -34,8 +34,7 @@ static void put_results(struct casadi_map *m, struct casadi_function *f, const d
     moray_casadi_evaluate(&m->value);
     for (int k = 0; k < m->value.n_out; k++) {
         const struct casadi_block *to = &f->in[m->value.n_in + k];
-        if (to->nnz == m->value.out[k].nnz)
-            memcpy(to->value, m->value.out[k].value, (size_t)to->nnz * sizeof *to->value);
+        memcpy(to->value, m->value.out[k].value, (size_t)to->nnz * sizeof *to->value);
     }
 }
 

@@ -17,8 +17,6 @@ static int walk(struct casadi_map *m, struct casadi_function *f, int block_rows,
             height = block->rows;
             for (int k = 0; k < block->nnz; k++) {
                 const int row = top + block->position[k] % block->rows, e = left + block->position[k] / block->rows;
-                if (e >= m->entries)
-                    continue;
                 const int col = m->place[e];
                 if (lower && m->place[row] < col)
                     continue;
@@ -55,24 +53,34 @@ static moray_status check_blocks(const struct casadi_map *m, const struct casadi
         for (int j = 0; j < m->value.n_in; j++) {
             const struct casadi_block *block = &f->out[i * per_row + j];
             const int rows = down[i].rows * down[i].cols, cols = m->value.in[j].rows * m->value.in[j].cols;
-            if ((block->rows != rows || block->cols != cols) && block->nnz + block->rows * block->cols > 0)
-                return moray_error(MORAY_INPUT, "result %d of %s is %d by %d: must be %d by %d", i * per_row + j,
-                                   f->name, block->rows, block->cols, rows, cols);
-            if (block->rows != rows || block->cols != cols)
+            if (block->rows == rows && block->cols == cols)
+                continue;
+            if (block->rows * block->cols == 0)
                 return moray_error(MORAY_INPUT, "result %d of %s is empty: must be %d by %d, of no nonzeros",
                                    i * per_row + j, f->name, rows, cols);
+            return moray_error(MORAY_INPUT, "result %d of %s is %d by %d: must be %d by %d", i * per_row + j, f->name,
+                               block->rows, block->cols, rows, cols);
         }
     return moray_ok();
 }
 
+// Arguments of the function, its results, and of an adjoint their weights: of its shapes, or left out by no nonzeros.
+// Results are handed on as they are, with all their nonzeros.
 static moray_status check_arguments(const struct casadi_map *m, const struct casadi_function *f, int least)
 {
+    const int n_in = m->value.n_in, n_out = m->value.n_out;
     if (f->n_in < least)
         return moray_error(MORAY_INPUT, "%s has %d arguments: must be at least %d", f->name, f->n_in, least);
-    for (int k = 0; k < m->value.n_in; k++)
-        if (f->in[k].nnz > 0 && (f->in[k].rows != m->value.in[k].rows || f->in[k].cols != m->value.in[k].cols))
-            return moray_error(MORAY_INPUT, "argument %d of %s is %d by %d: must be as that of %s", k, f->name,
-                               f->in[k].rows, f->in[k].cols, m->value.name);
+    for (int k = 0; k < least; k++) {
+        const struct casadi_block *block = &f->in[k];
+        const struct casadi_block *like = k < n_in ? &m->value.in[k] : &m->value.out[(k - n_in) % n_out];
+        if (block->nnz > 0 && (block->rows != like->rows || block->cols != like->cols))
+            return moray_error(MORAY_INPUT, "argument %d of %s is %d by %d: must be %d by %d, as of %s", k, f->name,
+                               block->rows, block->cols, like->rows, like->cols, m->value.name);
+        if (k >= n_in && k < n_in + n_out && block->nnz > 0 && block->nnz != like->nnz)
+            return moray_error(MORAY_INPUT, "argument %d of %s has %d nonzeros: must have %d, as of %s, or none", k,
+                               f->name, block->nnz, like->nnz, m->value.name);
+    }
     return moray_ok();
 }
 
