@@ -30,6 +30,11 @@ static void test_exactness(moray_family family, int stages)
             worst_defect = tap_worse(worst_defect, fabs(defect));
         }
     }
+    double beyond = -1.0 / (k.order + 1);
+    for (int j = 0; j < k.points; j++)
+        beyond += k.b[j] * pow(k.node[j], k.order);
+    CHECK(stages > 6 || fabs(beyond) > 1e-9, "family %d, %d stages: no higher order than %d (%.1e)", family, stages,
+          k.order, beyond);
     CHECK(worst_A < 2e-14 && worst_b < 2e-14 && worst_defect < 1e-12,
           "family %d, %d stages, order %d: exact on polynomials (A %.1e, b %.1e, defects %.1e)", family, stages,
           k.order, worst_A, worst_b, worst_defect);

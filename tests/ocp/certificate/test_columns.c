@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Differences of columns beside a kink, which they may straddle.
+// Differences of columns: beside a kink, which they may straddle, of several inputs, and what steps and rounding tell.
 #include "tap.h"
 
 #include "ocp/certificate/columns.h"
@@ -93,8 +93,159 @@ static void test_extrapolates(void)
         CHECK_OK(moray_difference_columns(&map, &at, &size, &cases[k].box, jac, doubt, kink), "differences");
         CHECK(fabs(jac[0] - 1) < 1e-14 && fabs(jac[1] - 1) < 1e-14, "%s: its slope is exact, to %.1e", cases[k].what,
               jac[0] - 1);
-        CHECK(doubt[0] > 1e-12 && doubt[0] < 1e-9 && doubt[1] < 1e-14, "as far as two steps tell: %.1e", doubt[0]);
+        CHECK(fabs(doubt[0] - 8e-11) < 1e-14 && doubt[1] < 1e-14,
+              "the doubt is how far the quotient of the larger step is off, 8e-11: %.4e", doubt[0]);
     }
+}
+
+// Of a polynomial whose quotients err by as many powers of the step, so many steps make the extrapolate exact, and one
+// more shows it.
+static void power_of(void *self, const double *in, double *out)
+{
+    int *of = self; // power, calls
+    of[1]++;
+    out[0] = pow(in[0] + 0.5, of[0]);
+}
+
+static void test_steps(void)
+{
+    static const moray_bounds above = {0, INFINITY};
+    const double at = 0, size = 1;
+    double jac, doubt, kink;
+    for (int side = 0; side < 2; side++)
+        for (int errors = 1; errors <= 2 + side; errors++) {
+            int of[] = {side ? errors + 1 : 2 * errors + 1, 0};
+            const moray_map map = {.n_in = 1, .n_out = 1, .value = power_of, .self = of};
+            CHECK_OK(moray_difference_columns(&map, &at, &size, side ? &above : NULL, &jac, &doubt, &kink),
+                     "differences");
+            CHECK(of[1] == 1 + (side ? 1 : 2) * (errors + 2), "power %d: %d values", of[0], of[1]);
+            CHECK(fabs(jac - of[0] * pow(0.5, of[0] - 1)) <= doubt, "its slope is %.12g +- %.1e", jac, doubt);
+        }
+}
+
+// ---- Several inputs and outputs ----
+
+enum { SEVERAL = 3 };
+static const double joints[SEVERAL] = {0.25, -1, 2},
+                    corners[SEVERAL][SEVERAL] = {{0, 0.5, 0}, {0.75, 0, 0}, {0, 0.25, 2}};
+
+// out = sin of what the inputs are weighted to, and corners[output][input] times their distances from joints.
+static double inner(const double *in, int i)
+{
+    return in[0] * (i + 1) - in[1] / (i + 2) + in[2] * (0.5 - 0.3 * i);
+}
+
+static void several(void *self, const double *in, double *out)
+{
+    (void)self;
+    for (int i = 0; i < SEVERAL; i++) {
+        out[i] = sin(inner(in, i));
+        for (int j = 0; j < SEVERAL; j++)
+            out[i] += corners[i][j] * fabs(in[j] - joints[j]);
+    }
+}
+
+static void test_several(void)
+{
+    static const double size[SEVERAL] = {0.5, 1, 3};
+    static const moray_bounds box[SEVERAL] = {{0.2, 0.3}, {-2, 5}, {1.5, 9}};
+    const moray_map map = {.n_in = SEVERAL, .n_out = SEVERAL, .value = several};
+    double jac[SEVERAL][SEVERAL], doubt[SEVERAL][SEVERAL], kink[SEVERAL][SEVERAL];
+    for (int boxed = 0; boxed < 2; boxed++) {
+        CHECK_OK(moray_difference_columns(&map, joints, size, boxed ? box : NULL, jac[0], doubt[0], kink[0]),
+                 "differences");
+        for (int j = 0; j < SEVERAL; j++)
+            for (int i = 0; i < SEVERAL; i++) {
+                const double weight[] = {i + 1, -1.0 / (i + 2), 0.5 - 0.3 * i};
+                const double slope = weight[j] * cos(inner(joints, i));
+                CHECK(fabs(jac[j][i] - slope) <= doubt[j][i] && doubt[j][i] < 1e-8,
+                      "output %d by input %d: %.10g +- %.1e is %.10g", i, j, jac[j][i], doubt[j][i], slope);
+                CHECK(fabs(kink[j][i] - corners[i][j]) <= doubt[j][i], "with a corner of %g", kink[j][i]);
+            }
+    }
+}
+
+// ---- One side that is rough ----
+
+// Behind 0 a line or a swing, ahead of it another, or what has no slope; and beside it a corner.
+static void uneven(void *self, const double *in, double *out)
+{
+    const double *swings = self, x = in[0], swing = swings[x > 0];
+    out[0] = (x > 0 ? 1 : 0.5) * x + (swing > 0 ? sin(swing * x) / swing : 0);
+    if (swing < 0 && x != 0)
+        out[0] += 0.5 * x * cos(M_PI * log(fabs(x) / 0.02) / log(4)); // a quotient turns from one step to the next
+    out[1] = fabs(x);
+}
+
+// Where both sides differ for certain, what is told is what each side tells alone, with the larger doubt.
+static void test_uneven(void)
+{
+    static const moray_bounds ahead = {0, INFINITY}, behind = {-INFINITY, 0};
+    static double swings[][2] = {{0, 0}, {40, 0}, {0, 40}, {90, 15}, {-1, 0}, {0, -1}};
+    const double at = 0, size = 1;
+    for (int k = 0; k < 6; k++) {
+        const moray_map map = {.n_in = 1, .n_out = 2, .value = uneven, .self = swings[k]};
+        double jac[3][2], doubt[3][2], kink[3][2];
+        CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, jac[0], doubt[0], kink[0]), "both");
+        CHECK_OK(moray_difference_columns(&map, &at, &size, &ahead, jac[1], doubt[1], kink[1]), "ahead");
+        CHECK_OK(moray_difference_columns(&map, &at, &size, &behind, jac[2], doubt[2], kink[2]), "behind");
+        CHECK_NEAR(kink[0][1], 1, 1e-9, "the corner beside it is seen");
+        if (k < 4) {
+            CHECK(fabs(jac[0][0] - (jac[1][0] + jac[2][0]) / 2) < 1e-14 &&
+                      fabs(kink[0][0] - (jac[1][0] - jac[2][0]) / 2) < 1e-14,
+                  "case %d: the mean %g and half the difference %g", k, jac[0][0], kink[0][0]);
+            CHECK(doubt[0][0] == fmax(doubt[1][0], doubt[2][0]), "known as well as the worse side: %.1e", doubt[0][0]);
+        } else {
+            CHECK(kink[0][0] == 0, "case %d: nothing is certain where a side is rough: %g", k, kink[0][0]);
+        }
+    }
+}
+
+// ---- No value behind, or none at all; no room ----
+
+static void halved(void *self, const double *in, double *out)
+{
+    out[0] = pow(in[0], 1.5); // NaN behind 0
+    out[1] = fabs(in[0]);
+    out[2] = self ? *(double *)self : in[0];
+}
+
+static void test_nowhere(void)
+{
+    double none = NAN, jac[3] = {7, 7, 7}, doubt[3], kink[3], at = 0;
+    const double size = 1;
+    moray_map map = {.n_in = 1, .n_out = 3, .value = halved};
+    CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, jac, doubt, kink), "differences");
+    CHECK(fabs(jac[1] - 1) < 1e-12 && kink[1] == 0, "no value behind: the slope ahead, %g, and no corner, %g", jac[1],
+          kink[1]);
+    map.self = &none;
+    CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, jac, doubt, kink), "differences");
+    CHECK(isnan(jac[2]) && isinf(doubt[2]) && kink[2] == 0, "no value anywhere: %g +- %g", jac[2], doubt[2]);
+    map.self = NULL, at = 3;
+    const moray_bounds fixed = {3, 3};
+    CHECK_OK(moray_difference_columns(&map, &at, &size, &fixed, jac, doubt, kink), "differences");
+    CHECK(fabs(jac[0] - 1.5 * sqrt(3)) < 1e-9, "what is fixed is differenced as if it were free: %g", jac[0]);
+}
+
+// ---- Rounding ----
+
+static void raised(void *self, const double *in, double *out)
+{
+    out[0] = *(double *)self + in[0];
+}
+
+static void test_rounding(void)
+{
+    const double at = 0, size = 1;
+    int off = 0, wild = 0;
+    for (int k = 0; k < 400; k++) {
+        double constant = (k % 2 ? 1 : -1) * (3000 + 17.123 * k), jac, doubt, kink;
+        const moray_map map = {.n_in = 1, .n_out = 1, .value = raised, .self = &constant};
+        CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, &jac, &doubt, &kink), "differences");
+        off += !(fabs(jac - 1) <= doubt);
+        wild += !(doubt < 1e-8) || kink != 0;
+    }
+    CHECK(off == 0 && wild == 0, "what rounding may do is in the doubt, %d times not, %d times too much", off, wild);
 }
 
 // An exponential beside a large constant, which says how exact a small slope need be.
@@ -138,6 +289,11 @@ int main(void)
     test_mean();
     test_smooth();
     test_extrapolates();
+    test_steps();
+    test_several();
+    test_uneven();
+    test_nowhere();
+    test_rounding();
     test_effort();
     return tap_done();
 }

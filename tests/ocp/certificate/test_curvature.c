@@ -25,7 +25,8 @@ static void saddle(const moray_ends *at, moray_end_values *out, const void *data
     const moray_num *s = at->s;
     (void)data;
     out->objective = (H[0][0] * s[0] * s[0] + 2 * H[0][1] * s[0] * s[1] + H[1][1] * s[1] * s[1]) / 2;
-    out->e[0] = s[0];
+    out->e[0] = s[1]; // which nothing bounds
+    out->e[1] = s[0];
 }
 
 // At s = 0; multipliers of the first parameter and of the row, which is the same.
@@ -109,8 +110,8 @@ static void test_edge(const struct edge *edge)
                                  .endpoint = saddle,
                                  .ns = 2,
                                  .s = MORAY_BOUNDS(edge->s, moray_free()),
-                                 .ne = 1,
-                                 .e = MORAY_BOUNDS(edge->e)};
+                                 .ne = 2,
+                                 .e = MORAY_BOUNDS(moray_free(), edge->e)};
     moray_ocp *ocp = NULL;
     struct witness w;
     moray_solution *solution = begin(&ocp, &spec, 3);
@@ -120,7 +121,7 @@ static void test_edge(const struct edge *edge)
         solution->iterate.x[t->layout.phase[0].node[n].x] = 7 * n;
     solution->iterate.z_lower[t->layout.s] = edge->z_lower;
     solution->iterate.z_upper[t->layout.s] = edge->z_upper;
-    solution->iterate.lambda[t->layout.events] = edge->lambda;
+    solution->iterate.lambda[t->layout.events + 1] = edge->lambda;
     CHECK_OK(moray_witness_of_sizes(&w, solution), "sizes");
     moray_witness_columns(&w, size);
     const double worst = worst_of(&w, direction), objective = moray_witness_objective(&w);

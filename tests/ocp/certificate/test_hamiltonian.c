@@ -13,13 +13,14 @@
 // Parts of H that depend on time.
 struct part {
     const char *what;
-    double f, c, g;
+    double f, c, g, h;
 };
-static const struct part parts[] = {{"nothing", 0, 0, 0},
-                                    {"the dynamics", 1, 0, 0},
-                                    {"a path constraint", 0, 1, 0},
-                                    {"an integrand", 0, 0, 1},
-                                    {"all", 1, 1, 1}};
+static const struct part parts[] = {{"nothing", 0, 0, 0, 0},
+                                    {"the dynamics", 1, 0, 0, 0},
+                                    {"a path constraint", 0, 1, 0, 0},
+                                    {"an integrand", 0, 0, 1, 0},
+                                    {"the last integrand alone", 0, 0, 0, 1},
+                                    {"all", 1, 1, 1, 1}};
 
 // u[0] is free, u[1] pushes against a limit all along.
 static void drift(const moray_node *at, moray_rates *out, const void *data)
@@ -31,7 +32,7 @@ static void drift(const moray_node *at, moray_rates *out, const void *data)
     out->c[0] = u[1] - 1 - part->c * t * t;
     out->c[1] = x[0];
     out->g[0] = (1 + part->g * t * t) * u[0] * u[0] + x[0] * x[0] + (u[1] - 8) * (u[1] - 8);
-    out->g[1] = (1 + part->g * t * t) * (x[1] - 3) * (x[1] - 3);
+    out->g[1] = (1 + part->h * t * t) * (x[1] - 3) * (x[1] - 3);
 }
 
 static void cost(const moray_ends *at, moray_end_values *out, const void *data)
@@ -124,10 +125,24 @@ static void test_size(void)
     moray_ocp_free(ocp);
 }
 
+// Without any multiplier there is no H, and nothing that departs from it.
+static void test_none(void)
+{
+    moray_ocp *ocp = NULL;
+    bool autonomous;
+    moray_solution *solution = solve(&ocp, &parts[0]);
+    memset(solution->iterate.lambda, 0, (size_t)solution->transcription->nlp.m * sizeof(double));
+    const struct finding found = drift_of(solution, &autonomous);
+    CHECK(found.value == 0, "no H, no drift: %g", found.value);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         test_part(&parts[k]);
     test_size();
+    test_none();
     return tap_done();
 }
