@@ -67,10 +67,11 @@ static void write_log_axis(FILE *script, const moray_figure *figure, int axis)
     if (range[1] > 1e3 * range[0])
         return;
     const double first = pow(10, floor(log10(range[0])));
-    fprintf(script, "set %ctics (%g", name, first);
+    const char *before = "";
+    fprintf(script, "set %ctics (", name);
     for (double decade = first; decade <= range[1]; decade *= 10)
-        for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
-            fprintf(script, ", %g", steps[k] * decade);
+        for (size_t k = 0; k < sizeof steps / sizeof *steps; k++, before = ", ")
+            fprintf(script, "%s%g", before, steps[k] * decade);
     fputs(")\n", script);
 }
 
