@@ -32,6 +32,7 @@ void moray_option_show_exactly(const moray_option *row, double value, char text[
         if (strtod(text, NULL) * scale == value)
             return;
     }
+    snprintf(text, 32, "%.17g", shown);
 }
 
 static void show_reals(const moray_option *row, const void *at, char text[MOST])

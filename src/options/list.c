@@ -24,7 +24,7 @@ static int read_item(const moray_option *row, char *text, double *to, int most)
         *star = 0;
         times = strtol(text, &end, 10);
         end += strspn(end, " \t");
-        if (end == text || *end || times < 1)
+        if (*end || times < 1)
             return 0;
     }
     double number, min, max;

@@ -48,7 +48,7 @@ moray_status moray_option_read(const moray_option *row, const char *name, const 
 void moray_option_bounds(const moray_option *row, double *min, double *max);
 double moray_option_scale(const moray_option *row);
 
-// A number in the row's unit that reads back as the same stored double.
+// A number in the row's unit that reads back as the same stored double, or one beside it where none does.
 void moray_option_show_exactly(const moray_option *row, double value, char text[32]);
 
 // Lists. Reading is false where the text is none; writing gives lines of an INI file that read back as the same.

@@ -6,6 +6,7 @@
 #include "tap.h"
 
 #include <string.h>
+#include <unistd.h>
 
 #include "moray/nlp.h"
 #include "nlp/ipopt_log.h"
@@ -116,8 +117,34 @@ static void test_empty_log(void)
     moray_ipopt_log_close(&log);
 }
 
+// What Ipopt says of its linear systems: time of the processor, the system's beside it.
+static void test_linear_seconds(void)
+{
+    static const struct {
+        const char *text;
+        double seconds;
+    } cases[] = {
+        {"Other....:  9.0 (sys: 9.0 wall: 9.0)\n  StdAugSystemSolverMultiSolve.....:  1.250 (sys:  0.500 wall:  "
+         "1.900)\n",
+         1.75},
+        {"StdAugSystemSolverMultiSolve.....:  1.250\n", NAN},
+        {"StdAugSystemSolverMultiSolve\n", NAN},
+        {"nothing\n", NAN},
+    };
+    for (int k = 0; k < 4; k++) {
+        struct ipopt_log log;
+        const size_t length = strlen(cases[k].text);
+        CHECK(moray_ipopt_log_open(&log), "a log");
+        CHECK(write(log.file, cases[k].text, length) == (ssize_t)length, "written");
+        const double seconds = moray_ipopt_log_linear_seconds(&log);
+        CHECK(isnan(cases[k].seconds) ? isnan(seconds) : seconds == cases[k].seconds, "%g s", seconds);
+        moray_ipopt_log_close(&log);
+    }
+}
+
 int main(void)
 {
+    test_linear_seconds();
     test_empty_log();
     moray_nlp_info info;
     double p;

@@ -47,9 +47,8 @@ static void coupled_solution(const double *p, int held, double solution[4], doub
         *left += coupled_H[held][j] * solution[j];
 }
 
-static void test_coupled(int held, bool lower, bool upper)
+static void test_coupled(int held, bool lower, bool upper, const double *moves)
 {
-    const double moves[PARAMETERS] = {0.3, -0.5, 0.9, 0.7, 0.2};
     double p[PARAMETERS] = {0.2, -0.3, 0.4, 0.5, 0.1}, moved[PARAMETERS], now[4], later[4], left[2];
     p[held] += lower ? 9 : -9; // towards the bound
     for (int k = 0; k < PARAMETERS; k++)
@@ -88,8 +87,11 @@ static void test_coupled(int held, bool lower, bool upper)
 
 int main(void)
 {
+    // Of mixed signs; such that all that moves falls.
+    static const double moves[][PARAMETERS] = {{0.3, -0.5, 0.9, 0.7, 0.2}, {0.3, 0.5, 0.9, -0.7, -0.2}};
     for (int held = 0; held < 3; held++)
         for (int kind = 1; kind < 4; kind++)
-            test_coupled(held, kind & 1, kind & 2);
+            for (int k = 0; k < 2; k++)
+                test_coupled(held, kind & 1, kind & 2, moves[k]);
     return tap_done();
 }
