@@ -180,7 +180,6 @@ moray_status moray_map_widened(moray_map *wider, const moray_map *map, const dou
     *found = 0;
     if (!self)
         return moray_error(MORAY_MEMORY, "no memory for a map of %d inputs", map->n_in);
-    describe(wider, self);
     moray_status status = allocate(self, from->size);
     if (!moray_failed(status)) {
         memcpy(self->feels, from->feels, (size_t)((char *)from->bent - (char *)from->feels));

@@ -54,8 +54,7 @@ static int merge(triplets *t, const int *order)
     int entries = 0;
     for (int k = 0; k < t->puts; k++) {
         const int here = order[k], before = k ? order[k - 1] : here;
-        if (k > 0 && (t->row[here] != t->row[before] || t->col[here] != t->col[before]))
-            entries++;
+        entries += t->row[here] != t->row[before] || t->col[here] != t->col[before];
         t->slot[here] = entries;
     }
     return t->puts ? entries + 1 : 0;
