@@ -14,19 +14,34 @@ static const double worthwhile = 5e-3; // relative gain of a round that calls fo
 // A point in the box of all scales, each of which goes from 0 to 1.
 typedef struct place {
     double z[most], cost; // INFINITY: there is none
-    int evaluations;
     bool stopped;
 } place;
+
+// What a point costs; local searches come by many points again.
+typedef struct tried {
+    double z[most], cost;
+} tried;
 
 typedef struct tuning {
     const moray_tuning_problem *problem;
     const moray_tuning_settings *settings;
     const place *from;
-    double reach;    // half the width of the box that is searched
-    bool polishing;  // by a quadratic model
-    bool stopped;    // of one task
-    int evaluations; // likewise
+    double reach;   // half the width of the box that is searched
+    bool polishing; // by a quadratic model
+    tried *known;   // [n_known] of all tasks before
+    int n_known;
+    bool stopped; // of one task
+    tried *own;   // [n_own], likewise, of at most
+    int n_own, room;
+    int evaluations; // likewise: a search may go a little beyond its room
 } tuning;
+
+// Of a task: the place found, and what it tried.
+typedef struct outcome {
+    place at;
+    int evaluations, n;
+    tried tried[];
+} outcome;
 
 moray_tuning_settings moray_tuning_settings_default(void)
 {
@@ -74,17 +89,43 @@ static moray_status check(const moray_tuning_problem *problem)
 
 // ---- Searches ------------------------------------------------------------------------------------------------------
 
+static const tried *recall(const tuning *t, const double *z)
+{
+    const size_t bytes = (size_t)t->problem->n * sizeof *z;
+    for (int k = 0; k < t->n_known; k++)
+        if (memcmp(t->known[k].z, z, bytes) == 0)
+            return &t->known[k];
+    for (int k = 0; k < t->n_own; k++)
+        if (memcmp(t->own[k].z, z, bytes) == 0)
+            return &t->own[k];
+    return NULL;
+}
+
+// INFINITY where there is no cost.
+static double try_out(tuning *t, const double *z)
+{
+    double x[most], cost;
+    for (int k = 0; k < t->problem->n; k++)
+        x[k] = from_unit(&t->problem->number[k], z[k]);
+    if (!t->problem->cost(t->problem->self, x, &cost) || !isfinite(cost))
+        cost = INFINITY;
+    t->evaluations++;
+    if (t->n_own == t->room)
+        return cost;
+    tried *at = &t->own[t->n_own++];
+    memcpy(at->z, z, (size_t)t->problem->n * sizeof *z);
+    return at->cost = cost;
+}
+
 static bool cost_at(tuning *t, const double *z, double *cost)
 {
-    double x[most];
-    if (t->settings->go_on && !t->settings->go_on(t->settings->observer)) {
+    const tried *before = t->settings->remembers ? recall(t, z) : NULL;
+    if (!before && t->settings->go_on && !t->settings->go_on(t->settings->observer)) {
         t->stopped = true;
         return false;
     }
-    for (int k = 0; k < t->problem->n; k++)
-        x[k] = from_unit(&t->problem->number[k], z[k]);
-    t->evaluations++;
-    return t->problem->cost(t->problem->self, x, cost) && isfinite(*cost);
+    *cost = before ? before->cost : try_out(t, z);
+    return isfinite(*cost);
 }
 
 static bool evaluate(void *self, const double *z, double *f, double *c, double *gradient, double *jacobian)
@@ -99,26 +140,38 @@ static bool carry_on(void *observer, const moray_search_progress *progress)
     return !((const tuning *)observer)->stopped;
 }
 
-// A moray_task_fn; result: the place with its cost.
+static tuning begin_task(const tuning *all, outcome *of, int k)
+{
+    tuning t = *all;
+    of->at = t.from[k];
+    t.own = of->tried;
+    return t;
+}
+
+static void end_task(const tuning *t, outcome *of)
+{
+    of->n = t->n_own;
+    of->evaluations = t->evaluations;
+    of->at.stopped = t->stopped;
+}
+
+// A moray_task_fn; result: an outcome, the place with its cost.
 static void look(int k, void *result, void *self)
 {
-    tuning t = *(const tuning *)self;
-    place *found = result;
-    *found = t.from[k];
+    tuning t = begin_task(self, result, k);
+    place *found = &((outcome *)result)->at;
     if (!cost_at(&t, found->z, &found->cost))
         found->cost = INFINITY;
-    found->evaluations = t.evaluations;
-    found->stopped = t.stopped;
+    end_task(&t, result);
 }
 
 // Likewise; result: the best place near that one.
 static void improve(int k, void *result, void *self)
 {
-    tuning t = *(const tuning *)self;
-    place *found = result;
+    tuning t = begin_task(self, result, k);
+    place *found = &((outcome *)result)->at;
     double z[most], lower[most], upper[most];
     const int n = t.problem->n;
-    *found = t.from[k];
     for (int j = 0; j < n; j++) {
         z[j] = found->z[j];
         lower[j] = fmax(0, z[j] - t.reach);
@@ -131,15 +184,14 @@ static void improve(int k, void *result, void *self)
     settings.method = t.polishing && n > 1 ? MORAY_SEARCH_BOBYQA : MORAY_SEARCH_COBYLA;
     settings.x_tolerance = 1e-4;
     settings.f_tolerance = t.settings->tolerance;
-    settings.max_evaluations = t.settings->evaluations * n;
+    settings.max_evaluations = t.room;
     settings.progress = carry_on;
     settings.observer = &t;
     if (!moray_failed(moray_search(&problem, &settings, z, &info)) && info.objective < found->cost) {
         memcpy(found->z, z, sizeof z);
         found->cost = info.objective;
     }
-    found->evaluations = t.evaluations;
-    found->stopped = t.stopped;
+    end_task(&t, result);
 }
 
 // ---- All of them ---------------------------------------------------------------------------------------------------
@@ -162,31 +214,40 @@ static void spread(const moray_tuning_problem *problem, const double *from, int 
                                         : fmod(0.5 + (i - n_from + 1) / pow(g, j + 1), 1);
 }
 
-// Does a task from each of n places, and puts what is found in their place.
-static moray_status from_each(tuning *t, moray_task_fn *task, place *places, int n, moray_tuning_info *info)
+static void take(tuning *t, const outcome *of, place *at, moray_tuning_info *info)
 {
-    place *found = calloc((size_t)n, sizeof *found);
-    if (!found)
-        return moray_error(MORAY_MEMORY, "no memory for %d searches", n);
+    info->evaluations += of->evaluations;
+    *at = of->at;
+    memcpy(t->known + t->n_known, of->tried, (size_t)of->n * sizeof *of->tried);
+    t->n_known += of->n;
+    t->stopped |= of->at.stopped;
+}
+
+// Does a task, which may try `room` points, from each of n places, and puts what is found in their place.
+static moray_status from_each(tuning *t, moray_task_fn *task, int room, place *places, int n, moray_tuning_info *info)
+{
+    const size_t size = sizeof(outcome) + (size_t)room * sizeof(tried);
+    char *found = calloc((size_t)n, size);
+    tried *known = realloc(t->known, (size_t)(t->n_known + n * room) * sizeof *known);
+    t->known = known ? known : t->known;
     t->from = places;
-    const moray_status status = moray_parallel(n, sizeof *found, found, task, t, t->settings->jobs);
-    for (int k = 0; k < n && !moray_failed(status); k++) {
-        places[k] = found[k];
-        info->evaluations += found[k].evaluations;
-        t->stopped |= found[k].stopped;
-    }
+    t->room = room;
+    moray_status status = found && known ? moray_parallel(n, size, found, task, t, t->settings->jobs)
+                                         : moray_error(MORAY_MEMORY, "no memory for %d searches", n);
+    for (int k = 0; k < n && !moray_failed(status); k++)
+        take(t, (const outcome *)(const void *)(found + (size_t)k * size), &places[k], info);
     free(found);
     return status;
 }
 
 // The best of them once more and again, in boxes around them.
-static moray_status polish(tuning *t, place *places, int n, moray_tuning_info *info)
+static moray_status polish(tuning *t, int room, place *places, int n, moray_tuning_info *info)
 {
     double enough = INFINITY; // a cost below which another round is called for
     for (int round = 0; round < ROUNDS && !t->stopped; round++) {
         t->polishing = round % 2 == 0;
         t->reach = round < ROUNDS / 2 ? 0.15 : 0.04;
-        MORAY_TRY(from_each(t, improve, places, n, info));
+        MORAY_TRY(from_each(t, improve, room, places, n, info));
         qsort(places, (size_t)n, sizeof *places, by_cost);
         if (round % 2 == 0)
             continue;
@@ -200,16 +261,17 @@ static moray_status polish(tuning *t, place *places, int n, moray_tuning_info *i
 static moray_status search(tuning *t, place *places, int n, int n_from, moray_tuning_info *info)
 {
     const int starts = t->settings->starts + n_from < n ? t->settings->starts + n_from : n;
-    MORAY_TRY(from_each(t, look, places, n, info));
+    const int room = t->settings->evaluations * t->problem->n;
+    MORAY_TRY(from_each(t, look, 1, places, n, info));
     qsort(places + n_from, (size_t)(n - n_from), sizeof *places, by_cost); // those given start whatever they cost
     t->reach = 1;
     if (!t->stopped)
-        MORAY_TRY(from_each(t, improve, places, starts, info));
+        MORAY_TRY(from_each(t, improve, room, places, starts, info));
     qsort(places, (size_t)starts, sizeof *places, by_cost);
     for (int k = 0; k < starts; k++)
         info->agree += places[k].cost - places[0].cost <= 0.05 * fabs(places[0].cost);
     info->searches = starts;
-    return polish(t, places, starts < POLISHED ? starts : POLISHED, info);
+    return polish(t, room, places, starts < POLISHED ? starts : POLISHED, info);
 }
 
 moray_status moray_tune(const moray_tuning_problem *problem, const moray_tuning_settings *settings, const double *from,
@@ -231,6 +293,7 @@ moray_status moray_tune(const moray_tuning_problem *problem, const moray_tuning_
     for (int k = 0; k < problem->n; k++)
         x[k] = from_unit(&problem->number[k], places[0].z[k]);
     free(places);
+    free(t.known);
     if (!moray_failed(status) && t.stopped)
         status = moray_error(MORAY_INTERRUPTED, "tuning was interrupted after %d evaluations", info->evaluations);
     if (!moray_failed(status) && !isfinite(info->cost))

@@ -233,6 +233,39 @@ static void test_ranges(void)
     }
 }
 
+// ---- What it remembers ----------------------------------------------------------------------------------------------
+
+static int repeated(const diary *d)
+{
+    int again = 0;
+    for (int k = 0; k < d->calls; k++)
+        for (int i = 0; i < k; i++)
+            again += memcmp(d->x[i], d->x[k], (size_t)d->n * sizeof **d->x) == 0;
+    return again;
+}
+
+static void test_remembers(int n)
+{
+    static diary d;
+    moray_tuned_number all[MORAY_TUNED_NUMBERS];
+    double x[3][MORAY_TUNED_NUMBERS];
+    moray_tuning_info info[3];
+    for (int j = 0; j < n; j++)
+        all[j] = (moray_tuned_number){MORAY_TUNED_LINEAR, -1, 2, 0};
+    const moray_tuning_problem problem = {n, all, valley, &d};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    for (int k = 0; k < 3; k++) { // without, with, and with by two processes
+        d = (diary){.n = n};
+        settings.remembers = k > 0;
+        settings.jobs = k < 2 ? 1 : 2;
+        CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x[k], &info[k]), "tunes");
+        CHECK(k == 2 || d.calls == info[k].evaluations, "%d numbers: %d calls", n, d.calls);
+        CHECK(k == 2 || (repeated(&d) == 0) == settings.remembers, "%d of them of a point tried before", repeated(&d));
+        CHECK(info[k].cost == info[0].cost && memcmp(x[k], x[0], (size_t)n * sizeof **x) == 0, "to the same");
+    }
+    CHECK(info[1].evaluations < info[0].evaluations && info[2].evaluations == info[1].evaluations, "in fewer calls");
+}
+
 // ---- What is refused -----------------------------------------------------------------------------------------------
 
 static bool nowhere(void *self, const double *x, double *cost)
@@ -275,6 +308,8 @@ int main(void)
     test_precise(1);
     test_precise(3);
     test_ranges();
+    test_remembers(1);
+    test_remembers(3);
     test_refusals();
     return tap_done();
 }

@@ -76,8 +76,8 @@ typedef struct moray_swim_on_gait {
 
 // The same for a swimmer whose joints begin on the gait, one without a series, with the offset first commanded: (34)
 // keeps them on it, and how the offset follows its command is known in closed form, so that only the body is
-// integrated. Ten times faster. Not where torques are limited. Error: MORAY_INPUT, MORAY_MEMORY, MORAY_NUMERIC, that of
-// the controller's `measure`.
+// integrated. Ten times faster. The controller's `measure` is shown no efforts: the u of its sample is NULL. Not where
+// torques are limited. Error: MORAY_INPUT, MORAY_MEMORY, MORAY_NUMERIC, that of `measure`.
 MORAY_API moray_status moray_swim_run_on_gait(moray_swimmer *swimmer, const moray_swim_plan *plan,
                                               const moray_swim_on_gait *how, double *x, double *energy);
 

@@ -70,14 +70,20 @@ static void move_joints(on_gait *r, double t, const double e[2])
 
 // ---- Body ----------------------------------------------------------------------------------------------------------
 
-// With the joints moved to where they are at t; leaves the full state in x and the efforts in u.
-static bool rates(on_gait *r, double t, const double *y, double *dy)
+// With the joints moved to where they are at t; leaves the full state in x.
+static void place(on_gait *r, double t, const double *y)
 {
-    const moray_robot *robot = moray_swimmer_robot(r->swimmer);
     moray_swim_turn(r->swimmer, &r->current, t);
     moray_swimmer_with_joints(r->swimmer, r->phi, r->v_phi, y, r->x);
     if (r->plan->water)
         moray_swim_stir(r->swimmer, r->plan->water, t, r->x);
+}
+
+// Likewise, and the efforts in u.
+static bool rates(on_gait *r, double t, const double *y, double *dy)
+{
+    const moray_robot *robot = moray_swimmer_robot(r->swimmer);
+    place(r, t, y);
     if (!moray_swimmer_rates(r->swimmer, r->x, r->ubar, r->dx, r->u))
         return false;
     moray_state_body(moray_swimmer_model(r->swimmer), robot->links, r->dx, dy);
@@ -135,20 +141,33 @@ static moray_status advance(on_gait *r, double t)
 
 // ---- Stops ---------------------------------------------------------------------------------------------------------
 
+static moray_swim_sample show(const on_gait *r, const double *u)
+{
+    moray_swim_sample shown = {
+        .t = r->t, .x = r->x, .u = u, .pose = moray_swimmer_pose(r->swimmer, r->x), .energy = r->y[ENERGY]};
+    moray_swimmer_current(r->swimmer, shown.current);
+    return shown;
+}
+
 static moray_swim_sample sample(on_gait *r)
 {
     r->known = slope_here(r);
-    moray_swim_sample shown = {
-        .t = r->t, .x = r->x, .u = r->u, .pose = moray_swimmer_pose(r->swimmer, r->x), .energy = r->y[ENERGY]};
-    moray_swimmer_current(r->swimmer, shown.current);
-    return shown;
+    return show(r, r->u);
+}
+
+// Without efforts, which would take as long as a quarter of a step.
+static moray_swim_sample sample_motion(on_gait *r)
+{
+    move_joints(r, r->t, r->deviation);
+    place(r, r->t, r->y);
+    return show(r, NULL);
 }
 
 // What is commanded may jump here; the joints do not.
 static moray_status measure(on_gait *r)
 {
     const moray_swim_controller *controller = r->plan->controller;
-    const moray_swim_sample shown = sample(r);
+    const moray_swim_sample shown = sample_motion(r);
     const moray_gait gait = gait_at(r, r->t, r->deviation);
     MORAY_TRY(moray_swim_afloat(r->plan->water, &shown));
     MORAY_TRY(controller->measure(&shown, controller->self));
