@@ -58,7 +58,7 @@
                  "rivals that have fewer numbers"),                                                                    \
         STEER_NUMBER(INT, settings, steer.evaluations, "baseline", "evaluations", 1, 10000, NULL,                      \
                      "simulations spent on each search, for every number"),                                            \
-        MORAY_JOBS_OPTION(settings, steer.jobs, "processes that tune")
+        MORAY_JOBS_OPTION(settings, steer.jobs, "processes that tune and try")
 
 // Keys without a use, for a moray_program's `idle`.
 bool steer_without_receding(const void *settings);

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "moray/parallel.h"
+
 static const steer_accuracy careful = {.tolerance = 1e-8, .per_second = 20, .timed = true};
 static const steer_accuracy drawn = {.tolerance = 1e-8, .per_second = 20};
 
@@ -113,16 +115,20 @@ static moray_status try_both(const steer_job *job, steer_trial *trial)
     return moray_ok();
 }
 
-static moray_status run_trial(steer_job *job, steer_trial *trial)
+static void note(steer_job *job, steer_trial *trial)
+{
+    const steer_score *first = job->program->scores;
+    trial->run = true;
+    moray_ticker_note(&job->ticker, "%s: %s %.4g on the control-oriented model, %.4g on the first-principles model",
+                      trial->name, first->key, trial->score[0][0] / first->unit, trial->score[1][0] / first->unit);
+}
+
+static moray_status run_tuned(steer_job *job, steer_trial *trial)
 {
     const double tuning_share = 0.7;
-    const steer_score *first = job->program->scores;
-    moray_ticker_show(&job->ticker, "%s: %s", job->name, trial->name);
-    if (trial->law->tuned) {
-        moray_ticker_show(&job->ticker, "%s: tuning %s", job->name, trial->name);
-        steer_clock_give(&job->clock, tuning_share / still_to_run(job));
-        MORAY_TRY(steer_tune(job, trial));
-    }
+    moray_ticker_show(&job->ticker, "%s: tuning %s", job->name, trial->name);
+    steer_clock_give(&job->clock, tuning_share / still_to_run(job));
+    MORAY_TRY(steer_tune(job, trial));
     steer_clock_give(&job->clock, 1 / still_to_run(job));
     MORAY_TRY(try_both(job, trial));
     const steer_trial *better = steer_better_subset(trial);
@@ -130,21 +136,78 @@ static moray_status run_trial(steer_job *job, steer_trial *trial)
         steer_take_numbers(trial, better);
         MORAY_TRY(try_both(job, trial));
     }
-    trial->run = true;
-    moray_ticker_note(&job->ticker, "%s: %s %.4g on the control-oriented model, %.4g on the first-principles model",
-                      trial->name, first->key, trial->score[0][0] / first->unit, trial->score[1][0] / first->unit);
+    note(job, trial);
+    return moray_ok();
+}
+
+// ---- Trials of which none depends on another -----------------------------------------------------------------------
+
+// What is not tuned, on each model a task.
+typedef struct deal {
+    steer_job *job;
+    int n, of[STEER_TRIALS];
+    double runs; // still to come, of trials on one model
+} deal;
+
+typedef struct outcome {
+    moray_status status;
+    double score[STEER_SCORES], cost;
+    moray_receding_horizon_record record;
+} outcome;
+
+// A moray_task_fn; result: an outcome.
+static void swim_one(int task, void *result, void *self)
+{
+    const deal *d = self;
+    const moray_model model = (moray_model)(task % 2);
+    outcome *of = result;
+    steer_trial trial = d->job->trial[d->of[task / 2]];
+    moray_ticker_show(&d->job->ticker, "%s: %s", d->job->name, trial.name);
+    steer_clock_give(&d->job->clock, 1 / (d->runs - task));
+    of->status = steer_try(d->job, &trial, model, careful);
+    memcpy(of->score, trial.score[model], sizeof of->score);
+    of->cost = trial.cost[model];
+    of->record = trial.record[model];
+}
+
+static moray_status take(steer_job *job, const outcome of[2], steer_trial *trial)
+{
+    for (int model = 0; model < 2; model++) {
+        memcpy(trial->score[model], of[model].score, sizeof of->score);
+        trial->cost[model] = of[model].cost;
+        trial->record[model] = of[model].record;
+        MORAY_TRY(of[model].status);
+    }
+    note(job, trial);
+    return moray_ok();
+}
+
+// One that was left out for want of time is no error.
+static moray_status unless_late(moray_status status)
+{
+    return status.code == MORAY_NOT_SOLVED ? moray_ok() : status;
+}
+
+static moray_status run_others(steer_job *job)
+{
+    deal d = {.job = job, .runs = 2 * still_to_run(job)};
+    outcome of[2 * STEER_TRIALS] = {0};
+    for (int k = 0; k < job->n_trials; k++)
+        if (can_run(job, &job->trial[k]) && !job->trial[k].law->tuned)
+            d.of[d.n++] = k;
+    MORAY_TRY(moray_parallel(2 * d.n, sizeof *of, of, swim_one, &d, job->jobs));
+    MORAY_TRY(steer_interruption());
+    for (int k = 0; k < d.n; k++)
+        MORAY_TRY(unless_late(take(job, &of[2 * k], &job->trial[d.of[k]])));
     return moray_ok();
 }
 
 moray_status steer_run_trials(steer_job *job)
 {
-    for (int k = 0; k < job->n_trials; k++) {
-        if (!can_run(job, &job->trial[k]))
-            continue;
-        const moray_status status = run_trial(job, &job->trial[k]);
-        if (status.code != MORAY_NOT_SOLVED) // else it is left out for want of time
-            MORAY_TRY(status);
-    }
+    MORAY_TRY(run_others(job));
+    for (int k = 0; k < job->n_trials; k++)
+        if (can_run(job, &job->trial[k]) && job->trial[k].law->tuned)
+            MORAY_TRY(unless_late(run_tuned(job, &job->trial[k])));
     return moray_ok();
 }
 

@@ -86,6 +86,8 @@ fi
 run --set power_W=1e-6 --set reference=steps:5=10 --horizon 16 --set starts=1 --set evaluations=1
 check "no power: $(cat err)" eval '[ $code -eq 1 ] && one_line && grep -q "power" err'
 
+check "two processes find what one does" same_by_jobs $short --set reference=steps:6=20 --set gait_evaluations=1
+
 # ---- Interrupted
 timeout --foreground --preserve-status -s INT 2 "$program" --out interrupted >out 2>err </dev/null
 code=$?
