@@ -54,9 +54,9 @@ static void extrapolate(const struct columns *c, enum side side, int i, int leve
     for (int k = 1; k <= level; k++) {
         power *= side == both ? 16 : 4;
         const double old = above;
-        above = k < level ? row[k] : 0;
+        above = row[k];
         row[k] = row[k - 1] + (row[k - 1] - old) / (power - 1);
-        const double spread = fmax(fabs(row[k] - row[k - 1]), fabs(row[k] - old)) + rounding;
+        const double spread = fabs(row[k] - old) + rounding; // row[k - 1] is nearer
         if (spread < *doubt) {
             *doubt = spread;
             *jac = row[k];

@@ -194,20 +194,104 @@ static void test_uneven(void)
             CHECK(fabs(jac[0][0] - (jac[1][0] + jac[2][0]) / 2) < 1e-14 &&
                       fabs(kink[0][0] - (jac[1][0] - jac[2][0]) / 2) < 1e-14,
                   "case %d: the mean %g and half the difference %g", k, jac[0][0], kink[0][0]);
-            CHECK(doubt[0][0] == fmax(doubt[1][0], doubt[2][0]), "known as well as the worse side: %.1e", doubt[0][0]);
+            for (int i = 0; i < 2; i++)
+                CHECK(doubt[0][i] == fmax(doubt[1][i], doubt[2][i]), "known as well as the worse side: %.1e",
+                      doubt[0][i]);
         } else {
             CHECK(kink[0][0] == 0, "case %d: nothing is certain where a side is rough: %g", k, kink[0][0]);
         }
     }
 }
 
-// ---- No value behind, or none at all; no room ----
+// ---- One of two outputs that bends ----
+
+struct beside {
+    double line, bow; // of the first output
+    int calls;
+};
+
+static void one_bends(void *self, const double *in, double *out)
+{
+    struct beside *beside = self;
+    beside->calls++;
+    out[0] = beside->line * in[0] + beside->bow * in[0] * in[0];
+    out[1] = fabs(in[0]) + in[1];
+}
+
+// Whatever the other output does, the corner is seen, and a smooth column behind takes two steps to both sides.
+static void test_beside_another(void)
+{
+    static const double at[2] = {0, 0}, size[2] = {1, 1};
+    static const double lines[] = {0, 1, -1, 0, 0}, bows[] = {0, 0, 0, 1e6, -1e6};
+    for (int k = 0; k < 5; k++) {
+        struct beside self = {lines[k], bows[k], 0};
+        moray_map map = {.n_in = 1, .n_out = 2, .value = one_bends, .self = &self};
+        double jac[4], doubt[4], kink[4];
+        CHECK_OK(moray_difference_columns(&map, at, size, NULL, jac, doubt, kink), "one column");
+        const int alone = self.calls;
+        map.n_in = 2, self.calls = 0;
+        CHECK_OK(moray_difference_columns(&map, at, size, NULL, jac, doubt, kink), "two");
+        CHECK(kink[1] == 1 && kink[0] == 0, "beside %g x + %g x^2 the corner is %g", lines[k], bows[k], kink[1]);
+        CHECK(fabs(jac[3] - 1) < 1e-12 && kink[3] == 0 && self.calls == alone + 4, "the other input takes %d values",
+              self.calls - alone);
+    }
+}
+
+// ---- Where the functions are asked ----
+
+static const moray_bounds *fence; // of both inputs, or NULL
+static const double centre[] = {0.4, -0.7};
+static double reach[2];
+static int outside;
+
+static void fenced(void *self, const double *in, double *out)
+{
+    (void)self;
+    for (int j = 0; j < 2; j++) {
+        reach[j] = fmax(reach[j], fabs(in[j] - centre[j]));
+        outside += fence && (in[j] < fence[j].lower || in[j] > fence[j].upper);
+    }
+    out[0] = exp(in[0]) * sin(in[1]);
+}
+
+static void test_room(void)
+{
+    static const double room[] = {0, 1e-5, 2e-3, 0.3, INFINITY}, size[] = {0.5, 8};
+    const moray_map map = {.n_in = 2, .n_out = 1, .value = fenced};
+    const double slopes[] = {exp(0.4) * sin(-0.7), exp(0.4) * cos(-0.7)};
+    double jac[2], doubt[2], kink[2];
+    for (int k = 0; k < 625; k++) {
+        const double below[] = {room[k % 5], room[k / 5 % 5]}, above[] = {room[k / 25 % 5], room[k / 125]};
+        const moray_bounds box[] = {{centre[0] - below[0], centre[0] + above[0]},
+                                    {centre[1] - below[1], centre[1] + above[1]}};
+        if (below[0] + above[0] < 1e-3 || below[1] + above[1] < 1e-3)
+            continue;
+        fence = box, outside = 0;
+        CHECK_OK(moray_difference_columns(&map, centre, size, box, jac, doubt, kink), "in a box");
+        const double left = fmax(fabs(jac[0] - slopes[0]) - 1.5 * doubt[0], fabs(jac[1] - slopes[1]) - 1.5 * doubt[1]);
+        if (outside > 0 || !(left <= 0) || !(fmax(doubt[0], doubt[1]) < 1e-7))
+            CHECK(false, "with room below %g %g and above %g %g: asked %d times outside, %g and %g off", below[0],
+                  below[1], above[0], above[1], outside, jac[0] - slopes[0], jac[1] - slopes[1]);
+    }
+    fence = NULL, reach[0] = reach[1] = 0;
+    CHECK_OK(moray_difference_columns(&map, centre, size, NULL, jac, doubt, kink), "without");
+    CHECK_RELATIVE(reach[1] / reach[0], size[1] / size[0], 1e-9, "steps are as large as what they are of");
+}
+
+// ---- No value behind or ahead, or none at all; no room ----
 
 static void halved(void *self, const double *in, double *out)
 {
     out[0] = pow(in[0], 1.5); // NaN behind 0
     out[1] = fabs(in[0]);
     out[2] = self ? *(double *)self : in[0];
+}
+
+static void mirrored(void *self, const double *in, double *out)
+{
+    halved(self, (double[]){-in[0]}, out);
+    const double first = out[0];
+    out[0] = out[2], out[2] = first;
 }
 
 static void test_nowhere(void)
@@ -218,7 +302,11 @@ static void test_nowhere(void)
     CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, jac, doubt, kink), "differences");
     CHECK(fabs(jac[1] - 1) < 1e-12 && kink[1] == 0, "no value behind: the slope ahead, %g, and no corner, %g", jac[1],
           kink[1]);
-    map.self = &none;
+    map.value = mirrored;
+    CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, jac, doubt, kink), "differences");
+    CHECK(fabs(jac[1] + 1) < 1e-12 && kink[1] == 0 && fabs(jac[2]) < 1e-2 && isfinite(doubt[2]),
+          "none ahead: those behind, %g and %g", jac[1], jac[2]);
+    map.value = halved, map.self = &none;
     CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, jac, doubt, kink), "differences");
     CHECK(isnan(jac[2]) && isinf(doubt[2]) && kink[2] == 0, "no value anywhere: %g +- %g", jac[2], doubt[2]);
     map.self = NULL, at = 3;
@@ -229,8 +317,11 @@ static void test_nowhere(void)
 
 // ---- Rounding ----
 
+static int raised_calls;
+
 static void raised(void *self, const double *in, double *out)
 {
+    raised_calls++;
     out[0] = *(double *)self + in[0];
 }
 
@@ -243,6 +334,7 @@ static void test_rounding(void)
         const moray_map map = {.n_in = 1, .n_out = 1, .value = raised, .self = &constant};
         CHECK_OK(moray_difference_columns(&map, &at, &size, NULL, &jac, &doubt, &kink), "differences");
         off += !(fabs(jac - 1) <= doubt);
+        wild += raised_calls != 5 * (k + 1); // two steps to both sides: rounding is no bend
         wild += !(doubt < 1e-8) || kink != 0;
     }
     CHECK(off == 0 && wild == 0, "what rounding may do is in the doubt, %d times not, %d times too much", off, wild);
@@ -250,7 +342,7 @@ static void test_rounding(void)
 
 // An exponential beside a large constant, which says how exact a small slope need be.
 struct counted {
-    double sign, constant;
+    double sign, constant, unit;
     int calls;
 };
 
@@ -258,17 +350,17 @@ static void counted_value(void *self, const double *in, double *out)
 {
     struct counted *counted = self;
     counted->calls++;
-    out[0] = counted->sign * (counted->constant + 1e-3 * exp(9 * in[0]));
+    out[0] = counted->sign * (counted->constant + 1e-3 * exp(9 * in[0] / counted->unit));
 }
 
-static int calls_for(double sign, double constant)
+static int calls_for(double sign, double constant, double unit)
 {
-    static const double in = 0.3, size = 1;
-    struct counted self = {.sign = sign, .constant = constant};
+    const double in = 0.3 * unit;
+    struct counted self = {.sign = sign, .constant = constant, .unit = unit};
     const moray_map map = {.n_in = 1, .n_out = 1, .value = counted_value, .self = &self};
     double jac, doubt, kink;
-    CHECK_OK(moray_difference_columns(&map, &in, &size, NULL, &jac, &doubt, &kink), "differences");
-    CHECK_NEAR(jac, sign * 9e-3 * exp(9 * in), 1e-9 * (1 + constant), "of an exponential");
+    CHECK_OK(moray_difference_columns(&map, &in, &unit, NULL, &jac, &doubt, &kink), "differences");
+    CHECK_NEAR(jac * unit, sign * 9e-3 * exp(9 * 0.3), 1e-9 * (1 + constant), "of an exponential");
     return self.calls;
 }
 
@@ -277,10 +369,11 @@ static void test_effort(void)
 {
     for (int k = 0; k < 2; k++) {
         const double constant = k ? 1e3 : 0;
-        const int calls = calls_for(1, constant), turned = calls_for(-1, constant);
+        const int calls = calls_for(1, constant, 1), turned = calls_for(-1, constant, 1);
         CHECK(calls == turned, "%d values, with the other sign %d", calls, turned);
+        CHECK(calls == calls_for(1, constant, 1024) && calls == calls_for(1, constant, 1 / 1024.), "in any unit");
     }
-    CHECK(calls_for(1, 1e3) < calls_for(1, 0), "beside a large value fewer are needed");
+    CHECK(calls_for(1, 1e3, 1) < calls_for(1, 0, 1), "beside a large value fewer are needed");
 }
 
 int main(void)
@@ -292,6 +385,8 @@ int main(void)
     test_steps();
     test_several();
     test_uneven();
+    test_beside_another();
+    test_room();
     test_nowhere();
     test_rounding();
     test_effort();
