@@ -154,6 +154,7 @@ class Copy:
         if not os.path.exists(os.path.join(self.build, "build.ninja")):
             subprocess.run(["meson", "setup", "-Ddebug=false", *options, self.build], cwd=folder, check=True,
                            stdout=subprocess.DEVNULL)
+        subprocess.run(["ninja", "build.ninja"], cwd=self.build, check=True, stdout=subprocess.DEVNULL)  # of new tests
         files = {target["id"]: [os.path.relpath(name, self.build) for name in target["filename"]]
                  for target in self.introspect("--targets")}
         self.tests = {test["name"]: test for test in self.introspect("--tests")}
