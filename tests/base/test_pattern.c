@@ -233,12 +233,17 @@ static void check_widening(moray_map *map, const char *kind)
           map->hess.nnz);
     CHECK(moray_map_pattern_holds(map, here), "%s: the pattern holds where it was found", kind);
     CHECK(!moray_map_pattern_holds(map, there) && !moray_map_pattern_holds(map, beyond), "%s: and not beyond", kind);
+    const double below[] = {-1, -4.2, 0.7, -1}; // where an input is less than nothing by its own size
+    CHECK(!moray_map_pattern_holds(map, below), "%s: nor at minus 1", kind);
     CHECK_OK(moray_map_widened(&wider, map, there, 1, &found), "widened");
     CHECK(found > 0 && wider.jac.nnz == 4 && wider.hess.nnz == 1, "%s: by what is there: %d, %d", kind, wider.jac.nnz,
           wider.hess.nnz);
     CHECK(moray_map_pattern_holds(&wider, there) && moray_map_pattern_holds(&wider, here), "%s: which holds", kind);
     CHECK_OK(moray_check_derivatives(&wider, there, weight, &report), "checked");
     CHECK(report.jacobian_error < 1e-8 && report.hessian_error < 1e-5, "%s: derivatives %.1e, %.1e", kind,
+          report.jacobian_error, report.hessian_error);
+    CHECK_OK(moray_check_derivatives(&wider, (double[]){-1, 4.2, -1, -1}, weight, &report), "checked");
+    CHECK(report.jacobian_error < 1e-8 && report.hessian_error < 1e-5, "%s: at minus 1 %.1e, %.1e", kind,
           report.jacobian_error, report.hessian_error);
     CHECK_OK(moray_map_widened(&widest, &wider, here, 1, &found), "looked at again");
     CHECK(found == 0 && widest.jac.nnz == wider.jac.nnz && widest.hess.nnz == wider.hess.nnz,
