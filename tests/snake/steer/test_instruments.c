@@ -4,6 +4,8 @@
 #include "degree.h"
 #include "tap.h"
 
+#include <string.h>
+
 #include "moray/snake/instruments.h"
 
 typedef struct listener {
@@ -161,21 +163,48 @@ static void test_actuators(void)
     moray_instruments_free(w);
 }
 
+static void refuse(const moray_sensors *sensors, const moray_actuators *actuators,
+                   const moray_swim_controller *controller, const char *says)
+{
+    char taken;
+    moray_instruments *w = (void *)&taken;
+    const moray_status status = moray_instruments_new(&w, sensors, actuators, &swinging, 10, controller);
+    CHECK(status.code == MORAY_INPUT && strstr(status.text, says), "not '%s': %s", says, status.text);
+    CHECK(!w, "and nothing is left");
+}
+
+// Each number that is none, by its name and value, with all others as they should be.
+static void test_numbers_refused(const moray_swim_controller *controller)
+{
+    static const struct {
+        moray_sensors sensors;
+        moray_actuators actuators;
+        const char *says;
+    } bad[] = {{.sensors.heading = -1, .says = "heading noise = -1"},
+               {.sensors.joints = -2, .says = "joint noise = -2"},
+               {.sensors.position = -3, .says = "position noise = -3"},
+               {.sensors.rate = -4, .says = "noise of the heading's rate = -4"},
+               {.sensors.sampling = -5, .says = "sampling of the sensors = -5"},
+               {.sensors.delay = -6, .says = "delay of the sensors = -6"},
+               {.actuators.dead_time = -7, .says = "dead time = -7"},
+               {.actuators.rate = INFINITY, .says = "rate of the actuators = inf"},
+               {.actuators.torque = NAN, .says = "torque of the actuators = nan"},
+               {.sensors.drop_out = 1, .says = "drop-outs = 1"},
+               {.sensors.drop_out = -0.1, .says = "drop-outs = -0.1"},
+               {.sensors.delay = 1e4, .says = "delay = 10000 s, dead time = 0 s"},
+               {.actuators.dead_time = 1e4, .says = "delay = 0 s, dead time = 10000 s"}};
+    for (unsigned k = 0; k < sizeof bad / sizeof *bad; k++)
+        refuse(&bad[k].sensors, &bad[k].actuators, controller, bad[k].says);
+}
+
 static void test_refusals(void)
 {
     listener l = {0};
-    const moray_swim_controller controller = {say, listen, 0.1, &l}, blind = {say, NULL, 0, &l};
-    const moray_actuators perfect = {0};
-    moray_instruments *w;
-    CHECK(moray_instruments_new(&w, &(moray_sensors){.drop_out = 1}, &perfect, &swinging, 10, &controller).code ==
-              MORAY_INPUT,
-          "all readings lost");
-    CHECK(moray_instruments_new(&w, &(moray_sensors){.heading = -1}, &perfect, &swinging, 10, &controller).code ==
-              MORAY_INPUT,
-          "less than no noise");
-    CHECK(moray_instruments_new(&w, &(moray_sensors){0}, &perfect, &swinging, 10, &blind).code == MORAY_INPUT,
-          "a controller that does not look");
-    CHECK(!w, "and nothing is left");
+    const moray_swim_controller controller = {say, listen, 0.1, &l}, blind = {say, NULL, 0.1, &l},
+                                standing = {say, listen, 0, &l};
+    test_numbers_refused(&controller);
+    refuse(&(moray_sensors){0}, &(moray_actuators){0}, &blind, "a controller that measures");
+    refuse(&(moray_sensors){0}, &(moray_actuators){0}, &standing, "a controller that measures");
 }
 
 int main(void)

@@ -201,7 +201,19 @@ static void test_times(scene *s, double step)
     }
 }
 
-// Plans start from the swimmer: heading without undulation, place, ground velocity without its swing, offset.
+// Of the heading without the undulation of one model and with that of the other, as differences have it at a sample.
+static double turning(const scene *s, const moray_swim_track *track, moray_model swum, int sample)
+{
+    double heading[2];
+    for (int k = 0; k < 2; k++) {
+        const int at = sample + 2 * k - 1;
+        heading[k] = moray_straight_motion_heading(&s->straight[swum], track->t[at], track->pose[at].heading) -
+                     moray_straight_motion_heading(&s->straight[0], track->t[at], 0);
+    }
+    return (heading[1] - heading[0]) / (track->t[sample + 1] - track->t[sample - 1]);
+}
+
+// Plans start from the swimmer: heading without undulation and its rate, place, ground velocity without its swing, offset.
 static void test_measured(scene *s, moray_model swum)
 {
     set(s, true, swum, 0);
@@ -213,6 +225,7 @@ static void test_measured(scene *s, moray_model swum)
         const double turn = state[0];
         CHECK_NEAR(moray_straight_motion_heading(&s->straight[0], t, state[0]),
                    moray_straight_motion_heading(&s->straight[swum], t, pose->heading), 1e-9, "heading [rad]");
+        CHECK_NEAR(state[MORAY_STATE_V_THETA], turning(s, &closed_loop.track, swum, sample), 1e-3, "its rate [rad/s]");
         CHECK_NEAR(state[1], pose->p_x, 1e-9, "p_x [m]");
         CHECK_NEAR(state[2], pose->p_y, 1e-9, "p_y [m]");
         CHECK_NEAR(state[4] * cos(turn) - state[5] * sin(turn), pose->v_x, 1e-9, "velocity over ground [m/s]");

@@ -62,7 +62,8 @@ static void test_refusals(void)
     }
 }
 
-// Without an iteration a plan is its guess: it turns to the side that is asked, all the way.
+// Without an iteration a plan is its guess: it turns to the side that is asked, all the way, to either in the same time:
+// steadily, with a way to the full offset and one back, and a second more.
 static void test_guess(void)
 {
     moray_settings settings = moray_settings_default();
@@ -77,6 +78,8 @@ static void test_guess(void)
         moray_solution_times(plan.solution, 0, &t0, &t1);
         moray_solution_at(plan.solution, 0, t1, x, NULL);
         CHECK_NEAR(x[MORAY_STATE_THETA], spec.heading, 1 * DEG, "where it turns to");
+        const double ramp = spec.limits.offset / spec.limits.offset_rate;
+        CHECK_NEAR(t1 - t0, fabs(spec.heading) / 0.1 + 2 * ramp + 1, 1e-9, "in the time that this takes [s]");
         moray_steering_plan_free(&plan);
     }
 }
