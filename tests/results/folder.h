@@ -68,6 +68,18 @@ static inline int entries(const char *name)
     return n;
 }
 
+// Files that this process has open.
+static inline int handles(void)
+{
+    DIR *directory = opendir("/proc/self/fd");
+    int n = 0;
+    for (; directory && readdir(directory); n++)
+        ;
+    if (directory)
+        closedir(directory);
+    return n;
+}
+
 static moray_output *open_in(const char *name)
 {
     moray_output *output = NULL;

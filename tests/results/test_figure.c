@@ -207,6 +207,7 @@ int main(void)
 {
     if (!enter())
         return 1;
+    const int open = handles();
     test_figure();
     test_log_axes();
     test_colours_and_field();
@@ -215,6 +216,7 @@ int main(void)
     test_contrast();
     test_failed_figure();
     test_bad_gnuplot();
+    CHECK(handles() == open, "no file stays open");
     leave();
     return tap_done();
 }

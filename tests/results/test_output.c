@@ -148,16 +148,32 @@ static void test_unwritable(void)
     unlink(in_root("file"));
 }
 
+// Two runs with one folder, each of which leaves that of the other alone.
+static void test_side_by_side(void)
+{
+    moray_output *one = open_in("both"), *other = open_in("both");
+    fprintf(start(one, "one"), "1");
+    fprintf(start(other, "other"), "2");
+    CHECK_OK(moray_output_commit(one), "one");
+    CHECK_OK(moray_output_commit(other), "the other");
+    moray_output_free(one);
+    moray_output_free(other);
+    CHECK(holds("both/one", "1") && holds("both/other", "2") && entries("both") == 2, "both have what they wrote");
+}
+
 int main(void)
 {
     if (!enter())
         return 1;
+    const int open = handles();
     test_commit();
     test_abandoned();
     test_killed();
     test_failed_commit();
     test_full_disk();
     test_unwritable();
+    test_side_by_side();
+    CHECK(handles() == open, "no file stays open");
     leave();
     return tap_done();
 }
