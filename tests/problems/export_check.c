@@ -24,6 +24,12 @@ static void tell(const char *what, double difference)
     failed = failed || !good;
 }
 
+// A NaN is worse than any number.
+static double worse(double worst, double difference)
+{
+    return isnan(difference) ? INFINITY : fmax(worst, difference);
+}
+
 // ---- Joints --------------------------------------------------------------------------------------------------------
 
 static void compare_joints(const export_found *found)
@@ -39,9 +45,9 @@ static void compare_joints(const export_found *found)
         snake_joints(&state, (snake_real)t, got[0], got[1], got[2]);
         for (int i = 0; i < SNAKE_JOINTS; i++) {
             const double w = phi[i], dw = phi[SNAKE_JOINTS + i], ddw = phi[2 * SNAKE_JOINTS + i];
-            worst = tap_worse(worst, fabs((double)got[0][i] - ramp[0] * w));
-            worst = tap_worse(worst, fabs((double)got[1][i] - ramp[1] * w - ramp[0] * dw));
-            worst = tap_worse(worst, fabs((double)got[2][i] - ramp[2] * w - 2 * ramp[1] * dw - ramp[0] * ddw));
+            worst = worse(worst, fabs((double)got[0][i] - ramp[0] * w));
+            worst = worse(worst, fabs((double)got[1][i] - ramp[1] * w - ramp[0] * dw));
+            worst = worse(worst, fabs((double)got[2][i] - ramp[2] * w - 2 * ramp[1] * dw - ramp[0] * ddw));
         }
     }
     tell("joints, rates, accelerations", worst);
@@ -103,7 +109,7 @@ static void compare_plant(const export_found *found)
     swim(found, swimmer, by_library, one);
     swim(found, swimmer, by_header, other);
     for (int i = 0; i < n; i++)
-        worst = tap_worse(worst, fabs(one[i] - other[i]));
+        worst = worse(worst, fabs(one[i] - other[i]));
     tell("states after 4 s under (34)", worst);
     free(one);
     moray_swimmer_free(swimmer);
@@ -215,9 +221,9 @@ static void compare_steering(void)
     double place = 0, heading = 0, offset = 0, most = 0;
     for (int k = 0; k < one.track.n; k++) {
         const moray_pose *a = &one.track.pose[k], *b = &other.track.pose[k];
-        place = tap_worse(place, hypot(a->p_x - b->p_x, a->p_y - b->p_y));
-        heading = tap_worse(heading, fabs(a->heading - b->heading));
-        offset = tap_worse(offset, fabs(one.offset[k] - other.offset[k]));
+        place = worse(place, hypot(a->p_x - b->p_x, a->p_y - b->p_y));
+        heading = worse(heading, fabs(a->heading - b->heading));
+        offset = worse(offset, fabs(one.offset[k] - other.offset[k]));
         most = fmax(most, fabs(one.offset[k]));
     }
     tell("position in closed loop, m", place);
