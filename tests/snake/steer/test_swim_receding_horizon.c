@@ -213,7 +213,8 @@ static double turning(const scene *s, const moray_swim_track *track, moray_model
     return (heading[1] - heading[0]) / (track->t[sample + 1] - track->t[sample - 1]);
 }
 
-// Plans start from the swimmer: heading without undulation and its rate, place, ground velocity without its swing, offset.
+// Plans start from the swimmer: heading without undulation, its rate, place, ground velocity without its swing,
+// offset.
 static void test_measured(scene *s, moray_model swum)
 {
     set(s, true, swum, 0);

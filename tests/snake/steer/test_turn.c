@@ -62,8 +62,8 @@ static void test_refusals(void)
     }
 }
 
-// Without an iteration a plan is its guess: it turns to the side that is asked, all the way, to either in the same time:
-// steadily, with a way to the full offset and one back, and a second more.
+// Without an iteration a plan is its guess: it turns to the side that is asked, all the way, to either side in the time
+// of a steady turn, a way to the full offset and one back, and a second more.
 static void test_guess(void)
 {
     moray_settings settings = moray_settings_default();

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+//
+// The steps that the explicit method takes, read off the times at which it asks for slopes, of equations whose errors
+// are known in closed form.
+#include "tap.h"
+
+#include "moray/sim.h"
+#include "sim/prince_dormand.h"
+
+enum { MOST = 4000, LAST = PD_STAGES - 1 };
+
+typedef struct equation {
+    double rate, power[2]; // x' = rate x + power t^7, of two states
+    int refused;           // the question that has no answer, from 1 on
+    int n;
+    double asked[MOST];
+} equation;
+
+static bool slope(double t, const double *x, double *dx, void *self)
+{
+    equation *e = self;
+    for (int i = 0; i < 2; i++)
+        dx[i] = e->rate * x[i] + e->power[i] * pow(t, 7);
+    if (e->n < MOST)
+        e->asked[e->n++] = t;
+    return e->n != e->refused;
+}
+
+static moray_sim *started(equation *e, double rtol, double atol, double max_step, const double x[2])
+{
+    const moray_sim_settings settings = {
+        .method = MORAY_SIM_EXPLICIT, .rtol = rtol, .atol = atol, .max_step = max_step, .max_steps = 1000};
+    moray_sim *sim;
+    CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 2, .rhs = slope, .self = e}, &settings), "new");
+    CHECK_OK(moray_sim_start(sim, 0, x), "start");
+    return sim;
+}
+
+// ---- The first step (Hairer, Norsett and Wanner, II.4) -------------------------------------------------------------
+
+static void check_first(double rate, const double x[2], double to, double euler, double step)
+{
+    equation e = {.rate = rate};
+    moray_sim *sim = started(&e, 1e-3, 1e-3, 0, x);
+    CHECK_OK(moray_sim_advance(sim, to), "advance");
+    CHECK_RELATIVE(e.asked[1], euler, 1e-12, "step by Euler [s]");
+    CHECK_RELATIVE(e.asked[1 + LAST], step, 1e-12, "first step [s]");
+    moray_sim_free(sim);
+}
+
+static void test_first(void)
+{
+    const double x[] = {0.5, 2}, none[2] = {0}, tolerance = 1e-3 * 2 + 1e-3; // that of the state with the worst norm
+    check_first(-0.5, x, 100, 0.01 / 0.5, pow(0.01 / (0.5 * 2 / tolerance), 1.0 / 8));
+    check_first(-3, x, 100, 0.01 / 3, pow(0.01 / (9 * 2 / tolerance), 1.0 / 8));
+    check_first(3, x, 1, 0.01 / 3, pow(0.01 / (9 * 2 / tolerance), 1.0 / 8));
+    check_first(-50, x, 1, 0.01 / 50, 100 * 0.01 / 50); // no more than a hundred times that of Euler
+    check_first(-0.5, x, 0.015, 0.015, 0.015);          // nor beyond the end
+    check_first(-0.5, none, 1, 1e-6, 1e-6);             // where nothing moves
+}
+
+// ---- The steps after it --------------------------------------------------------------------------------------------
+
+// What is known of the method: where it is, the step to be tried, the error of the last step.
+typedef struct course {
+    double t, step, before;
+    int at, rejections; // questions asked
+} course;
+
+// Of x' = t^7 a step of 1 has this error, since the embedded formula is exact up to t^6 and the other up to t^7.
+static double error_of_power(void)
+{
+    double error = 0;
+    for (int s = 0; s < PD_STAGES; s++)
+        error += (pd_b[s] - pd_embedded[s]) * pow(pd_c[s], 7);
+    return fabs(error);
+}
+
+// As precisely as a step's error comes out of slopes that are up to 1e9 times as large, and is asked for beside states
+// of 1e6 with a relative tolerance of 1e-14.
+static bool same(double got, double want)
+{
+    return fabs(got - want) <= 1e-5 * fabs(want);
+}
+
+// One step towards the stop: proportional and integral control of its size, the larger of two states' errors deciding.
+static bool follow(course *c, const equation *e, double max_step, double stop, double per_step)
+{
+    const double longest = stop - c->t;
+    double h = max_step > 0 ? fmin(c->step, max_step) : c->step;
+    h = h >= longest ? longest : h > longest / 2 ? longest / 2 : h;
+    bool as_asked = true, rejected = false;
+    for (;; rejected = true, c->rejections++) {
+        for (int s = 1; s <= LAST; s++)
+            as_asked = as_asked && c->at < e->n && same(e->asked[c->at++], c->t + pd_c[s] * h);
+        const double error = per_step * pow(h, 8);
+        if (error <= 1) {
+            const double factor = 0.9 * pow(fmax(error, 1e-10), 0.03 - 1.0 / 8) * pow(c->before, 0.04);
+            const double next = h * fmax(0.2, fmin(factor, rejected ? 1 : 6));
+            c->t = h == longest ? stop : c->t + h;
+            c->step = h == longest ? fmax(next, c->step) : next;
+            c->before = fmax(error, 1e-4);
+            return as_asked;
+        }
+        if (!as_asked)
+            return false;
+        c->step = h *= fmax(0.2, 0.9 * pow(error, -1.0 / 8));
+    }
+}
+
+// All steps to the stop, each of which asks for the slope where it begins; the first one's is asked for before.
+static void check_steps(course *c, const equation *e, double max_step, double stop, double per_step)
+{
+    bool as_asked = true;
+    int steps = 0;
+    for (; as_asked && c->t < stop; steps++) {
+        if (c->t > 0)
+            as_asked = c->at < e->n && same(e->asked[c->at++], c->t);
+        as_asked = as_asked && follow(c, e, max_step, stop, per_step);
+    }
+    CHECK(as_asked && c->at == e->n, "to %g: %d steps as the errors have them, %d of %d questions", stop, steps, c->at,
+          e->n);
+}
+
+// Errors in two states of which either is the worse, with a stop behind which they are a thousand times as large, so
+// that what step was to be tried is rejected.
+static void check_control(double first, double second, double max_step, bool rejected)
+{
+    equation e = {.power = {first, second}};
+    const double x[2] = {0}, per_step = fmax(first, second) * error_of_power() / 1e-3;
+    moray_sim *sim = started(&e, 1e-14, 1e-3, max_step, x);
+    course c = {.step = 1e-6, .before = 1, .at = 2};
+    CHECK_OK(moray_sim_advance(sim, 0.7), "advance");
+    check_steps(&c, &e, max_step, 0.7, per_step);
+    for (int i = 0; i < 2; i++)
+        e.power[i] *= 1000;
+    CHECK_OK(moray_sim_advance(sim, 1.5), "advance");
+    check_steps(&c, &e, max_step, 1.5, 1000 * per_step);
+    CHECK((c.rejections > 0) == rejected, "%d rejected", c.rejections);
+    moray_sim_free(sim);
+}
+
+// A question without an answer, the fourth of a step, makes the step a quarter, after which it does not grow at once.
+static void test_refused(void)
+{
+    const double x[] = {1, 1};
+    equation e = {.refused = 2 + 4};
+    moray_sim *sim = started(&e, 1e-3, 1e-3, 0, x);
+    CHECK_OK(moray_sim_advance(sim, 1), "advance");
+    const int again = e.refused; // the first question of the second try
+    CHECK_RELATIVE(e.asked[again], pd_c[1] * 0.25e-6, 1e-12, "a quarter of the step");
+    CHECK_RELATIVE(e.asked[again + LAST], 0.25e-6, 1e-12, "is taken");
+    CHECK_RELATIVE(e.asked[again + 2 * LAST], 0.5e-6, 1e-12, "and once more");
+    const double most = 0.9 * pow(10, 0.95 - 0.16); // where there is no error, nor was
+    CHECK_RELATIVE(e.asked[again + 3 * LAST + 1], 0.5e-6 + most * 0.25e-6, 1e-12, "before it grows");
+    moray_sim_free(sim);
+}
+
+int main(void)
+{
+    test_first();
+    check_control(0, 0, 0, false);
+    check_control(0, 0, 0.15, false);
+    check_control(1000, 1, 0, true);
+    check_control(1, 1000, 0, true);
+    check_control(1, 1000, 0.05, false);
+    test_refused();
+    return tap_done();
+}
