@@ -25,7 +25,7 @@ static moray_status draw_convergence(const moray_solution *solution, moray_outpu
         x[k] = k;
         violation[k] = at[k].infeasibility > 0 ? at[k].infeasibility : NAN; // a logarithm has no place for 0
         dual[k] = at[k].dual_infeasibility > 0 ? at[k].dual_infeasibility : NAN;
-        begin[k] = at[k].iteration == 0 ? dual[k] : NAN;
+        begin[k] = at[k].iteration == 0 ? fmax(violation[k], dual[k]) : NAN; // of which one may be 0
         begun += at[k].iteration == 0;
     }
     const moray_curve curves[] = {{.label = "violation of the constraints",
