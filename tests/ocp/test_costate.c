@@ -53,10 +53,12 @@ static void idle(const moray_node *at, moray_rates *out, const void *data)
     out->f[0] = 0 * at->x[0];
 }
 
-// Before it there is a phase that does nothing, so that no column or row is the first.
-static moray_solution *solve(moray_ocp **ocp, const char *scheme)
+// Before it there is a phase that does nothing, so that no column or row is the first. own: one control has bounds of
+// its own at the end, which where an end is no node would take part of the multipliers beside it.
+static moray_solution *solve(moray_ocp **ocp, const char *scheme, bool own)
 {
     const moray_bounds free = moray_free(), fixed = moray_fixed(1), most = moray_at_most(1);
+    const moray_bounds last[nu] = {{-1, 2}, {-3, 1}, free, free, free, {-100, 100}, {-9, 9}};
     const moray_phase_spec phase[2] = {
         {.nx = 1, .continuous = idle, .tf = moray_fixed(0.5), .x0 = MORAY_BOUNDS(fixed)},
         {.nx = nx,
@@ -70,6 +72,7 @@ static moray_solution *solve(moray_ocp **ocp, const char *scheme)
          .x0 = MORAY_BOUNDS(moray_between(from[0], 8), moray_between(from[1], 8), fixed, fixed),
          .xf = MORAY_BOUNDS(moray_between(-8, to[0]), moray_between(-8, to[1]), fixed, free),
          .u = MORAY_BOUNDS(moray_between(-1, 2), moray_between(-3, 1), free, free, free, free, moray_between(-9, 9)),
+         .uf = {last, own ? nu : 0},
          .c = MORAY_BOUNDS(moray_at_most(0.5), moray_at_most(0.25))}};
     moray_settings settings = moray_settings_default();
     moray_solution *solution = NULL;
@@ -108,20 +111,24 @@ static void check_along(const moray_solution *solution, const char *scheme, int 
             level += twice * rate * rate / 2 - twice * rate * rate;
         }
         costates = worse(costates, costate[n * nx + 3], 0);
-        if (isnan(H[n])) {
-            none += isnan(u[n * nu]) && isnan(c[n * nc + 1]);
+        if (isnan(u[n * nu])) {
+            none += isnan(H[n]) && isnan(c[n * nc + 1]);
             continue;
         }
         drift = worse(drift, H[n], level);
         for (int k = 0; k < 2; k++) {
             limits = worse(limits, u[n * nu + k], k ? price(1, t) : -price(0, t));
             limits = worse(limits, c[n * nc + k], price(2 + k, t));
-            limits = worse(limits, u[n * nu + 4 + k], 0);
+            if (n < nodes - 1)
+                limits = worse(limits, u[n * nu + 4 + k], 0);
         }
     }
     CHECK(limits < 1e-5, "%s: multipliers of limits to %.1e", scheme, limits);
     CHECK(costates < 1e-5, "%s: costates to %.1e", scheme, costates);
     CHECK(drift < 1e-4, "%s: Hamiltonian to %.1e", scheme, drift);
+    const double *ending = u + (nodes - 1) * nu;
+    CHECK(apart > 0 || (isnan(ending[5]) && !isnan(ending[4])), "%s: none of a control of own bounds at the end",
+          scheme);
     CHECK(none == apart, "%s: none at %d nodes", scheme, none);
     for (int n = 1; n < nodes - 1; n++)
         held_back += x[n * nx + 2] > 0 && fabs(x[n * nx]) < 1e-6;
@@ -154,7 +161,7 @@ int main(void)
     static const int apart[] = {0, 1, 9, 0};
     for (int k = 0; k < 4; k++) {
         moray_ocp *ocp = NULL;
-        moray_solution *solution = solve(&ocp, schemes[k]);
+        moray_solution *solution = solve(&ocp, schemes[k], apart[k] == 0);
         check_along(solution, schemes[k], apart[k]);
         check_ends(solution, schemes[k]);
         moray_solution_free(solution);

@@ -221,18 +221,18 @@ static const struct sized {
     moray_bounds x[2], u, x0, xf; // the last of x[0]
     double side, at;              // of x[0] at the middle node
     bool found;
-    double size[3];
+    double size[3], push; // the control at that node
 } sized[] = {
-    {"states from a control", {FREE, FREE}, {-3, 1}, FREE, FREE, 0, 0, false, {24, 3, 3}},
-    {"and by the strongest cause", {FREE, FREE}, {-3, 1}, FREE, FREE, 5, 0, false, {30, 3, 3}},
-    {"a control from a state", {FREE, {-5, 4}}, FREE, FREE, FREE, 0, 0, false, {40, 5, 5}},
-    {"what states need of it, the least", {{-8, 8}, {-5, 4}}, FREE, FREE, FREE, 2, 0, false, {8, 5, 5}},
-    {"or of it, what others do", {{-8, 8}, {-50, 4}}, FREE, FREE, FREE, 20, 0, false, {8, 50, 10}},
-    {"nothing", {FREE, FREE}, FREE, FREE, FREE, 0, 0, false, {1, 1, 1}},
-    {"a guess", {FREE, {-5, 4}}, {-3, 1}, FREE, FREE, 0, -0.5, false, {0.5, 5, 3}},
-    {"one that may be rounding", {FREE, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 1e-9, false, {40, 5, 3}},
-    {"unless it is asked for", {FREE, {-5, 4}}, {-3, 1}, {1e-9, 1e-9}, FREE, 0, 1e-9, false, {1e-9, 5, 3}},
-    {"at either end", {FREE, {-5, 4}}, {-3, 1}, FREE, {-1e-9, -1e-9}, 0, 1e-9, false, {1e-9, 5, 3}},
+    {"states from a control", {FREE, FREE}, {-3, 1}, FREE, FREE, 0, 0, false, {24, 3, 3}, 0},
+    {"and by the strongest cause", {FREE, FREE}, {-3, 1}, FREE, FREE, 5, 0, false, {30, 3, 3}, 0},
+    {"a control from a state", {FREE, {-5, 4}}, FREE, FREE, FREE, 0, 0, false, {40, 5, 5}, 0},
+    {"what states need of it, the least", {{-8, 8}, {-5, 4}}, FREE, FREE, FREE, 2, 0, false, {8, 5, 5}, 0},
+    {"or of it, what others do", {{-8, 8}, {-50, 4}}, FREE, FREE, FREE, 20, 0, false, {8, 50, 10}, 0},
+    {"nothing", {FREE, FREE}, FREE, FREE, FREE, 0, 0, false, {1, 1, 1}, 0},
+    {"a guess", {FREE, {-5, 4}}, {-3, 1}, FREE, FREE, 0, -0.5, false, {0.5, 5, 3}, 0},
+    {"one that may be rounding", {FREE, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 1e-9, false, {40, 5, 3}, 0},
+    {"unless it is asked for", {FREE, {-5, 4}}, {-3, 1}, {1e-9, 1e-9}, FREE, 0, 1e-9, false, {1e-9, 5, 3}, 0},
+    {"at either end", {FREE, {-5, 4}}, {-3, 1}, FREE, {-1e-9, -1e-9}, 0, 1e-9, false, {1e-9, 5, 3}, 0},
     {"more than what an end is by rounding",
      {FREE, {-5, 4}},
      {-3, 1},
@@ -241,13 +241,15 @@ static const struct sized {
      0,
      1e-9,
      false,
-     {40, 5, 3}},
-    {"a wide box", {{-1e4, 9}, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 2, false, {1e4, 5, 3}},
-    {"is none where both ends are fixed", {{-1e4, 9}, {-5, 4}}, {-3, 1}, {1, 1}, {2, 2}, 0, 2, false, {2, 5, 3}},
-    {"not at one alone", {{-1e4, 9}, {-5, 4}}, {-3, 1}, {1, 1}, FREE, 0, 2, false, {1e4, 5, 3}},
-    {"nor is a narrower one", {{-1e3, 9}, {-5, 4}}, {-3, 1}, {1, 1}, {2, 2}, 0, 2, false, {1e3, 5, 3}},
-    {"nor where it was found far within", {{-1e4, 9}, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 2, true, {2, 5, 3}},
-    {"but as next to nothing", {{-1e4, 9}, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 1e-3, true, {1e4, 5, 3}},
+     {40, 5, 3},
+     0},
+    {"a control's guess", {FREE, {-5, 4}}, FREE, FREE, FREE, 0, 0, false, {40, 5, 0.3}, -0.3},
+    {"a wide box", {{-1e4, 9}, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 2, false, {1e4, 5, 3}, 0},
+    {"is none where both ends are fixed", {{-1e4, 9}, {-5, 4}}, {-3, 1}, {1, 1}, {2, 2}, 0, 2, false, {2, 5, 3}, 0},
+    {"not at one alone", {{-1e4, 9}, {-5, 4}}, {-3, 1}, {1, 1}, FREE, 0, 2, false, {1e4, 5, 3}, 0},
+    {"nor is a narrower one", {{-1e3, 9}, {-5, 4}}, {-3, 1}, {1, 1}, {2, 2}, 0, 2, false, {1e3, 5, 3}, 0},
+    {"nor where it was found far within", {{-1e4, 9}, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 2, true, {2, 5, 3}, 0},
+    {"but as next to nothing", {{-1e4, 9}, {-5, 4}}, {-3, 1}, FREE, FREE, 0, 1e-3, true, {1e4, 5, 3}, 0},
 };
 
 static void test_sized(const struct sized *want)
@@ -268,7 +270,7 @@ static void test_sized(const struct sized *want)
     double size[3], *x = solution->iterate.x;
     for (int j = 0; j < t->nlp.n; j++)
         x[j] = 0;
-    x[t->layout.phase[0].node[7].x] = want->at;
+    x[t->layout.phase[0].node[7].x] = want->at, x[t->layout.phase[0].node[7].x + 2] = want->push;
     CHECK_OK(moray_choose_scales(t, x, want->found), "the caches are of this point");
     moray_size_inputs(t, 0, x, want->found, size);
     for (int i = 0; i < 3; i++)
@@ -279,30 +281,50 @@ static void test_sized(const struct sized *want)
 
 // ---- What an integral may come to ----
 
+static void integrands(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num *x = at->x, u = at->u[0];
+    out->f[0] = x[1];
+    out->f[1] = u;
+    out->g[0] = 5 - x[0] * x[0] - x[1] * x[1] - 4 * u * u; // the most where nothing moves
+    out->g[1] = 0.25 + x[0] * u + x[1] * u + x[0] * x[1];  // as much wherever one of them moves
+    out->g[2] = x[0] + 10 * x[1] + 100 * u;
+}
+
 static void test_integral(void)
 {
     static const struct {
+        int which;
         moray_bounds q;
         double guess, size;
-    } cases[] = {{FREE, 0.3, 0.3},     {FREE, 2.1e-5, 2.1e-5}, {FREE, 1.9e-5, 20},
-                 {FREE, INFINITY, 20}, {{-8, 3}, 0.3, 8},      {{0, MORAY_INFINITY}, 0.3, 0.3}};
+    } cases[] = {{0, FREE, 0.3, 0.3},
+                 {0, FREE, 2.1e-5, 2.1e-5},
+                 {0, FREE, 1.9e-5, 20},
+                 {0, FREE, INFINITY, 20},
+                 {0, FREE, MORAY_INFINITY, 20},
+                 {0, {-8, 3}, 0.3, 8},
+                 {0, {0, MORAY_INFINITY}, 0.3, 0.3},
+                 {1, FREE, 0, 1},
+                 {2, FREE, 0, 50}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const moray_bounds wide = moray_between(-50, 50);
         const moray_phase_spec phase = {.nx = 2,
                                         .nu = 1,
-                                        .nc = rows_of_path,
-                                        .nq = 2,
-                                        .continuous = plant,
+                                        .nq = 3,
+                                        .continuous = integrands,
                                         .tf = moray_fixed(4),
                                         .x = MORAY_BOUNDS(moray_between(-1, 1), moray_between(-1, 1)),
                                         .u = MORAY_BOUNDS(moray_between(-1, 1)),
-                                        .c = MORAY_BOUNDS(wide, wide, wide),
-                                        .q = MORAY_BOUNDS(cases[k].q, moray_free())};
+                                        .q = MORAY_BOUNDS(cases[k].q, moray_free(), moray_free())};
         moray_ocp *ocp;
         moray_solution *solution = begin(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = nowhere});
+        struct transcription *t = solution->transcription;
         double work[100];
+        for (int j = 0; j < t->nlp.n; j++)
+            solution->iterate.x[j] = 0;
+        CHECK_OK(moray_choose_scales(t, solution->iterate.x, false), "the caches are of this point");
         const double size =
-            moray_size_of_integral(solution->transcription, 0, 0, cases[k].guess, (double[]){1, 1, 1}, work);
+            moray_size_of_integral(t, 0, cases[k].which, cases[k].guess, (double[]){0.5, 0.25, 0.125}, work);
         CHECK(fabs(size - cases[k].size) <= 1e-12 * cases[k].size, "case %zu: %g, not %g", k, size, cases[k].size);
         end(solution, ocp);
     }
