@@ -39,7 +39,8 @@ static moray_ocp *build(void)
                                     .x = MORAY_BOUNDS(moray_between(-9, 9)),
                                     .u = MORAY_BOUNDS(moray_between(-9, 9)),
                                     .c = MORAY_BOUNDS(moray_between(-9, 9))};
-    const moray_phase_spec both[] = {phase, phase};
+    moray_phase_spec both[] = {phase, phase};
+    both[1].name = "next";
     moray_ocp *ocp = NULL;
     CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "kept",
                                                    .phases = 2,
@@ -181,7 +182,7 @@ static void test_changed(const moray_ocp *ocp)
         snprintf(text, sizeof text, "phase %d %d %d %d intervals 2\n", 1 + (wrong == 0), 1 + (wrong == 1),
                  1 + (wrong == 2), 1 + (wrong == 3));
         snprintf(expected, sizeof expected,
-                 "a phase of %d states, %d controls, %d path constraints and %d integrals; phase leg has 1, 1, 1 and 1",
+                 "a phase of %d states, %d controls, %d path constraints and %d integrals; phase next has 1, 1, 1 and 1",
                  1 + (wrong == 0), 1 + (wrong == 1), 1 + (wrong == 2), 1 + (wrong == 3));
         check_refused(ocp, 6, text, count, expected);
     }
