@@ -12,6 +12,7 @@ enum { MOST = 4000, LAST = PD_STAGES - 1 };
 typedef struct equation {
     double rate, power[2]; // x' = rate x + power t^7, of two states
     int refused;           // the question that has no answer, from 1 on
+    bool broken;           // no answers behind the start
     int n;
     double asked[MOST];
 } equation;
@@ -23,7 +24,7 @@ static bool slope(double t, const double *x, double *dx, void *self)
         dx[i] = e->rate * x[i] + e->power[i] * pow(t, 7);
     if (e->n < MOST)
         e->asked[e->n++] = t;
-    return e->n != e->refused;
+    return e->n != e->refused && !(e->broken && t > 0);
 }
 
 static moray_sim *started(equation *e, double rtol, double atol, double max_step, const double x[2])
@@ -156,6 +157,21 @@ static void test_refused(void)
     moray_sim_free(sim);
 }
 
+// Who could go no way from one state goes from another by the slope there.
+static void test_started_anew(void)
+{
+    const double x[] = {1, 1}, other[] = {4, -4};
+    equation e = {.rate = -1, .broken = true};
+    moray_sim *sim = started(&e, 1e-10, 1e-10, 0, x);
+    CHECK(moray_sim_advance(sim, 1).code == MORAY_NUMERIC, "no way");
+    e.broken = false;
+    CHECK_OK(moray_sim_start(sim, 0, other), "started anew");
+    CHECK_OK(moray_sim_advance(sim, 1), "advance");
+    for (int i = 0; i < 2; i++)
+        CHECK_NEAR(moray_sim_state(sim)[i], other[i] * exp(-1), 1e-8, "as if there had been nothing before");
+    moray_sim_free(sim);
+}
+
 int main(void)
 {
     test_first();
@@ -165,5 +181,6 @@ int main(void)
     check_control(1, 1000, 0, true);
     check_control(1, 1000, 0.05, false);
     test_refused();
+    test_started_anew();
     return tap_done();
 }
