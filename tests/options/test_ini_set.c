@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "tap.h"
 
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -76,13 +78,39 @@ static void test_files(void)
     CHECK(moray_ini_set(".", "robot", two, 2).code == MORAY_IO, "a directory");
 }
 
+// A disk that is full in the middle of the text, or almost at its start.
+static void test_full_disk(void)
+{
+    struct rlimit was, limit;
+    getrlimit(RLIMIT_FSIZE, &was);
+    signal(SIGXFSZ, SIG_IGN);
+    for (int k = 0; k < 2; k++) {
+        char text[1500], last[600];
+        memset(text, 'x', sizeof text);
+        memcpy(text, "[robot]\n;", 9);
+        strcpy(text + sizeof text - 2, "\n");
+        memset(last, 'y', sizeof last);
+        last[sizeof last - 1] = 0;
+        const moray_ini_entry large[] = {{"rot_gain", last}};
+        put("full.ini", text);
+        limit = was;
+        limit.rlim_cur = k ? 16 : 1024;
+        setrlimit(RLIMIT_FSIZE, &limit);
+        const moray_status status = moray_ini_set("full.ini", "robot", large, 1);
+        setrlimit(RLIMIT_FSIZE, &was);
+        CHECK(status.code == MORAY_IO && strstr(status.text, "full.ini: cannot be written"), "%s", status.text);
+        CHECK(holds("full.ini", text), "what was there stays");
+    }
+}
+
 int main(void)
 {
     if (!mkdtemp(directory) || chdir(directory) != 0)
         return 1;
     test_texts();
     test_files();
-    CHECK(system("rm robot.ini fresh.ini kept.ini link.ini") == 0 && chdir("/") == 0 && rmdir(directory) == 0,
+    test_full_disk();
+    CHECK(system("rm robot.ini fresh.ini kept.ini link.ini full.ini") == 0 && chdir("/") == 0 && rmdir(directory) == 0,
           "nothing else is left behind");
     return tap_done();
 }
