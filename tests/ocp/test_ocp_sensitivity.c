@@ -97,6 +97,13 @@ static void check_prediction(moray_sensitivity *s, const struct cart *cart, doub
         CHECK_NEAR(u, 6 * d / (b * T * T) * (1 - 2 * t / T), 1e-8, "predicted push, linear in the distance");
         CHECK_NEAR(x[0], d * t * t / (T * T) * (3 - 2 * t / T), 1e-8, "predicted way");
     }
+    double time[100], costate[200], off = 0;
+    const int nodes = moray_solution_nodes(predicted, 0, time, costate);
+    for (int n = 0; n < nodes; n++) {
+        off = tap_worse(off, fabs(costate[2 * n] + 24 * d / (b * b * T * T * T)));
+        off = tap_worse(off, fabs(costate[2 * n + 1] + 12 * d / (b * b * T * T) * (1 - 2 * time[n] / T)));
+    }
+    CHECK(off < 1e-7, "predicted costates, linear in the distance, to %.1e", off);
     moray_solution_times(predicted, 0, &t0, &tf);
     CHECK_NEAR(tf, T, 1e-14, "in its time");
     CHECK(moray_solution_info(predicted)->outcome == MORAY_NLP_ITERATION_LIMIT &&

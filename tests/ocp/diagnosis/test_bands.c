@@ -113,6 +113,13 @@ static void test_names(void)
         moray_band_name(solution, &named[k].band, text, sizeof text);
         CHECK(strcmp(text, named[k].name) == 0, "\"%s\" is \"%s\"", text, named[k].name);
     }
+    const struct transcription *t = solution->transcription;
+    const struct band column = {band_single, false, -1, t->layout.s + 1},
+                      row = {band_single, true, -1, t->layout.events + 1};
+    moray_band_name(solution, &column, text, sizeof text);
+    CHECK(strstr(text, "s[1]"), "a parameter is \"%s\"", text);
+    moray_band_name(solution, &row, text, sizeof text);
+    CHECK(strstr(text, "e[1]"), "an event is \"%s\"", text);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
