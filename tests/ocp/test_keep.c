@@ -91,6 +91,7 @@ static void test_back(const moray_ocp *ocp, const char *scheme, moray_nlp_outcom
     CHECK(memcmp(was->x, is->x, columns) == 0 && memcmp(was->z_lower, is->z_lower, columns) == 0 &&
               memcmp(was->z_upper, is->z_upper, columns) == 0 && memcmp(was->lambda, is->lambda, rows) == 0,
           "%s: every number is back", scheme);
+    CHECK(memcmp(loaded->guess, was->x, columns) == 0, "%s: and is what a solve would begin from", scheme);
     CHECK(is->objective == was->objective && loaded->info.iterations == 0 && loaded->info.seconds == 1 / 9. &&
               loaded->info.outcome == outcome,
           "%s: objective, iterations, seconds and outcome", scheme);
@@ -158,6 +159,13 @@ static void test_changed(const moray_ocp *ocp)
     CHECK_OK(moray_solution_save(solution, path), "saved");
     moray_solution_free(solution);
     read_lines();
+    FILE *file = fopen(path, "w");
+    for (int k = 0; file && k < count; k++)
+        fprintf(file, "%s%s", k % 2 ? " \t" : "  ", lines[k]);
+    if (file)
+        fclose(file);
+    CHECK_OK(moray_solution_load(&solution, ocp, NULL, path), "blanks before a line");
+    moray_solution_free(solution);
     const int first = 11; // after a head of two lines, two phases of three, outcome and objective
     CHECK(count == first - 1 + n + m + 1, "%d lines: %d columns, %d rows", count, n, m);
     for (int line = 4; line <= 8; line += line == 5 ? 2 : 1)
@@ -181,9 +189,10 @@ static void test_changed(const moray_ocp *ocp)
     for (int wrong = 0; wrong < 4; wrong++) {
         snprintf(text, sizeof text, "phase %d %d %d %d intervals 2\n", 1 + (wrong == 0), 1 + (wrong == 1),
                  1 + (wrong == 2), 1 + (wrong == 3));
-        snprintf(expected, sizeof expected,
-                 "a phase of %d states, %d controls, %d path constraints and %d integrals; phase next has 1, 1, 1 and 1",
-                 1 + (wrong == 0), 1 + (wrong == 1), 1 + (wrong == 2), 1 + (wrong == 3));
+        snprintf(
+            expected, sizeof expected,
+            "a phase of %d states, %d controls, %d path constraints and %d integrals; phase next has 1, 1, 1 and 1",
+            1 + (wrong == 0), 1 + (wrong == 1), 1 + (wrong == 2), 1 + (wrong == 3));
         check_refused(ocp, 6, text, count, expected);
     }
     for (int wrong = 0; wrong < 2; wrong++) {
