@@ -18,7 +18,6 @@ enum { most_rejections = 60 };
 struct explicit_method {
     double step;         // to be tried next; 0: to be chosen
     double error_before; // of the last accepted step, relative to the tolerance
-    bool have_slope;     // slope[0] is that at the accepted state
     double *x, *slope;   // trial state [n]; slopes of the stages, [PD_STAGES][n]
 };
 
@@ -47,7 +46,6 @@ static moray_status restart(moray_sim *sim)
     struct explicit_method *m = sim->method_self;
     m->step = 0;
     m->error_before = 1;
-    m->have_slope = false;
     return moray_ok();
 }
 
@@ -85,7 +83,7 @@ static double first_step(moray_sim *sim, struct explicit_method *m, double longe
         return euler;
     add(n, -1, m->slope, slope);
     const double curvature = fmax(norm_of(sim, slope) / euler, rate);
-    const double step = curvature > 1e-15 ? pow(0.01 / curvature, exponent) : fmax(1e-6, 1e-3 * euler);
+    const double step = curvature > 1e-15 ? pow(0.01 / curvature, exponent) : 1e-6;
     return fmin(fmin(100 * euler, step), longest);
 }
 
@@ -131,16 +129,14 @@ static void keep(moray_sim *sim, struct explicit_method *m, double h, double sto
     moray_sim_accept(sim, arrived ? stop : sim->t + h, m->x);
     m->step = arrived ? fmax(next, m->step) : next; // a step cut short by a stop says little of the next
     m->error_before = fmax(error, 1e-4);
-    m->have_slope = false;
 }
 
 static moray_status step(moray_sim *sim, double stop)
 {
     struct explicit_method *m = sim->method_self;
     const double longest = stop - sim->t, least = 1e3 * DBL_EPSILON * fmax(fabs(sim->t), longest);
-    if (!m->have_slope && !moray_sim_rhs(sim, sim->t, sim->x, m->slope))
+    if (!moray_sim_rhs(sim, sim->t, sim->x, m->slope))
         return moray_sim_stuck(sim, stop, SIM_ERROR_TEST);
-    m->have_slope = true;
     if (m->step == 0)
         m->step = first_step(sim, m, longest);
     double h = fit(sim, m->step, longest);

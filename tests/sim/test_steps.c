@@ -20,6 +20,7 @@ typedef struct equation {
 static bool slope(double t, const double *x, double *dx, void *self)
 {
     equation *e = self;
+    dx[0] = dx[1] = NAN; // before x is read, which stands apart
     for (int i = 0; i < 2; i++)
         dx[i] = e->rate * x[i] + e->power[i] * pow(t, 7);
     if (e->n < MOST)
@@ -58,6 +59,12 @@ static void test_first(void)
     check_first(-50, x, 1, 0.01 / 50, 100 * 0.01 / 50); // no more than a hundred times that of Euler
     check_first(-0.5, x, 0.015, 0.015, 0.015);          // nor beyond the end
     check_first(-0.5, none, 1, 1e-6, 1e-6);             // where nothing moves
+    // What is less than 1e-5 of the tolerance, in size or rate, tells no step by Euler.
+    const double little[] = {2e-6, 0}, less[] = {2e-9, 0};
+    check_first(-1.5e-6, x, 1, 1, 1);
+    check_first(-1.5e-9, x, 1, 1e-6, 100 * 1e-6);
+    check_first(-50, little, 1, 0.01 / 50, 100 * 0.01 / 50);
+    check_first(-50, less, 1, 1e-6, 100 * 1e-6);
 }
 
 // ---- The steps after it --------------------------------------------------------------------------------------------
