@@ -57,6 +57,15 @@ static moray_solution *begin(moray_ocp **ocp, const moray_phase_spec *phase, int
 static const moray_phase_spec usual = {
     .nx = 2, .nu = 2, .nq = 2, .continuous = drift, .t0 = {1, 1}, .tf = {3, 3}, .u = MORAY_BOUNDS({-1, 4}, {-2, 0})};
 
+// What stood there before has no part in a guess.
+static double *nonsense(int n)
+{
+    double *x = calloc((size_t)n, sizeof *x);
+    for (int j = 0; j < n; j++)
+        x[j] = 1000 + j;
+    return x;
+}
+
 // ---- From bounds: straight from end to end ----
 
 static const struct line {
@@ -80,7 +89,7 @@ static void test_lines(void)
         moray_solution *solution = begin(&ocp, &phase, 1);
         struct transcription *t = solution->transcription;
         const struct phase_layout *layout = &t->layout.phase[0];
-        double *x = calloc((size_t)t->nlp.n, sizeof *x);
+        double *x = nonsense(t->nlp.n);
         CHECK_OK(moray_fill_guess(t, NULL, x), "from bounds");
         for (int n = 0; n < layout->nodes; n++) {
             const double tau = layout->node[n].tau, *at = x + layout->node[n].x;
@@ -132,7 +141,7 @@ static void test_spans(void)
         moray_ocp *ocp;
         moray_solution *solution = begin(&ocp, &phase, 1);
         struct transcription *t = solution->transcription;
-        double *x = calloc((size_t)t->nlp.n, sizeof *x), t0, tf;
+        double *x = nonsense(t->nlp.n), t0, tf;
         CHECK_OK(moray_fill_guess(t, NULL, x), "from bounds");
         moray_layout_span(&t->layout, t->ocp, x, 0, &t0, &tf);
         CHECK(fabs(t0 - span->first) < 1e-12 && fabs(tf - span->last) < 1e-12, "case %zu: from %g to %g", k, t0, tf);
@@ -158,7 +167,7 @@ static void test_turns(void)
         moray_ocp *ocp;
         moray_solution *solution = begin(&ocp, phase, 3);
         struct transcription *t = solution->transcription;
-        double *x = calloc((size_t)t->nlp.n, sizeof *x), t0, tf;
+        double *x = nonsense(t->nlp.n), t0, tf;
         CHECK_OK(moray_fill_guess(t, NULL, x), "from bounds");
         for (int p = 0; p < 3; p++) {
             moray_layout_span(&t->layout, t->ocp, x, p, &t0, &tf);
@@ -192,7 +201,7 @@ static void test_samples(void)
     moray_solution *solution = begin(&ocp, &phase, 1);
     struct transcription *t = solution->transcription;
     const struct phase_layout *layout = &t->layout.phase[0];
-    double *x = calloc((size_t)t->nlp.n, sizeof *x);
+    double *x = nonsense(t->nlp.n);
     const moray_samples table = {samples, when, where, pushed};
     CHECK_OK(moray_fill_guess(t, &(moray_guess){.phase = &table, .s = (double[]){4, 0.5}}, x), "from samples");
     CHECK(x[layout->t0] == -4 && x[layout->tf] == 6, "times of the first and the last");
@@ -218,7 +227,7 @@ static void test_samples(void)
 
 static void check_refusal(struct transcription *t, const moray_samples *table, const double *s, const char *text)
 {
-    double *x = calloc((size_t)t->nlp.n, sizeof *x);
+    double *x = nonsense(t->nlp.n);
     const moray_status status = moray_fill_guess(t, &(moray_guess){.phase = table, .s = s}, x);
     CHECK(status.code == MORAY_INPUT && strstr(status.text, text), "refused: %s", status.text);
     free(x);
@@ -249,6 +258,23 @@ static void test_refusals(void)
                   "time -3.5 of sample 2 is before the one of sample 1");
     check_refusal(t, NULL, (double[]){3, NAN}, "parameter 1 is not finite");
     check_refusal(t, NULL, (double[]){INFINITY, 0}, "parameter 0 is not finite");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
+// A final time that nothing bounds is that of the samples.
+static void test_endless(void)
+{
+    moray_phase_spec phase = usual;
+    phase.tf = moray_at_least(2);
+    moray_ocp *ocp;
+    moray_solution *solution = begin(&ocp, &phase, 1);
+    struct transcription *t = solution->transcription;
+    double *x = nonsense(t->nlp.n);
+    const moray_samples table = {samples, when, where, pushed};
+    CHECK_OK(moray_fill_guess(t, &(moray_guess){.phase = &table}, x), "from samples");
+    CHECK(x[t->layout.phase[0].tf] == 6, "until %g", x[t->layout.phase[0].tf]);
+    free(x);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
@@ -287,6 +313,7 @@ int main(void)
     test_spans();
     test_turns();
     test_samples();
+    test_endless();
     test_refusals();
     test_uncontrolled();
     return tap_done();
