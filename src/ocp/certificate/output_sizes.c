@@ -9,8 +9,6 @@
 
 static const double trial_part = 0.1;  // of a size, by which inputs are moved
 static const double least_room = 1e-3; // of that, on a side that they are moved to
-static const double telling = 1e-2;    // of the most that an output is, by which a control ought to move one
-enum { most_decades = 60 };
 
 // The inputs of a map and what to move them by.
 struct inputs {
@@ -44,68 +42,6 @@ static void move_inputs(const struct inputs *m, double *out_size)
             if (side * (within - m->in[j]) > least_room * trial_part * m->size[j])
                 move_input(m, j, within, out_size);
         }
-}
-
-// Whether input j moved by `size`, to either side, moves an output by a telling part of its most[n_out].
-static bool tells(const struct inputs *m, int j, double size, const double *most)
-{
-    double *moved = m->work + m->map->n_in;
-    bool found = false;
-    memcpy(m->work, m->in, (size_t)m->map->n_in * sizeof *m->work);
-    for (int side = -1; side <= 1 && !found; side += 2) {
-        m->work[j] = fmin(fmax(m->in[j] + side * size, m->box[j].lower), m->box[j].upper);
-        m->map->value(m->map->self, m->work, moved);
-        for (int i = 0; i < m->map->n_out && !found; i++)
-            found = !(fabs(moved[i] - m->out[i]) <= telling * most[i]); // what is not finite as well
-    }
-    return found;
-}
-
-static bool tells_anywhere(const struct witness *e, int p, int j, double size, const double *most, double *work)
-{
-    const struct phase_cache *cache = moray_witness_cache(e, p);
-    for (int n = 0; n < moray_witness_layout(e, p)->nodes; n++) {
-        const struct inputs inputs = {.map = cache->map,
-                                      .in = cache->in + n * cache->map->n_in,
-                                      .out = cache->out + n * cache->map->n_out,
-                                      .box = e->phase[p].box,
-                                      .work = work};
-        if (moray_witness_layout(e, p)->node[n].collocated && tells(&inputs, j, size, most))
-            return true;
-    }
-    return false;
-}
-
-// As far as it tells, at most over its box; as it was where it never does.
-static double idle_size(const struct witness *e, int p, int j, const double *most, double *work)
-{
-    const double width = moray_witness_width(e->phase[p].box[j]), size = e->phase[p].size[j];
-    double larger = size;
-    for (int k = 0; k < most_decades; k++, larger *= 10) {
-        if (width > 0 && larger >= width)
-            return width;
-        if (tells_anywhere(e, p, j, larger, most, work))
-            return larger;
-    }
-    return size;
-}
-
-moray_status moray_size_idle_controls(struct witness *e, int p)
-{
-    const struct phase_cache *cache = moray_witness_cache(e, p);
-    const struct phase *phase = &e->solution->transcription->ocp->phase[p];
-    const int n_in = cache->map->n_in, n_out = cache->map->n_out;
-    double *work = calloc((size_t)(n_in + 2 * n_out), sizeof *work);
-    if (!work)
-        return moray_error(MORAY_MEMORY, "no memory for the certificate");
-    double *most = work + n_in + n_out;
-    for (int n = 0; n < moray_witness_layout(e, p)->nodes; n++)
-        for (int i = 0; i < n_out; i++)
-            most[i] = fmax(most[i], fabs(cache->out[n * n_out + i]));
-    for (int j = phase->nx; j < phase->nx + phase->nu; j++)
-        e->phase[p].size[j] = idle_size(e, p, j, most, work);
-    free(work);
-    return moray_ok();
 }
 
 moray_status moray_size_outputs(struct witness *e, int p)

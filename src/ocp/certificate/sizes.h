@@ -23,8 +23,10 @@ void moray_size_integrals(struct witness *e, int p);
 void moray_size_ends(struct witness *e);
 moray_status moray_size_by_costate(struct witness *e, int p);
 
-// Of outputs, by moving inputs; of controls that stand still, by moving them until an output does. Error: MORAY_MEMORY.
-moray_status moray_size_idle_controls(struct witness *e, int p);
+// Of controls and parameters, by moving them until an output does. Error: MORAY_MEMORY.
+moray_status moray_size_idle(struct witness *e);
+
+// Of outputs, by moving inputs. Error: MORAY_MEMORY.
 moray_status moray_size_outputs(struct witness *e, int p);
 moray_status moray_size_end_outputs(struct witness *e);
 

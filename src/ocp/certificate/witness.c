@@ -144,9 +144,9 @@ static moray_status gather(struct witness *e, bool differences)
         else
             take_in_use(e, p);
         moray_size_by_effect(e, p);
-        MORAY_TRY(moray_size_idle_controls(e, p));
         moray_size_integrals(e, p);
     }
+    MORAY_TRY(moray_size_idle(e));
     moray_size_ends(e);
     MORAY_TRY(moray_size_end_outputs(e));
     for (int p = 0; p < t->ocp->phases; p++) {

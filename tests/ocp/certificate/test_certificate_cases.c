@@ -121,6 +121,45 @@ static void test_idle_control(double middle)
     moray_ocp_free(ocp);
 }
 
+// ---- A parameter at a maximum: 1 - (s - m)^2 / 2 at the end ----
+
+static void leaning(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    const moray_num away = at->s[0] - *(const double *)data;
+    out->objective = at->phase[0].xf[0] - away * away / 2;
+}
+
+static void fading(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = -at->x[0];
+}
+
+static void test_idle_parameter(double middle)
+{
+    const moray_phase_spec phase = {.name = "idle",
+                                    .nx = 1,
+                                    .continuous = fading,
+                                    .t0 = moray_fixed(0),
+                                    .tf = moray_fixed(1),
+                                    .x0 = MORAY_BOUNDS(moray_fixed(1))};
+    moray_ocp *ocp = NULL;
+    moray_certificate certificate;
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1,
+                                                   .phase = &phase,
+                                                   .ns = 1,
+                                                   .s = MORAY_BOUNDS(moray_between(middle - 1, middle + 1)),
+                                                   .endpoint = leaning,
+                                                   .data = &middle}),
+             "an idle parameter");
+    moray_solution *solution = solve(ocp, &settings, &certificate);
+    CHECK_NEAR(moray_solution_objective(solution), exp(-1) - 0.5, 1e-6, "the maximum of the start is left");
+    CHECK(certificate.pass && certificate.curvature == 0, "parameter at %g: passes %s", middle, certificate.why);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- A kink: g = 0.05 u^2 + |u| by fabs, whose complex step is 0; x' = u - 0.3 x, from 0 to 1 in 5 s ----
 
 static void kinked(const moray_node *at, moray_rates *out, const void *data)
@@ -417,6 +456,9 @@ int main(void)
     test_idle_control(0);
     test_idle_control(0.5);
     test_idle_control(20);
+    test_idle_parameter(0);
+    test_idle_parameter(1e-9);
+    test_idle_parameter(0.5);
     test_unseen(kinked, "fabs", "control u[0]");
     test_unseen(hidden, "a hidden creal", "state x[0]");
     for (unsigned k = 0; k < sizeof dashes / sizeof *dashes; k++)
