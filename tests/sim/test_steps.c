@@ -12,7 +12,7 @@ enum { MOST = 4000, LAST = PD_STAGES - 1 };
 typedef struct equation {
     double rate, power[2]; // x' = rate x + power t^7, of two states
     int refused;           // the question that has no answer, from 1 on
-    bool broken;           // no answers behind the start
+    bool broken;           // no answers but the first
     int n;
     double asked[MOST];
 } equation;
@@ -25,7 +25,7 @@ static bool slope(double t, const double *x, double *dx, void *self)
         dx[i] = e->rate * x[i] + e->power[i] * pow(t, 7);
     if (e->n < MOST)
         e->asked[e->n++] = t;
-    return e->n != e->refused && !(e->broken && t > 0);
+    return e->n != e->refused && !(e->broken && e->n > 1);
 }
 
 static moray_sim *started(equation *e, double rtol, double atol, double max_step, const double x[2])
@@ -179,6 +179,19 @@ static void test_started_anew(void)
     moray_sim_free(sim);
 }
 
+// Long before the time 0 a step ends at what the clock tells apart, a thousand times the spacing of numbers there:
+// 1e-6 s / 4^k is more than 2.2e-10 s for seven k. Each asks once, as do the start and the step by Euler.
+static void test_smallest_step(void)
+{
+    const double x[] = {1, 1};
+    equation e = {.broken = true};
+    moray_sim *sim = started(&e, 1e-3, 1e-3, 0, x);
+    CHECK_OK(moray_sim_start(sim, -1e3, x), "long ago");
+    CHECK(moray_sim_advance(sim, 1 - 1e3).code == MORAY_NUMERIC, "no way");
+    CHECK(e.n == 2 + 7, "%d questions", e.n);
+    moray_sim_free(sim);
+}
+
 int main(void)
 {
     test_first();
@@ -189,5 +202,6 @@ int main(void)
     check_control(1, 1000, 0.05, false);
     test_refused();
     test_started_anew();
+    test_smallest_step();
     return tap_done();
 }
