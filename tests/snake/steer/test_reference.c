@@ -95,6 +95,7 @@ static void test_refused(const char *folder)
     refuse("steps:", MORAY_INPUT, "no points");
     refuse("steps:2", MORAY_INPUT, "'2'");
     refuse("steps:2=30;4=1", MORAY_INPUT, "T=H");
+    refuse("steps:2=30 4=1", MORAY_INPUT, "T=H");
     refuse("steps:5=1,2=30", MORAY_INPUT, "ascend");
     refuse("ramps:0=inf", MORAY_INPUT, "finite");
     refuse("sine:20", MORAY_INPUT, "PERIOD");
