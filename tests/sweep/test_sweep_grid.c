@@ -3,6 +3,7 @@
 // The grid of a sweep: points and places by enumeration, parents by what they are told to be, draws by brute force.
 #include "tap.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "sweep/sweep.h"
@@ -103,6 +104,20 @@ static void test_earlier_draws(const moray_sweep_spec *spec, const struct grid *
     CHECK(moray_grid_parent(grid, 2) == -1, "the first has none");
 }
 
+// Of the fourth number on the axis, of draw 9.
+static void test_drawn_settings(const moray_sweep_spec *spec, const struct grid *grid)
+{
+    moray_key_value setting[4];
+    double value[4];
+    char text[4][32];
+    moray_grid_settings(grid, 9 * 5 + 3, setting, value, text);
+    CHECK(value[0] == 8 && moray_grid_coordinate(grid, 9 * 5 + 3, 1) == 8, "first = %g", value[0]);
+    for (int r = 0; r < 3; r++)
+        CHECK(value[1 + r] == moray_grid_draw(spec, 9, r) && strcmp(setting[1 + r].key, spec->range[r].key) == 0 &&
+                  atof(setting[1 + r].value) == value[1 + r],
+              "%s = %s", setting[1 + r].key, setting[1 + r].value);
+}
+
 // Uniform within their ranges, of no correlation, the same again for a seed and others for another.
 static void test_draws(void)
 {
@@ -134,6 +149,7 @@ static void test_draws(void)
     CHECK_NEAR(product, 0, four_errors / 12, "covariance");
     CHECK(constant, "a range of no width is its value");
     test_earlier_draws(&spec, &grid);
+    test_drawn_settings(&spec, &grid);
     const double before = moray_grid_draw(&spec, 9, 1);
     spec.seed = 6;
     CHECK(moray_grid_draw(&spec, 9, 1) != before, "another seed draws others");
