@@ -40,6 +40,13 @@ static Bool account(struct session *session, int which, double start, bool ok)
     return ok;
 }
 
+// n may be 0 and `from` NULL, as of a linear programme's Hessian.
+static void copy_places(const int *from, Index n, Index *to)
+{
+    for (Index k = 0; k < n; k++)
+        to[k] = from[k];
+}
+
 static Bool on_objective(Index n, Number *x, Bool fresh, Number *f, UserDataPtr data)
 {
     (void)n;
@@ -72,8 +79,8 @@ static Bool on_jacobian(Index n, Number *x, Bool fresh, Index m, Index nnz, Inde
     struct session *session = data;
     const moray_nlp *nlp = session->nlp;
     if (!values) {
-        memcpy(row, nlp->jac_row, (size_t)nnz * sizeof *row);
-        memcpy(col, nlp->jac_col, (size_t)nnz * sizeof *col);
+        copy_places(nlp->jac_row, nnz, row);
+        copy_places(nlp->jac_col, nnz, col);
         return TRUE;
     }
     memcpy(session->last, x, (size_t)n * sizeof *x);
@@ -90,8 +97,8 @@ static Bool on_hessian(Index n, Number *x, Bool fresh, Number sigma, Index m, Nu
     struct session *session = data;
     const moray_nlp *nlp = session->nlp;
     if (!values) {
-        memcpy(row, nlp->hess_row, (size_t)nnz * sizeof *row);
-        memcpy(col, nlp->hess_col, (size_t)nnz * sizeof *col);
+        copy_places(nlp->hess_row, nnz, row);
+        copy_places(nlp->hess_col, nnz, col);
         return TRUE;
     }
     const double start = session->clock();

@@ -157,7 +157,7 @@ static void mark(const struct casadi_function *f, int above, int left, int k)
 static void check_pattern(const moray_pattern *found, const double **values, const int *wanted, int rows,
                           const char *what)
 {
-    int left[INPUTS * INPUTS], missing = 0, wrong = 0;
+    int left[RESULTS * INPUTS], missing = 0, wrong = 0;
     memcpy(left, wanted, (size_t)rows * INPUTS * sizeof *left);
     for (int k = 0; k < found->nnz; k++) {
         int *entry = &left[found->row[k] * INPUTS + found->col[k]];
