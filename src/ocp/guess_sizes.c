@@ -90,9 +90,11 @@ static double derived_size(const struct transcription *t, int p, const double *s
     const struct phase *phase = &t->ocp->phase[p];
     const double by_causes = i < phase->nx ? known_reach(t, p, size, i) : 0;
     double by_effects = INFINITY;
-    for (int r = 0; r < phase->nx; r++)
-        if (size[r] > 0) // what it does not move would take it infinitely large
-            by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / reach(t, p, r, i));
+    for (int r = 0; r < phase->nx; r++) {
+        const double moved = size[r] > 0 ? reach(t, p, r, i) : 0;
+        if (moved > 0) // and few are: to ask of all would cost the cube of their number
+            by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / moved);
+    }
     return by_causes > 0 ? by_causes : isfinite(by_effects) ? by_effects : 0;
 }
 
