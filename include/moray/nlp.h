@@ -57,8 +57,8 @@ typedef struct moray_nlp_settings {
     bool warm;       // false: true starts from the multipliers of the iterate too, and close to its bounds
     int print_level; // 0: Ipopt's own log on standard error, 0..12
     moray_linear_solver linear_solver; // our own, which falls back on MUMPS
-    bool timing; // false: parts are timed by the clock on the wall, which costs nothing; true: by the processor's, a call
-                 // of the kernel each, MUMPS and MA57 too
+    bool timing; // false: parts are timed by the clock on the wall, which costs nothing; true: by the processor's, a
+                 // call of the kernel each, MUMPS and MA57 too
     // Options of Ipopt by their names, {"mu_strategy", "adaptive"}, after all that moray sets; not option_file_name,
     // output_file, sb and linear_solver: no option file is ever read, and Ipopt never writes on standard output.
     const moray_key_value *ipopt; // [n_ipopt], borrowed
@@ -83,13 +83,13 @@ MORAY_API const char *moray_nlp_outcome_text(moray_nlp_outcome outcome);
 typedef struct moray_nlp_info {
     moray_nlp_outcome outcome;
     int iterations;
-    double seconds;            // whole solve, by the clock on the wall
-    double cpu_seconds;        // whole solve, of the processor
-    double evaluation_seconds; // of seconds, in the callbacks; of cpu_seconds where timing is asked for
-    double linear_seconds;     // likewise in the linear solver; of MUMPS and MA57 to 1e-3, NaN unless asked for
-    int evaluations[5];        // of f, gradient, g, Jacobian, Hessian
-    double evaluation_by[5];   // evaluation_seconds of each
-    double regularisation;     // delta_w that the last step needed for a descent direction; NaN without a step
+    double seconds;                    // whole solve, by the clock on the wall
+    double cpu_seconds;                // whole solve, of the processor
+    double evaluation_seconds;         // of seconds, in the callbacks; of cpu_seconds where timing is asked for
+    double linear_seconds;             // likewise in the linear solver; of MUMPS and MA57 to 1e-3, NaN unless asked for
+    int evaluations[5];                // of f, gradient, g, Jacobian, Hessian
+    double evaluation_by[5];           // evaluation_seconds of each
+    double regularisation;             // delta_w that the last step needed for a descent direction; NaN without a step
     moray_linear_solver linear_solver; // that the result is from
     moray_status linear_fallback;      // why MUMPS solved it from the start though our own was asked for; MORAY_OK: no
 } moray_nlp_info;

@@ -69,7 +69,6 @@ moray_status steer_tune(steer_job *job, steer_trial *trial)
     settings.starts = job->starts;
     settings.evaluations = job->evaluations;
     settings.jobs = job->jobs;
-    settings.remembers = true;
     settings.go_on = go_on;
     settings.observer = job;
     const int rows = starts_of(trial, from);

@@ -45,7 +45,7 @@ typedef struct outcome {
 
 moray_tuning_settings moray_tuning_settings_default(void)
 {
-    return (moray_tuning_settings){.starts = 12, .evaluations = 25, .tolerance = 1e-4};
+    return (moray_tuning_settings){.starts = 12, .evaluations = 25, .tolerance = 1e-4, .remembers = true};
 }
 
 // ---- Scales --------------------------------------------------------------------------------------------------------

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 #if __has_include(<HSLLoader.h>)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wstrict-prototypes" // its functions say () for (void)

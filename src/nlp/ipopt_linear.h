@@ -21,7 +21,8 @@ struct ipopt_linear {
 // Whether Ipopt has such pointers (3.14 has none).
 bool moray_ipopt_linear_available(void);
 
-// Between the two, calls of Ipopt in this thread come to `linear`, timed by the clock. Close frees its factors, not what it has found out.
+// Between the two, calls of Ipopt in this thread come to `linear`, timed by the clock. Close frees its factors, not
+// what it has found out.
 void moray_ipopt_linear_open(struct ipopt_linear *linear, double (*clock)(void));
 void moray_ipopt_linear_close(struct ipopt_linear *linear);
 

@@ -34,7 +34,7 @@ typedef struct moray_tuning_settings {
     int starts;                    // 12: local searches, from the best of four times as many points spread over the box
     int evaluations;               // 25: of each of them, per number
     double tolerance;              // 1e-4: relative change of the cost that counts as none
-    bool remembers;                // false; true: no point is tried twice, its cost being always the same
+    bool remembers;                // true: no point is tried twice; false: one may cost another time something else
     int jobs;                      // 0: processes, as for moray_parallel
     bool (*go_on)(void *observer); // asked before every evaluation; false ends the tuning; NULL: goes on
     void *observer;

@@ -74,7 +74,6 @@ static moray_status tune(sea_job *job, const sea_law *laws, int which)
     settings.starts = job->starts;
     settings.evaluations = job->evaluations;
     settings.jobs = job->jobs;
-    settings.remembers = true;
     settings.tolerance = 1e-3;
     settings.go_on = go_on;
     settings.observer = job;

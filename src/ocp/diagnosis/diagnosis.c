@@ -99,7 +99,8 @@ static void say_band(const struct band *band, bool upper, struct listing *list)
     double bound = 0;
     for (int n = 0; n < moray_band_members(t, band); n++) {
         const int i = moray_band_member(t, band, n);
-        const struct standing s = i == absent ? (struct standing){.fixed = true} : moray_standing_of(solution, band->rows, i);
+        const struct standing s =
+            i == absent ? (struct standing){.fixed = true} : moray_standing_of(solution, band->rows, i);
         all += i != absent;
         if (s.fixed || !(upper ? s.at_upper : s.at_lower))
             continue;

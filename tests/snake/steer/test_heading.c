@@ -3,6 +3,7 @@
 // Plans along a reference against a simulation of the whole swimmer under the offset found, which shares with them the
 // model alone.
 #include "degree.h"
+#include "reference_text.h"
 #include "tap.h"
 
 #include <string.h>
@@ -11,13 +12,6 @@
 #include "moray/snake/heading.h"
 #include "moray/snake/closed_loop.h"
 #include "snake/steer/problems.h"
-
-static moray_reference read_ok(const char *text)
-{
-    moray_reference reference;
-    CHECK_OK(moray_reference_read(&reference, text), text);
-    return reference;
-}
 
 enum { HORIZON = 12 };
 static const double unit = 10 * DEG;

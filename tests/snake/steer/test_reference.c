@@ -2,6 +2,7 @@
 //
 // Heading references against what their texts say, and the number of intervals that suits them.
 #include "degree.h"
+#include "reference_text.h"
 #include "tap.h"
 
 #include <stdlib.h>
@@ -9,13 +10,6 @@
 #include <unistd.h>
 
 #include "moray/snake/heading.h"
-
-static moray_reference read_ok(const char *text)
-{
-    moray_reference reference;
-    CHECK_OK(moray_reference_read(&reference, text), text);
-    return reference;
-}
 
 static void check_at(const moray_reference *reference, double t, double heading, double rate)
 {
