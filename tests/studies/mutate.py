@@ -3,13 +3,15 @@
 """The tests measured: faults planted in src one at a time, and which of them the tests find.
 
     python3 tests/studies/mutate.py [--count 200] [--seed 1] [--first 1] [--under src/ocp] [--folder DIR] [--only 3,17]
-                                  [--whole] [--plain | --sanitized] [--list | --check-list [FILE]]
+                                  [--kinds choice,term] [--whole | --near] [--plain | --sanitized]
+                                  [--list | --check-list [FILE]]
 
 Works on a copy of the source tree with a build of its own, in a folder that is left for the next run. A mutant is one
-sign, factor, index, relation, logical operator, negation, term or statement changed. It is built as far as the tests of
-its room (tests/ROOM for src/ROOM) need it, and these run, quick ones first, until one fails; then, where none does, all
-quick ones of other rooms, or with --whole every test. What lives then faces the tests of its room under the sanitizers,
-which see reads beyond an end and leaks, as tests/run.sh has two halves; --plain leaves that out, --sanitized all else.
+sign, factor, index, relation, logical operator, negation, term or statement changed, in the folder or file that --under
+names. It is built as far as the tests of its room (tests/ROOM for src/ROOM) need it, and these run, quick ones first,
+until one fails; then, where none does, all quick ones of other rooms, or with --whole every test, or with --near none.
+What lives then faces the tests of its room under the sanitizers, which see reads beyond an end and leaks, as tests/run.sh
+has two halves; --plain leaves that out, --sanitized all else.
 Survivors are listed by their number in the sample, file, line and change, and --only NUMBERS plants these again; the
 last line counts. Mutants that no caller can tell from the source are in equivalent.txt, reviewed one by one; they are
 left out of the share. --check-list tells which of these the source no longer has. Runs by name alone: some ten seconds
@@ -88,7 +90,9 @@ def code_lines(text):
 
 
 def candidates(under):
-    for folder, _, names in sorted(os.walk(os.path.join(ROOT, under))):
+    under = os.path.join(ROOT, under)
+    alone = [(os.path.dirname(under), [], [os.path.basename(under)])] if os.path.isfile(under) else []
+    for folder, _, names in alone or sorted(os.walk(under)):
         for name in sorted(names):
             if not name.endswith((".c", ".inc")):
                 continue
@@ -310,7 +314,9 @@ def main():
     options.add_argument("--under", default="src")
     options.add_argument("--folder", default="/var/tmp/moray-mutants")
     options.add_argument("--only", help="numbers in the sample, with commas")
-    options.add_argument("--whole", action="store_true", help="what these let pass faces every test")
+    options.add_argument("--kinds", help="of changes, with commas: " + ", ".join(dict.fromkeys(kind for kind, *_ in CHANGES)))
+    options.add_argument("--whole", action="store_true", help="what the room's tests let pass faces every test")
+    options.add_argument("--near", action="store_true", help="only the room's tests")
     options.add_argument("--plain", action="store_true", help="not under the sanitizers")
     options.add_argument("--sanitized", action="store_true", help="under the sanitizers alone")
     options.add_argument("--list", action="store_true", help="only list what would be planted")
@@ -322,7 +328,8 @@ def main():
     if unknown or asked.check_list:
         print("\n".join(unknown + ["%d of %d equivalent mutants stand as listed" % (len(listed) - len(unknown), len(listed))]))
         return 1 if unknown else 0
-    everything = list(candidates(asked.under))
+    chosen = asked.kinds.split(",") if asked.kinds else [kind for kind, *_ in CHANGES]
+    everything = [mutant for mutant in candidates(asked.under) if mutant[0] in chosen]
     # As many of each kind as there are kinds to share the count.
     kinds = sorted({kind for kind, *_ in everything})
     # In an order that hangs on each mutant's own text, so that a change elsewhere leaves the sample.
@@ -332,7 +339,8 @@ def main():
               if by_kind[kinds[k % len(kinds)]]]
     wanted = [int(n) for n in asked.only.split(",")] if asked.only else range(asked.first, len(sample) + 1)
     # Where a mutant is planted, one after the other, and what it meets there beside the tests of its room.
-    places = [] if asked.list or asked.sanitized else [(Copy(asked.folder, []), Copy.all if asked.whole else Copy.quick)]
+    further = Copy.all if asked.whole else (lambda *_: []) if asked.near else Copy.quick
+    places = [] if asked.list or asked.sanitized else [(Copy(asked.folder, []), further)]
     if not asked.list and not asked.plain:
         places.append((Copy(asked.folder + "-sanitized", SANITIZED), lambda *_: []))
     killed = survived = late = unbuilt = equal = 0
