@@ -29,7 +29,7 @@ bool moray_is_far_below(double value, double size)
 double moray_known_size(moray_bounds bounds, double guess)
 {
     if (bounds.lower > -MORAY_ENDLESS && bounds.upper < MORAY_ENDLESS && bounds.lower < bounds.upper)
-        return fmax(fabs(bounds.lower), fabs(bounds.upper));
+        return fmax(-bounds.lower, bounds.upper);
     return guess > small && guess < MORAY_INFINITY ? guess : 0;
 }
 
@@ -209,7 +209,7 @@ static double pace(const struct transcription *t, int p, const double *size, int
     for (int n = 0; n < t->layout.phase[p].nodes; n++)
         if (t->layout.phase[p].node[n].collocated)
             largest = fmax(largest, fabs(cache->out[n * cache->map->n_out + state]));
-    return fmax(largest * fabs(cache->tf - cache->t0), known_reach(t, p, size, state));
+    return fmax(largest * (cache->tf - cache->t0), known_reach(t, p, size, state));
 }
 
 // What is known, and states by their causes. What it would take to get somewhere is left out: it says nothing of how
