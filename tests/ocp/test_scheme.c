@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "moray/scheme.h"
+#include "ocp/legendre.h"
 
 // The tables must integrate and differentiate polynomials exactly: A to degree s-1 at every point, b to order - 1.
 static void test_exactness(moray_family family, int stages)
@@ -73,6 +74,16 @@ static void test_textbook_tables(void)
     moray_scheme_free(&k);
 }
 
+static void test_legendre_polynomials(void)
+{
+    for (int k = 1; k < 10; k++) {
+        const double t = k / 10.0, x = 2 * t - 1;
+        const double want[] = {1, x, (3 * x * x - 1) / 2, (5 * x * x - 3) * x / 2, ((35 * x * x - 30) * x * x + 3) / 8};
+        for (int n = 0; n < 5; n++)
+            CHECK_NEAR(moray_legendre_value(n, t), want[n], 1e-15, "Legendre's polynomial on [0, 1]");
+    }
+}
+
 static void test_names(void)
 {
     moray_family family;
@@ -101,6 +112,7 @@ int main(void)
     test_exactness(MORAY_LOBATTO, MORAY_MAX_STAGES);
     test_exactness(MORAY_GAUSS, MORAY_MAX_STAGES);
     test_textbook_tables();
+    test_legendre_polynomials();
     test_names();
     return tap_done();
 }

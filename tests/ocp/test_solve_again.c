@@ -156,7 +156,7 @@ static bool again(struct made *made, const char *what)
 
 // ---- Scales ----
 
-// A quantity of the second phase and its scale; defects of its last interval but one and of both states.
+// A quantity of the second phase and its scale; defects of both states in the last rows.
 struct changed {
     const char *what;
     enum { nothing, duration, integral, state } which;
@@ -195,8 +195,8 @@ static void test_scale(const struct changed *change)
     } else if (change->which == state) {
         scale[layout->node[0].x + 1] = change->scale;
         memset(made.at->g + layout->interval[0].defect, 0, 4 * 2 * 2 * sizeof(double));
-        for (int r = 0; r < 2; r++) // the last rows of an interval
-            made.at->g[layout->interval[2].defect + 2 + r] = change->defect[r];
+        for (int r = 0; r < 2; r++)
+            made.at->g[layout->interval[3].defect + 2 + r] = change->defect[r];
     }
     const bool ran = again(&made, change->what);
     CHECK(ran == change->again, "%s is %s again", change->what, ran ? "solved" : "not solved");

@@ -38,6 +38,7 @@ static void verdict(const moray_ends *at, moray_end_values *out, const void *dat
     (void)data;
     const moray_phase_ends *one = &at->phase[0], *two = &at->phase[1];
     out->objective = two->tf * one->q[0] + two->xf[0] * two->xf[1] + at->s[0] * one->x0[1] + two->q[0] * one->q[1];
+    out->objective += one->t0 * (one->x0[0] + one->t0) * one->tf;
     out->e[0] = one->tf - two->t0;
     out->e[1] = one->xf[0] * at->s[1] - two->x0[0] + two->x0[1] * two->t0;
     if (two->u0) {
