@@ -84,9 +84,9 @@ static void carry_bounds(const struct transfer *t, const double *source, double 
         if (have_own_controls(t, end) || phase->bounds_end_controls)
             memcpy(target + t->new->u_end[end], source + t->old->u_end[end], (size_t)phase->nu * sizeof *target);
     memcpy(target + t->new->q, source + t->old->q, (size_t)phase->nq * sizeof *target);
-    if (t->new->t0 != absent && t->old->t0 != absent)
+    if (t->new->t0 != absent) // then in the old, too: a restart may only fix a time
         target[t->new->t0] = source[t->old->t0];
-    if (t->new->tf != absent && t->old->tf != absent)
+    if (t->new->tf != absent)
         target[t->new->tf] = source[t->old->tf];
 }
 
@@ -133,15 +133,16 @@ static moray_status carry_phase(const moray_guess *guess, moray_solution *to, in
         if (have_own_controls(&t, end))
             memcpy(to->iterate.lambda + t.new->u_row[end], from->iterate.lambda + t.old->u_row[end],
                    (size_t)phase->nu * sizeof *t.here);
-    if (t.new->length_row != absent && t.old->length_row != absent)
+    if (t.new->length_row != absent)
         to->iterate.lambda[t.new->length_row] = from->iterate.lambda[t.old->length_row];
     free(t.density);
     return moray_ok();
 }
 
-static bool same_meshes(const struct layout *one, const struct layout *other)
+// Of a problem whose times have not become fixed between them.
+static bool same_places(const struct layout *one, const struct layout *other)
 {
-    bool same = true;
+    bool same = one->columns == other->columns;
     for (int p = 0; p < one->phases && same; p++)
         same = moray_mesh_equal(&one->phase[p].mesh, &other->phase[p].mesh);
     return same;
@@ -152,7 +153,7 @@ moray_status moray_carry_multipliers(const moray_guess *guess, moray_solution *t
     const moray_solution *from = guess->from;
     const struct layout *old = &from->transcription->layout, *new = &to->transcription->layout;
     const moray_ocp *ocp = to->transcription->ocp;
-    if (!guess->along_time && same_meshes(old, new)) {
+    if (!guess->along_time && same_places(old, new)) {
         memcpy(to->iterate.z_lower, from->iterate.z_lower, (size_t) new->columns * sizeof(double));
         memcpy(to->iterate.z_upper, from->iterate.z_upper, (size_t) new->columns * sizeof(double));
         memcpy(to->iterate.lambda, from->iterate.lambda, (size_t) new->rows * sizeof(double));
@@ -160,11 +161,9 @@ moray_status moray_carry_multipliers(const moray_guess *guess, moray_solution *t
     }
     for (int p = 0; p < ocp->phases; p++)
         MORAY_TRY(carry_phase(guess, to, p));
-    const int events = new->rows - new->events, before = old->rows - old->events;
-    const size_t parameters = (size_t)ocp->ns * sizeof(double);
+    const size_t parameters = (size_t)ocp->ns * sizeof(double), events = (size_t)(new->rows - new->events);
     memcpy(to->iterate.z_lower + new->s, from->iterate.z_lower + old->s, parameters);
     memcpy(to->iterate.z_upper + new->s, from->iterate.z_upper + old->s, parameters);
-    memcpy(to->iterate.lambda + new->events, from->iterate.lambda + old->events,
-           (size_t)(events < before ? events : before) * sizeof(double));
+    memcpy(to->iterate.lambda + new->events, from->iterate.lambda + old->events, events * sizeof(double));
     return moray_ok();
 }

@@ -4,6 +4,7 @@
 // costate that is linear gives the defects what a solution on the new mesh has.
 #include "tap.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "moray/ocp.h"
@@ -189,6 +190,38 @@ static void test_carried(const moray_ocp *ocp, const char *from, const char *to,
     moray_solution_free(new);
 }
 
+// From before times became fixed, on the same mesh and on another: what is left has what it had, and nothing else is
+// touched.
+static void test_restarted(void)
+{
+    static const double start[] = {0, 0};
+    for (int k = 0; k < 2; k++) {
+        moray_ocp *ocp = double_integrator();
+        moray_solution *old = solve(ocp, "radau3", 5);
+        set_multipliers(old, 1);
+        CHECK_OK(moray_ocp_restart(ocp, 0.25, 1, start), "with fixed times");
+        moray_solution *new = solve(ocp, "radau3", 5 + k);
+        const struct transcription *t = new->transcription;
+        const int s = t->layout.s, q = t->layout.phase[0].q;
+        double *before = calloc((size_t)(t->nlp.n + t->nlp.m), sizeof *before);
+        memcpy(before, new->iterate.x, (size_t)t->nlp.n * sizeof *before);
+        memcpy(before + t->nlp.n, new->iterate.g, (size_t)t->nlp.m * sizeof *before);
+        CHECK_OK(moray_carry_multipliers(&(moray_guess){.from = old}, new), "carried");
+        const moray_iterate *at = &new->iterate;
+        CHECK(at->z_lower[q] == 3002 && at->z_upper[q] == 4002 && at->z_lower[s] == 3003 && at->z_upper[s + 1] == 4004,
+              "bounds of the integral and of parameters");
+        CHECK(at->lambda[t->layout.events + 2] == 6000, "an event");
+        check_densities(new, &old->transcription->layout.phase[0], 1, "after a restart");
+        CHECK(memcmp(before, at->x, (size_t)t->nlp.n * sizeof *before) == 0 &&
+                  memcmp(before + t->nlp.n, at->g, (size_t)t->nlp.m * sizeof *before) == 0,
+              "the point stays");
+        free(before);
+        moray_solution_free(old);
+        moray_solution_free(new);
+        moray_ocp_free(ocp);
+    }
+}
+
 int main(void)
 {
     static const char *const schemes[] = {"lobatto3", "lobatto4", "radau3", "gauss3"};
@@ -196,5 +229,6 @@ int main(void)
     for (int k = 0; k < 16; k++)
         test_carried(ocp, schemes[k / 4], schemes[k % 4], k < 12);
     moray_ocp_free(ocp);
+    test_restarted();
     return tap_done();
 }
