@@ -193,9 +193,26 @@ static void know_sizes(const struct transcription *t, int p, const double *x, bo
         size[r] = moray_known_size(phase->u[r - phase->nx], largest_control(layout, x, r));
 }
 
+// What the guess alone tells is doubted where causes or effects of known size make it far more: the guess may stay
+// where it starts, as a plan does that went straight on. How fast a state goes back on its own keeps it from its causes.
+static void doubt_guesses(const struct transcription *t, int p, double *size)
+{
+    const struct phase *phase = &t->ocp->phase[p];
+    const double largest_known = largest_of(size, phase->nx + phase->nu);
+    for (int i = 0; i < phase->nx + phase->nu; i++) {
+        if (moray_known_size(i < phase->nx ? phase->x[i] : phase->u[i - phase->nx], 0) > 0)
+            continue;
+        const double own = i < phase->nx ? reach(t, p, i, i) : 0, needed = derived_size(t, p, size, i) / (1 + own);
+        if (size[i] * wide < needed && is_size(needed, largest_known))
+            size[i] = 0;
+    }
+}
+
 void moray_size_inputs(const struct transcription *t, int p, const double *x, bool found, double *size)
 {
     know_sizes(t, p, x, found, size);
+    if (!found)
+        doubt_guesses(t, p, size);
     derive_sizes(t, p, size);
 }
 
