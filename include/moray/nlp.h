@@ -14,6 +14,8 @@ MORAY_BEGIN
 
 // The callbacks return false where a function is not defined. `fresh` says that x differs from the last call's.
 // Patterns are fixed, without repeated entries; the Hessian is that of sigma f + sum lambda_i g_i, lower triangle.
+// `hold`, which may be NULL, is told when a solver begins (true) that has no use for entries of the Hessian by variables
+// that their bounds fix, so that they may be left 0, and when it ends.
 typedef struct moray_nlp {
     int n, m;
     const double *x_lower, *x_upper, *g_lower, *g_upper;
@@ -27,6 +29,7 @@ typedef struct moray_nlp {
     bool (*constraints)(void *self, const double *x, bool fresh, double *g);
     bool (*jacobian)(void *self, const double *x, bool fresh, double *values);
     bool (*hessian)(void *self, const double *x, bool fresh, double sigma, const double *lambda, double *values);
+    void (*hold)(void *self, bool begins);
 } moray_nlp;
 
 // A point with its multipliers, of L = f + lambda g - z_lower (x - x_lower) + z_upper (x - x_upper). The arrays are the

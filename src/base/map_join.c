@@ -12,6 +12,7 @@ struct joined {
     double *out, *weight; // of the joined map, in the order base, extra
     double *values;       // of one of the two, whichever pattern is longer
     triplets jac, hess;
+    bool *held; // of the base's inputs
 };
 
 static void gather(const struct joined *j, const double *in)
@@ -66,6 +67,17 @@ static void joined_hessian(void *self, const double *in, const double *weight, d
         triplets_put(&j->hess, 0, 0, j->values[k]);
 }
 
+static void joined_hold(void *self, const bool *held)
+{
+    const struct joined *j = self;
+    for (int k = 0; k < j->base.n_in && held; k++)
+        j->held[k] = held[j->place[k]];
+    if (j->base.hold)
+        j->base.hold(j->base.self, held ? j->held : NULL);
+    if (j->extra.hold)
+        j->extra.hold(j->extra.self, held);
+}
+
 static void joined_release(moray_map *map)
 {
     struct joined *j = map->self;
@@ -74,6 +86,7 @@ static void joined_release(moray_map *map)
     moray_triplets_free(&j->jac);
     moray_triplets_free(&j->hess);
     free(j->place);
+    free(j->held);
     free(j->in);
     free(j);
 }
@@ -107,7 +120,8 @@ static moray_status joined_new(struct joined *j, const int *place)
     const int n_in = j->base.n_in, n_out = j->base.n_out;
     j->place = malloc((size_t)n_in * sizeof *j->place);
     j->in = calloc((size_t)(n_in + 2 * n_out + largest_pattern(&j->base, &j->extra)), sizeof *j->in);
-    if (!j->place || !j->in)
+    j->held = calloc((size_t)n_in, sizeof *j->held);
+    if (!j->place || !j->in || !j->held)
         return moray_error(MORAY_MEMORY, "no memory for a map of %d inputs", j->extra.n_in);
     memcpy(j->place, place, (size_t)n_in * sizeof *place);
     j->out = j->in + n_in;
@@ -132,6 +146,7 @@ moray_status moray_map_join(moray_map *map, moray_map *base, const int *place, m
                        .value = joined_value,
                        .jacobian = joined_jacobian,
                        .hessian = joined_hessian,
+                       .hold = joined_hold,
                        .release = joined_release};
     *base = *extra = (moray_map){0};
     moray_status status = joined_new(j, place);

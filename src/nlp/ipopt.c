@@ -356,7 +356,11 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     moray_iterate start = {
         .x = block + 2 * n, .z_lower = block + 3 * n, .z_upper = block + 4 * n, .lambda = block + 5 * n};
     copy_iterate(nlp, iterate, &start);
+    if (nlp->hold)
+        nlp->hold(nlp->self, true);
     const moray_status status = solve(&session, iterate, &start);
+    if (nlp->hold)
+        nlp->hold(nlp->self, false);
     free(block);
     info->seconds = moray_clock() - wall_start;
     info->cpu_seconds = moray_processor_clock() - cpu_start;

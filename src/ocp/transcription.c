@@ -198,6 +198,31 @@ static bool nlp_hessian(void *self, const double *x, bool fresh, double sigma, c
     return all_finite(values, t->hess.pattern.nnz, &bad);
 }
 
+static bool times_are_fixed(const struct transcription *t)
+{
+    bool fixed = true;
+    for (int p = 0; p < t->ocp->phases; p++)
+        fixed = fixed && t->layout.phase[p].t0 == absent && t->layout.phase[p].tf == absent;
+    return fixed;
+}
+
+// The same inputs in every phase, for these may share a map.
+static void nlp_hold(void *self, bool begins)
+{
+    struct transcription *t = self;
+    const bool times = times_are_fixed(t);
+    for (int p = 0; p < t->ocp->phases; p++) {
+        const moray_map *map = t->phase[p].map;
+        bool *held = t->phase[p].held;
+        const int time = map->n_in - 1, s = time - t->ocp->ns;
+        for (int i = 0; i < t->ocp->ns; i++)
+            held[s + i] = t->nlp.x_lower[t->layout.s + i] == t->nlp.x_upper[t->layout.s + i];
+        held[time] = times;
+        if (map->hold)
+            map->hold(map->self, begins ? held : NULL);
+    }
+}
+
 void moray_transcription_callbacks(struct transcription *t)
 {
     t->nlp.self = t;
@@ -206,4 +231,5 @@ void moray_transcription_callbacks(struct transcription *t)
     t->nlp.constraints = nlp_constraints;
     t->nlp.jacobian = nlp_jacobian;
     t->nlp.hessian = nlp_hessian;
+    t->nlp.hold = nlp_hold;
 }

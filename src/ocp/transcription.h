@@ -20,6 +20,7 @@ struct phase_cache {
     double *lambda;   // [nodes][nx] scratch: multipliers of f
     double *by_time;  // [nodes][2][nx] scratch of sights, see sight.h; NULL without
     int *column;      // [n_in - 1] scratch: columns of the node at hand
+    bool *held;       // [n_in] scratch: inputs that keep their values while a solver works
 };
 
 struct transcription {

@@ -135,9 +135,11 @@ static moray_status allocate_phase_cache(struct transcription *t, int p)
     cache->jac = calloc(nodes * map->jac.nnz + 1, sizeof(double));
     cache->lambda = calloc(nodes * t->ocp->phase[p].nx, sizeof(double));
     cache->column = calloc((size_t)map->n_in, sizeof(int));
+    cache->held = calloc((size_t)map->n_in, sizeof(bool));
     const bool sights = t->layout.phase[p].sight != NULL;
     cache->by_time = sights ? calloc(2 * nodes * (size_t)t->ocp->phase[p].nx, sizeof(double)) : NULL;
-    if (cache->in && cache->out && cache->jac && cache->lambda && cache->column && (cache->by_time || !sights))
+    if (cache->in && cache->out && cache->jac && cache->lambda && cache->column && cache->held &&
+        (cache->by_time || !sights))
         return moray_ok();
     return moray_error(MORAY_MEMORY, "no memory for the %d nodes of phase %s", t->layout.phase[p].nodes,
                        t->ocp->phase[p].name);
@@ -236,6 +238,7 @@ void moray_transcription_free(struct transcription *t)
         free(t->phase[p].out);
         free(t->phase[p].jac);
         free(t->phase[p].lambda);
+        free(t->phase[p].held);
         free(t->phase[p].by_time);
         free(t->phase[p].column);
     }

@@ -43,6 +43,7 @@ typedef struct fp_plant {
     double *rows, *weight; // of the Jacobian, n_out x n_in; n_out
     int n_in, n_out;
     moray_pattern jac, hess; // the latter by columns
+    bool held[most_inputs];
 } fp_plant;
 
 static void value(void *self, const double *in, double *out)
@@ -145,10 +146,19 @@ static void hessian(void *self, const double *in, const double *weight, double *
     const moray_pattern *pattern = &plant->hess;
     double complex gradient[most_inputs];
     for (int k = 0, before = -1; k < pattern->nnz; k++) {
-        if (pattern->col[k] != before)
-            find_column(plant, in, weight, before = pattern->col[k], gradient);
-        values[k] = cimag(gradient[pattern->row[k]]) / step;
+        const int row = pattern->row[k], col = pattern->col[k];
+        const bool wanted = !plant->held[row] && !plant->held[col];
+        if (wanted && col != before)
+            find_column(plant, in, weight, before = col, gradient);
+        values[k] = wanted ? cimag(gradient[row]) / step : 0;
     }
+}
+
+static void hold(void *self, const bool *held)
+{
+    fp_plant *plant = self;
+    for (int j = 0; j < plant->n_in; j++)
+        plant->held[j] = held && held[j];
 }
 
 // ---- Patterns ------------------------------------------------------------------------------------------------------
@@ -299,6 +309,7 @@ moray_status moray_fp_plant(moray_map *map, const moray_plant_spec *spec)
                        .value = value,
                        .jacobian = jacobian,
                        .hessian = hessian,
+                       .hold = hold,
                        .release = release};
     return moray_ok();
 }
