@@ -41,7 +41,18 @@ static moray_status check_sizes(const moray_receding_horizon *r, const moray_ocp
     return moray_ok();
 }
 
-// The last plan, moved on; without one the state stays.
+// A plan that was seen from another state: the gap to this one closes along it, in even steps, so that no interval alone
+// has to make up for it.
+static void close_gap(const double *state, int n, int nx, double *x)
+{
+    for (int i = 0; i < nx; i++) {
+        const double gap = state[i] - x[i];
+        for (int k = 0; k < n; k++)
+            x[(size_t)k * (size_t)nx + (size_t)i] += gap * (1 - k / (n - 1.0));
+    }
+}
+
+// The last plan, moved on to begin in the state; without one the state stays.
 static moray_guess guess_from(moray_receding_horizon *r, double t, const double *state, moray_samples *samples)
 {
     const moray_solution *from = r->solution ? r->solution : r->spec.first;
@@ -54,6 +65,7 @@ static moray_guess guess_from(moray_receding_horizon *r, double t, const double 
         if (from)
             moray_solution_at(from, 0, time[k], x + (size_t)k * nx, u + (size_t)k * nu);
     }
+    close_gap(state, r->n, r->nx, x);
     *samples = (moray_samples){.n = r->n, .time = time, .x = x, .u = nu > 0 ? u : NULL};
     const double *s = r->spec.s ? r->spec.s : from ? moray_solution_parameters(from) : NULL;
     return (moray_guess){.phase = samples, .s = s};

@@ -38,6 +38,11 @@ static double fixed_to(moray_bounds bounds)
     return moray_bounds_are_fixed(bounds) ? fabs(bounds.lower) : 0;
 }
 
+static bool both_ends_are_fixed(const struct phase *phase, int r)
+{
+    return moray_bounds_are_fixed(phase->x0[r]) && moray_bounds_are_fixed(phase->xf[r]);
+}
+
 // Of a state: that of its box, unless it is fixed at both ends to far less, or was found to be. What an end is fixed to
 // is no rounding.
 static double size_of_state(const struct phase *phase, int r, double guess, bool found)
@@ -45,8 +50,7 @@ static double size_of_state(const struct phase *phase, int r, double guess, bool
     const bool asked = fmax(fixed_to(phase->x0[r]), fixed_to(phase->xf[r])) > digits;
     const double alone = asked && guess < MORAY_INFINITY ? guess : moray_known_size(moray_free(), guess);
     const double known = moray_known_size(phase->x[r], guess);
-    const bool fixed = moray_bounds_are_fixed(phase->x0[r]) && moray_bounds_are_fixed(phase->xf[r]);
-    return known == 0 || (fixed && guess * wide < known) ? alone
+    return known == 0 || (both_ends_are_fixed(phase, r) && guess * wide < known) ? alone
            : found && moray_is_far_below(guess, known)   ? guess
                                                          : known;
 }
@@ -194,13 +198,15 @@ static void know_sizes(const struct transcription *t, int p, const double *x, bo
 }
 
 // What the guess alone tells is doubted where causes or effects of known size make it far more: the guess may stay
-// where it starts, as a plan does that went straight on. How fast a state goes back on its own keeps it from its causes.
+// where it starts, as a plan does that went straight on. How fast a state goes back on its own keeps it from its causes;
+// one that is fixed at both ends goes back in any case.
 static void doubt_guesses(const struct transcription *t, int p, double *size)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const double largest_known = largest_of(size, phase->nx + phase->nu);
     for (int i = 0; i < phase->nx + phase->nu; i++) {
-        if (moray_known_size(i < phase->nx ? phase->x[i] : phase->u[i - phase->nx], 0) > 0)
+        const bool boxed = moray_known_size(i < phase->nx ? phase->x[i] : phase->u[i - phase->nx], 0) > 0;
+        if (boxed || (i < phase->nx && both_ends_are_fixed(phase, i)))
             continue;
         const double own = i < phase->nx ? reach(t, p, i, i) : 0, needed = derived_size(t, p, size, i) / (1 + own);
         if (size[i] * wide < needed && is_size(needed, largest_known))
@@ -251,7 +257,7 @@ static bool reaches(const struct transcription *t, int p, const double *size, bo
     *none = true;
     for (int r = 0; r < phase->nx; r++) {
         const double way = fabs(phase->xf[r].lower - phase->x0[r].lower);
-        if (!moray_bounds_are_fixed(phase->x0[r]) || !moray_bounds_are_fixed(phase->xf[r]) || !(way > 0))
+        if (!both_ends_are_fixed(phase, r) || !(way > 0))
             continue;
         *none = false;
         reached = reached && pace(t, p, size, r) >= way;

@@ -73,15 +73,20 @@ typedef struct guess {
     asked node[NODES];
 } guess;
 
-// At the nodes of a plan from t on: `plan` moved on, or else rest in x without control.
+// At the nodes of a plan from t on: `plan` moved on, its gap to x closed in even steps, or else rest in x without control.
 static guess guess_of(const moray_solution *plan, double t, const double *x, double s)
 {
     guess g = {0};
+    double from[2] = {x[0], x[1]};
+    if (plan)
+        moray_solution_at(plan, 0, t, from, NULL);
     for (int k = 0; k < NODES; k++) {
         asked *node = &g.node[k];
         *node = (asked){.t = t + horizon * k / (NODES - 1), .x = {x[0], x[1]}, .s = s};
         if (plan)
             moray_solution_at(plan, 0, node->t, node->x, &node->u);
+        for (int i = 0; i < 2 && plan; i++)
+            node->x[i] += (x[i] - from[i]) * (NODES - 1 - k) / (NODES - 1);
     }
     return g;
 }
