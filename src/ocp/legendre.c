@@ -49,7 +49,18 @@ static double radau_function(int s, double x, double *slope)
     return (p - q) / (1 - x);
 }
 
-// The `count` zeros of f in (-1, 1) by Newton's method, each freed of those found before (Maehly), ascending on [0, 1].
+static void sort(double *node, int count)
+{
+    for (int i = 1; i < count; i++)
+        for (int j = i; j > 0 && node[j] < node[j - 1]; j--) {
+            const double larger = node[j - 1];
+            node[j - 1] = node[j];
+            node[j] = larger;
+        }
+}
+
+// The `count` zeros of f in (-1, 1) by Newton's method, each freed of those found before (Maehly), ascending on [0, 1]:
+// of many it may find one before a smaller one. A step beyond an end goes half of the way there.
 static void zeros(double (*f)(int, double, double *), int s, int count, double *node)
 {
     for (int i = 0; i < count; i++) {
@@ -60,12 +71,13 @@ static void zeros(double (*f)(int, double, double *), int s, int count, double *
             for (int j = 0; j < i; j++)
                 found += 1 / (x - (2 * node[j] - 1));
             const double step = value / (slope - value * found);
-            x -= step;
+            x = fabs(x - step) < 1 ? x - step : (x + copysign(1, x - step)) / 2;
             if (fabs(step) < 1e-16)
                 break;
         }
         node[i] = (1 + x) / 2;
     }
+    sort(node, count);
 }
 
 void moray_legendre_gauss(int s, double *node, double *weight)

@@ -74,6 +74,22 @@ static void test_textbook_tables(void)
     moray_scheme_free(&k);
 }
 
+// Nodes ascend from 0 to 1, however many there are; those of Lobatto and Gauss lie alike from both ends.
+static void test_order_of_nodes(moray_family family, int stages)
+{
+    moray_scheme k;
+    CHECK_OK(moray_scheme_new(&k, family, stages), "scheme");
+    int wrong = k.node[0] != 0 || k.node[k.points - 1] != 1;
+    double odd = 0;
+    for (int j = 1; j < k.points; j++)
+        wrong += !(k.node[j] > k.node[j - 1]);
+    for (int j = 0; j < k.points; j++)
+        odd = tap_worse(odd, fabs(k.node[j] + k.node[k.points - 1 - j] - 1));
+    CHECK(wrong == 0, "family %d, %d stages: %d nodes out of order", family, stages, wrong);
+    CHECK(family == MORAY_RADAU || odd < 1e-14, "as far from either end, to %.1e", odd);
+    moray_scheme_free(&k);
+}
+
 static void test_legendre_polynomials(void)
 {
     for (int k = 1; k < 10; k++) {
@@ -108,6 +124,12 @@ int main(void)
         for (int family = 0; family < 3; family++)
             if (family != MORAY_LOBATTO || stages > 1)
                 test_exactness((moray_family)family, stages);
+    for (int stages = 2; stages <= MORAY_MAX_STAGES; stages++)
+        for (int family = MORAY_LOBATTO; family <= MORAY_GAUSS; family++)
+            test_order_of_nodes((moray_family)family, stages);
+    static const int wild[] = {49, 50, 61, 62}; // where a step of Newton's method left the interval
+    for (int k = 0; k < 4; k++)
+        test_exactness(MORAY_RADAU, wild[k]);
     test_exactness(MORAY_RADAU, MORAY_MAX_STAGES);
     test_exactness(MORAY_LOBATTO, MORAY_MAX_STAGES);
     test_exactness(MORAY_GAUSS, MORAY_MAX_STAGES);
