@@ -161,7 +161,7 @@ static void test_derivatives(struct solved *all)
 {
     static const double times[phases][2] = {{0.25, 2}, {0, 3}};
     moray_sensitivity *s = all->s;
-    double x0[2], xf[2], t0, tf;
+    double x0[2] = {9, 9}, xf[2] = {9, 9}, t0, tf;
     CHECK_OK(by_p(all), "by p");
     CHECK_NEAR(moray_sensitivity_objective(s), (objective(p + h) - objective(p - h)) / (2 * h), 1e-4, "objective");
     CHECK_NEAR(moray_sensitivity_parameters(s)[0], 0.5, 1e-8, "a parameter at its upper bound");

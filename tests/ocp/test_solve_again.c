@@ -156,7 +156,7 @@ static bool again(struct made *made, const char *what)
 
 // ---- Scales ----
 
-// A quantity of the second phase and its scale; defects of both states in the last rows.
+// A quantity of the second phase and its scale; defects of both states in the last rows, in the largest of the second.
 struct changed {
     const char *what;
     enum { nothing, duration, integral, state } which;
@@ -172,16 +172,36 @@ static const struct changed changes[] = {
     {"a negative one", integral, -0.5, 1e-3, {0, 0}, true},
     {"one that is not small", integral, -5, 1, {0, 0}, false},
     {"one that is nothing", integral, -5, 1e-12, {0, 0}, false},
-    {"a state that is small in its scale, loose", state, 0.25, 1e-3, {0, -2e-6}, true},
-    {"loose on the other side", state, 0.25, 1e-3, {0, 2e-6}, true},
-    {"one that is not loose", state, 0.25, 1e-3, {0, 0.2e-6}, false},
+    {"a state that is small in its scale, loose", state, 0.25, 1e-3, {0, -1.1e-6}, true},
+    {"loose on the other side", state, 0.25, 1e-3, {0, 1.1e-6}, true},
+    {"one that is not loose", state, 0.25, 1e-3, {0, 0.9e-6}, false},
+    {"one that just is not", state, 0.25, 1e-3, {0, -1e-6}, false},
     {"where the other is loose", state, 0.25, 1e-3, {1e-3, 0}, false},
     {"one that is not small", state, 0.25, 1, {0, 1e-3}, false},
     {"one that is nothing", state, 0.25, 1e-9, {0, 1e-3}, false},
 };
 
+// Where nothing is to be done, an interval is longer than the last, whose rows it must not lengthen.
+static void change_state(struct made *made, const struct changed *change, const moray_scheme *longer)
+{
+    const struct phase_layout *layout = made->layout;
+    double largest = 0, *g = made->at->g;
+    for (int n = 0; n < layout->nodes; n++)
+        largest = fmax(largest, fabs(made->at->x[layout->node[n].x + 1]));
+    made->t->scale[layout->node[0].x + 1] = change->scale;
+    memset(g + layout->interval[0].defect, 0, 4 * 2 * 2 * sizeof(double));
+    for (int r = 0; r < 2; r++) {
+        g[layout->interval[3].defect + 2 + r] = change->defect[r] * largest;
+        g[layout->integral_row + r] = 1; // no defect
+    }
+    if (!change->again)
+        layout->interval[2].scheme = longer;
+}
+
 static void test_scale(const struct changed *change)
 {
+    moray_scheme longer;
+    CHECK_OK(moray_scheme_new(&longer, MORAY_LOBATTO, 4), "a longer scheme");
     struct made made = make();
     double *x = made.at->x, *scale = made.t->scale;
     const struct phase_layout *layout = made.layout;
@@ -193,16 +213,14 @@ static void test_scale(const struct changed *change)
         x[layout->q + 1] = change->value;
         scale[layout->q + 1] = change->scale;
     } else if (change->which == state) {
-        scale[layout->node[0].x + 1] = change->scale;
-        memset(made.at->g + layout->interval[0].defect, 0, 4 * 2 * 2 * sizeof(double));
-        for (int r = 0; r < 2; r++)
-            made.at->g[layout->interval[3].defect + 2 + r] = change->defect[r];
+        change_state(&made, change, &longer);
     }
     const bool ran = again(&made, change->what);
     CHECK(ran == change->again, "%s is %s again", change->what, ran ? "solved" : "not solved");
     CHECK((made.t->scale[layout->tf] != was) == ran, "in scales that are found anew");
     CHECK(!ran || fabs(x[layout->tf] - 1.5) < 1e-6, "and the optimum is found again: %g", x[layout->tf]);
     drop(&made);
+    moray_scheme_free(&longer);
 }
 
 static void test_scales_of_others(void)
