@@ -44,12 +44,12 @@ static void pay(const moray_ends *at, moray_end_values *out, const void *data)
     const moray_phase_ends *last = &at->phase[1];
     out->objective = at->phase[0].q[0] * last->q[1] + (creal(last->q[0]) > beyond ? INFINITY : 0);
     out->e[0] = last->xf[0] * at->s[0] + (creal(at->s[0]) > beyond ? last->xf[1] : 0);
-    out->e[1] = at->phase[0].xf[1] + (creal(last->q[1]) > beyond ? NAN : 0);
+    out->e[1] = at->phase[0].xf[1] + 10 * at->phase[0].t0 + last->tf + (creal(last->q[1]) > beyond ? NAN : 0);
 }
 
 static moray_ocp *make(const moray_map *endpoint)
 {
-    static const double time[] = {1.75}, value[] = {0};
+    static const double time[] = {1.75, 1.125}, value[] = {0, 0};
     static const moray_bounds any[] = {{-MORAY_INFINITY, MORAY_INFINITY}, {-MORAY_INFINITY, MORAY_INFINITY}};
     static const char *const names[] = {"one", "two"}, *const e_names[] = {"first", "second"};
     moray_phase_spec phase[phases];
@@ -64,7 +64,7 @@ static moray_ocp *make(const moray_map *endpoint)
                                       .tf = moray_fixed(2 + p),
                                       .c = MORAY_BOUNDS_OF(any)};
     phase[1].observed =
-        (moray_observations){.n = 1, .ny = 1, .time = time, .value = value, .observe = see, .events_only = true};
+        (moray_observations){.n = 2, .ny = 1, .time = time, .value = value, .observe = see, .events_only = true};
     moray_ocp *ocp;
     CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "task",
                                                    .phases = phases,
@@ -130,6 +130,18 @@ static void test_not_finite(void)
     check_fails(t, two->node[3].x + 1, true, "dynamics of state x[1] of phase two is not finite at t = 2.375");
     check_fails(t, two->q, false, "objective of task is not finite");
     check_fails(t, two->q + 1, false, "event second of task is not finite");
+    moray_transcription_free(t);
+    moray_ocp_free(ocp);
+}
+
+static void test_fixed_times(void)
+{
+    double x[most], g[most];
+    moray_ocp *ocp = make(NULL);
+    struct transcription *t = transcribe(ocp, 4);
+    fill(t, x);
+    CHECK(t->nlp.constraints(t, x, true, g), "constraints");
+    CHECK_NEAR(g[t->layout.events + 1] - x[t->layout.phase[0].node[4].x + 1], 10 * 0.5 + 3, 1e-14, "fixed times");
     moray_transcription_free(t);
     moray_ocp_free(ocp);
 }
@@ -261,6 +273,7 @@ static void test_given_maps(void)
 int main(void)
 {
     test_not_finite();
+    test_fixed_times();
     test_asked();
     test_gauss_newton();
     test_widen();
