@@ -51,8 +51,8 @@ static double size_of_state(const struct phase *phase, int r, double guess, bool
     const double alone = asked && guess < MORAY_INFINITY ? guess : moray_known_size(moray_free(), guess);
     const double known = moray_known_size(phase->x[r], guess);
     return known == 0 || (both_ends_are_fixed(phase, r) && guess * wide < known) ? alone
-           : found && moray_is_far_below(guess, known)   ? guess
-                                                         : known;
+           : found && moray_is_far_below(guess, known)                           ? guess
+                                                                                 : known;
 }
 
 double moray_largest_in_phase(const struct phase_layout *layout, const double *x, int offset)
@@ -198,8 +198,8 @@ static void know_sizes(const struct transcription *t, int p, const double *x, bo
 }
 
 // What the guess alone tells is doubted where causes or effects of known size make it far more: the guess may stay
-// where it starts, as a plan does that went straight on. How fast a state goes back on its own keeps it from its causes;
-// one that is fixed at both ends goes back in any case.
+// where it starts, as a plan does that went straight on. How fast a state goes back on its own keeps it from its
+// causes; one that is fixed at both ends goes back in any case.
 static void doubt_guesses(const struct transcription *t, int p, double *size)
 {
     const struct phase *phase = &t->ocp->phase[p];
