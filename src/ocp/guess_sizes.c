@@ -186,39 +186,55 @@ static double largest_control(const struct phase_layout *layout, const double *x
     return largest;
 }
 
-// Those that bounds and the guess tell; 0: they do not.
-static void know_sizes(const struct transcription *t, int p, const double *x, bool found, double *size)
+// What bounds and the guess tell of an input; 0: they do not.
+static double known_input(const struct transcription *t, int p, const double *x, bool found, int i)
 {
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
-    for (int r = 0; r < phase->nx; r++)
-        size[r] = size_of_state(phase, r, moray_largest_in_phase(layout, x, r), found);
-    for (int r = phase->nx; r < phase->nx + phase->nu; r++)
-        size[r] = moray_known_size(phase->u[r - phase->nx], largest_control(layout, x, r));
+    return i < phase->nx ? size_of_state(phase, i, moray_largest_in_phase(layout, x, i), found)
+                         : moray_known_size(phase->u[i - phase->nx], largest_control(layout, x, i));
 }
 
-// What the guess alone tells is doubted where causes or effects of known size make it far more: the guess may stay
-// where it starts, as a plan does that went straight on. How fast a state goes back on its own keeps it from its
-// causes; one that is fixed at both ends goes back in any case.
-static void doubt_guesses(const struct transcription *t, int p, double *size)
+static void know_sizes(const struct transcription *t, int p, const double *x, bool found, double *size)
+{
+    for (int i = 0; i < t->ocp->phase[p].nx + t->ocp->phase[p].nu; i++)
+        size[i] = known_input(t, p, x, found, i);
+}
+
+// Whether the guess alone tells how large an input is. A state that is fixed at both ends comes back whatever moves it.
+static bool is_guessed(const struct phase *phase, int i)
+{
+    const moray_bounds bounds = i < phase->nx ? phase->x[i] : phase->u[i - phase->nx];
+    return !(moray_known_size(bounds, 0) > 0) && !(i < phase->nx && both_ends_are_fixed(phase, i));
+}
+
+// Forgets what the guess tells where causes or effects of known size make it far more: the guess may stay where it
+// starts, as a plan does that went straight on. How fast a state goes back on its own keeps it from its causes.
+static void doubt_guesses(const struct transcription *t, int p, const double *x, double *size)
 {
     const struct phase *phase = &t->ocp->phase[p];
-    const double largest_known = largest_of(size, phase->nx + phase->nu);
-    for (int i = 0; i < phase->nx + phase->nu; i++) {
-        const bool boxed = moray_known_size(i < phase->nx ? phase->x[i] : phase->u[i - phase->nx], 0) > 0;
-        if (boxed || (i < phase->nx && both_ends_are_fixed(phase, i)))
-            continue;
-        const double own = i < phase->nx ? reach(t, p, i, i) : 0, needed = derived_size(t, p, size, i) / (1 + own);
-        if (size[i] * wide < needed && is_size(needed, largest_known))
-            size[i] = 0;
+    const int n = phase->nx + phase->nu;
+    const double largest_known = largest_of(size, n);
+    bool found = true;
+    while (found) {
+        found = false;
+        for (int i = 0; i < n; i++) {
+            const double own = i < phase->nx ? reach(t, p, i, i) : 0, needed = derived_size(t, p, size, i) / (1 + own);
+            if (is_guessed(phase, i) && size[i] * wide < needed && is_size(needed, largest_known)) {
+                size[i] = needed; // for what it causes in its turn
+                found = true;
+            }
+        }
     }
+    for (int i = 0; i < n; i++)
+        size[i] = size[i] == known_input(t, p, x, false, i) ? size[i] : 0;
 }
 
 void moray_size_inputs(const struct transcription *t, int p, const double *x, bool found, double *size)
 {
     know_sizes(t, p, x, found, size);
     if (!found)
-        doubt_guesses(t, p, size);
+        doubt_guesses(t, p, x, size);
     derive_sizes(t, p, size);
 }
 

@@ -28,18 +28,11 @@ static void integral(const moray_ends *at, moray_end_values *out, const void *da
     out->objective = at->phase[0].q[0];
 }
 
-// Sizes where states and control are guessed to be as small as `rest` all along.
-static void check_sizes(const double guess[states + 1], bool found, const double expected[states + 1])
+// Sizes of a problem's inputs where their guesses are constant.
+static void check_sizes(const moray_phase_spec *phase, const double guess[states + 1], bool found,
+                        const double expected[states + 1])
 {
-    const moray_phase_spec phase = {.nx = states,
-                                    .nu = 1,
-                                    .nq = 1,
-                                    .continuous = follow,
-                                    .t0 = moray_fixed(2),
-                                    .tf = moray_fixed(2 + span),
-                                    .x = MORAY_BOUNDS(moray_between(-most, most), moray_free(), moray_free()),
-                                    .x0 = MORAY_BOUNDS(moray_free(), moray_fixed(guess[slow]), moray_free())};
-    const moray_ocp_spec spec = {.phases = 1, .phase = &phase, .endpoint = integral};
+    const moray_ocp_spec spec = {.phases = 1, .phase = phase, .endpoint = integral};
     moray_settings settings = moray_settings_default();
     moray_solution *solution = NULL;
     moray_ocp *ocp;
@@ -62,17 +55,52 @@ static void check_sizes(const double guess[states + 1], bool found, const double
     moray_ocp_free(ocp);
 }
 
+static void test_followers(const double guess[states + 1], bool found, const double expected[states + 1])
+{
+    const moray_phase_spec phase = {.nx = states,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = follow,
+                                    .t0 = moray_fixed(2),
+                                    .tf = moray_fixed(2 + span),
+                                    .x = MORAY_BOUNDS(moray_between(-most, most), moray_free(), moray_free()),
+                                    .x0 = MORAY_BOUNDS(moray_free(), moray_fixed(guess[slow]), moray_free())};
+    check_sizes(&phase, guess, found, expected);
+}
+
+// The last state drives that before it, and so on.
+static void drive(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = 2 * at->x[1];
+    out->f[1] = gain * at->x[2];
+    out->f[2] = at->u[0];
+    out->g[0] = at->x[0] * at->x[0];
+}
+
+static void test_chain(void)
+{
+    const moray_phase_spec phase = {.nx = states,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = drive,
+                                    .tf = moray_fixed(span),
+                                    .x = MORAY_BOUNDS(moray_free(), moray_free(), moray_between(-most, most))};
+    const double second = gain * most * span, first = 2 * second * span;
+    check_sizes(&phase, (double[]){1e-5, 1e-6, 1e-3, 1e-7}, false, (double[]){first, second, most, most / span});
+}
+
 int main(void)
 {
     const double by_place = gain * most * span, by_control = most / span;
     // The fast follower could not come to more than its cause allows, 1 / (1 + decay span) of by_place.
     const double steady = by_place / (1 + decay * span), tiny[] = {1e-5, 2e-6, 3e-5, 4e-6};
-    check_sizes(tiny, false, (double[]){most, by_place, tiny[fast] * 1e3 < steady ? by_place : tiny[fast], by_control});
+    test_followers(tiny, false, (double[]){most, by_place, by_place, by_control});
     const double fair[] = {1e-5, by_place / 999, steady / 999, by_control / 999};
-    check_sizes(fair, false, (double[]){most, fair[slow], fair[fast], fair[3]});
+    test_followers(fair, false, (double[]){most, fair[slow], fair[fast], fair[3]});
     const double less[] = {1e-5, by_place / 1001, steady / 999, by_control / 1001};
-    check_sizes(less, false, (double[]){most, by_place, less[fast], by_control});
-    check_sizes(less, true, (double[]){less[place] * 1e3 < most && less[place] > 1e-6 * most ? less[place] : most,
-                                       less[slow], less[fast], less[3]});
+    test_followers(less, false, (double[]){most, by_place, less[fast], by_control});
+    test_followers(less, true, (double[]){less[place], less[slow], less[fast], less[3]});
+    test_chain();
     return tap_done();
 }
