@@ -164,7 +164,6 @@ static moray_status measure(const moray_swim_sample *sample, void *self)
     feedback->slope =
         clamp((clamp(wanted, feedback->offset) - feedback->value) / feedback->period, feedback->offset_rate);
     return moray_ok();
-    return moray_ok();
 }
 
 moray_swim_controller moray_feedback_controller(moray_feedback *feedback)
