@@ -15,6 +15,7 @@
 enum { states = MORAY_STEERING_STATES, INTERVALS = 4, SAMPLES = 16 * INTERVALS + 1 };
 
 static const double current[2] = {0.05, -0.08};
+static const double just = 1e-9; // behind where an interval begins, where a solution is what the guess is there [s]
 
 static moray_settings guess_alone(void)
 {
@@ -23,13 +24,6 @@ static moray_settings guess_alone(void)
     settings.intervals = INTERVALS;
     settings.max_iterations = 0;
     return settings;
-}
-
-static moray_robot small_robot(void)
-{
-    moray_robot robot = moray_robot_paper();
-    robot.links = 4;
-    return robot;
 }
 
 static moray_gait gait_of(const moray_robot *robot, moray_model model)
@@ -63,7 +57,7 @@ static void over_ground(moray_model model, const double *x, double v[2])
 
 static moray_heading_spec heading_spec(moray_model model, bool averaged, const moray_reference *reference)
 {
-    return (moray_heading_spec){.robot = small_robot(),
+    return (moray_heading_spec){.robot = moray_robot_paper(),
                                 .model = model,
                                 .averaged = averaged,
                                 .current = {current[0], current[1]},
@@ -126,7 +120,7 @@ static void test_heading(moray_model model, bool averaged)
         const double t = 12.0 * k / (SAMPLES - 1), swing = plan.straight.body[MORAY_STATE_THETA];
         const double heading = (t < 5 ? 20 + 12 * t : 80 - 120 * (t - 5) / 7) * DEG + swing;
         double x[states], v[2], body[2];
-        moray_solution_at(plan.solution, 0, t + 1e-9, x, NULL);
+        moray_solution_at(plan.solution, 0, t + just, x, NULL);
         if (k > 0 && k % 16 == 0 && k + 1 < SAMPLES) { // where an interval begins
             worst = tap_worse(worst, fabs(x[MORAY_STATE_THETA] - heading));
             worst = tap_worse(worst, hypot(x[MORAY_STATE_P_X] - p[0], x[MORAY_STATE_P_Y] - p[1]));
@@ -201,7 +195,7 @@ static void go_on(swimmer *s, const moray_path *path, double speed, double faste
 
 static moray_path_spec path_spec(moray_model model, bool averaged, const moray_path *path)
 {
-    return (moray_path_spec){.robot = small_robot(),
+    return (moray_path_spec){.robot = moray_robot_paper(),
                              .model = model,
                              .averaged = averaged,
                              .current = {current[0], current[1]},
@@ -250,8 +244,8 @@ static void test_path(moray_model model, bool averaged, double heading)
         double x[states], u[2], v[2];
         go_on(&at, &path, speed, fabs(rate), k ? end / (SAMPLES - 1) : 0);
         limited += fabs(at.rate) == fabs(rate);
-        moray_solution_at(plan.solution, 0, end * k / (SAMPLES - 1), x, u);
-        if (k == 0 || k % 16 != 0)
+        moray_solution_at(plan.solution, 0, end * k / (SAMPLES - 1) + just, x, u);
+        if (k == 0 || k % 16 != 0 || k + 1 == SAMPLES)
             continue;
         worst[0] = tap_worse(worst[0], fabs(x[MORAY_STATE_THETA] - at.heading));
         worst[0] = tap_worse(worst[0], fabs(x[MORAY_STATE_V_THETA] - at.rate));
@@ -260,12 +254,13 @@ static void test_path(moray_model model, bool averaged, double heading)
         worst[1] = tap_worse(worst[1], fabs(v[0] - speed * cos(at.heading) - current[0]));
         worst[1] = tap_worse(worst[1], fabs(v[1] - speed * sin(at.heading) - current[1]));
         worst[2] = tap_worse(worst[2], fabs(x[MORAY_STATE_PHI_0] / spec.limits.offset - at.rate / rate));
+        moray_solution_at(plan.solution, 0, end * k / (SAMPLES - 1) - just, x, u); // a point of collocation
         worst[3] = tap_worse(worst[3], fabs(u[1] - at.along));
     }
-    CHECK_NEAR(worst[0], 0, 1e-9, "headings, turning and places of the guess");
-    CHECK_NEAR(worst[1], 0, 1e-9, "velocities of the guess");
+    CHECK_NEAR(worst[0], 0, 1e-7, "headings, turning and places of the guess");
+    CHECK_NEAR(worst[1], 0, 1e-7, "velocities of the guess");
     CHECK_NEAR(worst[2], 0, 0.03, "offsets of the guess, which the solver keeps off their limits");
-    CHECK_NEAR(worst[3], 0, 1e-9, "distances along the path of the guess");
+    CHECK_NEAR(worst[3], 0, 1e-7, "distances along the path of the guess");
     CHECK(limited > 0 && limited < SAMPLES, "%d of %d turn as fast as can be", limited, SAMPLES);
     moray_steering_plan_free(&plan);
     moray_path_free(&path);
@@ -352,13 +347,11 @@ static void test_from(moray_model model)
                                          moray_path_duration(&path, along, plan.straight.speed, current)
                                    : 1;
         CHECK_NEAR(end[1], stretch * end[0], 1e-6 * end[0], "end of the plan [s]");
-        for (int k = 1; k <= INTERVALS; k++) {
-            moray_solution_at(plan.solution, 0, end[0] * k / INTERVALS, a, u);
-            moray_solution_at(next.solution, 0, end[1] * k / INTERVALS, b, u);
-            worst = tap_worse(worst, fabs(a[MORAY_STATE_THETA] - b[MORAY_STATE_THETA]));
-            if (k < INTERVALS) // the path's end is fixed
-                worst = tap_worse(worst, hypot(a[MORAY_STATE_P_X] - b[MORAY_STATE_P_X],
-                                               a[MORAY_STATE_P_Y] - b[MORAY_STATE_P_Y]));
+        for (int k = 1; k < INTERVALS; k++) { // of another model from samples, those of where an interval ends
+            moray_solution_at(plan.solution, 0, end[0] * k / INTERVALS + (model ? -just : just), a, u);
+            moray_solution_at(next.solution, 0, end[1] * k / INTERVALS + just, b, u);
+            for (int r = 0; r <= MORAY_STATE_P_Y; r++)
+                worst = tap_worse(worst, fabs(a[r] - b[r]));
         }
         CHECK_NEAR(worst, 0, 1e-6, "the same way");
         moray_steering_plan_free(&plan);

@@ -174,8 +174,8 @@ static void test_refused(void)
     for (int k = 0; k < 6; k++) {
         char says[200];
         bad = good;
-        double *const fields[] = {&bad.start.proportional, &bad.lag, &bad.offset, &bad.offset_rate, &bad.noise,
-                                  &bad.sampling};
+        double *const fields[] = {&bad.start.proportional, &bad.lag,   &bad.offset,
+                                  &bad.offset_rate,        &bad.noise, &bad.sampling};
         *fields[k] = k < 4 ? 0 : -1;
         snprintf(says, sizeof says, rest, bad.start.proportional, bad.lag, bad.offset, bad.offset_rate);
         refuse(bad, says);
