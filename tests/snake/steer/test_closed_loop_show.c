@@ -57,7 +57,8 @@ static bool is_row(const moray_swim_closed_loop *closed_loop, int k, const char 
     bool same = true;
     for (unsigned j = 0; j < sizeof want / sizeof *want; j++) {
         char *end;
-        same = same && strtod(line, &end) == want[j] && *end == (j < 7 ? ',' : '\n');
+        const double is = strtod(line, &end);
+        same = same && is == want[j] && *end == (j < 7 ? ',' : '\n');
         line = end + 1;
     }
     return same;
