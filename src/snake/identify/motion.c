@@ -74,7 +74,7 @@ static moray_status choose(struct motion *m, const moray_swim_log *log)
     const double of_gait = m->rms;
     const moray_status splines = fit_splines(m, log);
     if (!moray_failed(gait) &&
-        (moray_failed(splines) || of_gait < hypot(likeness * m->rms, negligible * fabs(m->gait.amplitude)))) {
+        (moray_failed(splines) || of_gait < hypot(likeness * m->rms, negligible * m->gait.amplitude))) {
         drop_splines(m);
         m->rms = of_gait;
         tell_gait(m);

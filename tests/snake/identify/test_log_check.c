@@ -22,8 +22,8 @@ static table sound(void)
 {
     table of = {.rows = ROWS};
     for (int k = 0; k < ROWS; k++) {
-        const double row[COLUMNS] = {
-            3 + 0.1 * k, 0.3 * sin(k), -0.2 * cos(k), 0.02 * k - 1, 0.5 - 0.03 * k, 0.1 * k - 1, 2 + k, 3 - 2 * k};
+        const double row[COLUMNS] = {3 + 0.1 * k,    0.3 * sin(k), -0.2 * cos(k), 0.02 * k - 1,
+                                     0.5 - 0.03 * k, 0.1 * k - 1,  2 + k,         3 - 2 * k};
         memcpy(of.at[k], row, sizeof row);
     }
     return of;
@@ -78,14 +78,8 @@ static void check_read(const char *header, const moray_swim_log_format *format, 
     CHECK_OK(moray_swim_log_read(&log, path, format), header);
     if (CHECK(log.n == ROWS && log.p_x && log.p_y && log.heading && log.u, "%s: all is found", header))
         for (int k = 0; k < ROWS; k++) {
-            const double got[COLUMNS] = {log.t[k],
-                                         log.phi[2 * k],
-                                         log.phi[2 * k + 1],
-                                         log.p_x[k],
-                                         log.p_y[k],
-                                         log.heading[k],
-                                         log.u[2 * k],
-                                         log.u[2 * k + 1]};
+            const double got[COLUMNS] = {log.t[k],   log.phi[2 * k], log.phi[2 * k + 1], log.p_x[k],
+                                         log.p_y[k], log.heading[k], log.u[2 * k],       log.u[2 * k + 1]};
             for (int j = 0; j < COLUMNS; j++)
                 worst = tap_worse(worst, fabs(got[j] - factor[j] * of.at[k][j]));
             worst = tap_worse(worst, abs(log.line[k] - k - 2));
@@ -130,8 +124,7 @@ static void test_bad_lists(void)
     refused(&of, names, &f, "units: p=mm: must be KEY=UNIT with KEY one of t, phi, phi_ref, p_x, p_y, heading, u");
     f.units = "p_x=a_unit_of_a_name_that_is_a_good_deal_longer_than_sixty_characters,t=s";
     f.columns = NULL;
-    refused(&of, names, &f,
-            "log.csv:1: column p_x: unit a_unit_of_a_name_that_is_a_goo; must be one of m, cm, mm");
+    refused(&of, names, &f, "log.csv:1: column p_x: unit a_unit_of_a_name_that_is_a_goo; must be one of m, cm, mm");
     f.units = "x=a_unit_of_a_name_that_is_a_good_deal_longer_than_sixty_characters,t=s";
     refused(&of, names, &f,
             "units: x=a_unit_of_a_name_that_is_a_good_deal_longer_than_sixty_cha: must be KEY=UNIT with KEY one of t, "
