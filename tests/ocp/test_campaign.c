@@ -14,6 +14,7 @@ static const double least_fall = 0.9, margin = 0.98; // of the errors before, an
 
 struct task {
     double jump; // until then u is at most 1, then 2
+    double rate; // at which f grows
     int calls;   // of first iterations, which are the meshes
     int halt_at; // 0: never
 };
@@ -21,7 +22,7 @@ struct task {
 static void run(const moray_node *at, moray_rates *out, const void *data)
 {
     const struct task *task = data;
-    out->f[0] = at->u[0];
+    out->f[0] = at->u[0] * moray_exp(task->rate * at->t);
     out->c[0] = at->u[0] - (creal(at->t) < task->jump ? 1 : 2);
     out->g[0] = -at->u[0];
 }
@@ -170,9 +171,9 @@ static int counted(const moray_mesh_record *record)
     return 1 + 2 * (record->nodes - 1 - 4) + 3 * 3;
 }
 
-static void test_variables(void)
+static void test_variables(double jump, double rate)
 {
-    struct task task = {.jump = 0.37};
+    struct task task = {.jump = jump, .rate = rate};
     moray_ocp *ocp;
     int meshes, fewer;
     moray_solution *solution = solve(&ocp, &task, "radau3", 5, 0), *limited;
@@ -218,7 +219,8 @@ int main(void)
 {
     test_ends();
     test_refinements();
-    test_variables();
+    test_variables(0.37, 0);
+    test_variables(2, 4); // more stages at the end than at the start
     test_halt();
     return tap_done();
 }

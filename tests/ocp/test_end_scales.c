@@ -96,6 +96,9 @@ static void test_scales(const struct transcription *t)
             const double size = i < nx ? size_x[i] : size_u[i - nx];
             check(of_x, seen->sight[k].x + i, size, "what data see");
             check(of_g, seen->sight[k].row + i, size, "and what defines it");
+            CHECK(t->nlp.x_lower[seen->sight[k].x + i] == -MORAY_INFINITY &&
+                      t->nlp.x_upper[seen->sight[k].x + i] == MORAY_INFINITY,
+                  "which alone bounds it");
         }
 }
 

@@ -25,7 +25,8 @@ static void go(const moray_node *at, moray_rates *out, const void *data)
     const moray_num *x = at->x;
     asked++;
     out->f[0] = at->u[0] * x[1] + (creal(x[0]) > beyond ? x[0] * INFINITY : 0);
-    out->f[1] = x[0] + 1e298 * sin(1e10 * (creal(x[1]) > beyond ? x[1] - creal(x[1]) : 0));
+    out->f[1] = x[0] + 1e298 * sin(1e10 * (creal(x[1]) > beyond ? x[1] - creal(x[1]) : 0)) +
+                (creal(at->u[0]) < -beyond ? x[1] : 0);
     out->c[0] = x[0] * x[0] + at->u[0];
     out->c[1] = at->u[0] * at->u[0] * at->s[0] + (creal(at->s[0]) > beyond ? x[1] * x[1] : 0);
     out->g[0] = at->u[0] * at->u[0] * x[1];
@@ -222,6 +223,12 @@ static void test_widen(void)
     CHECK(t->phase[0].map == before[0] && t->phase[1].map == before[1], "transcribed it stays what it was");
     CHECK_OK(moray_widen_patterns(t, &found), "once more");
     CHECK(found == 0 && ocp->phase[1].map == after[1] && ocp->phase[1].observed.map == after[2], "nothing is left");
+    fill(t, x);
+    x[t->layout.phase[1].node[1].x + 2] = -2 * beyond;
+    CHECK(moray_transcription_values(t, x), "a point that shows more at its first collocated node");
+    CHECK_OK(moray_widen_patterns(t, &found), "looked at");
+    CHECK(found == 1 && ocp->phase[0].map == after[0] && ocp->phase[1].map != after[1], "%d dependence of one phase",
+          found);
     moray_transcription_free(t);
     moray_ocp_free(ocp);
 }
