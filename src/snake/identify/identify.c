@@ -226,7 +226,7 @@ static void take_spec(moray_identify *v, const moray_identify_spec *spec)
         v->unknown[k] = spec->unknown[k];
         v->lower[k] = spec->lower[k];
         v->upper[k] = spec->upper[k];
-        v->scale[k] = u->offset ? u->scale : value != 0 ? fabs(value) : spec->upper[k] - spec->lower[k];
+        v->scale[k] = u->offset ? u->scale : value > 0 ? value : spec->upper[k] - spec->lower[k];
     }
     v->spec.unknown = v->unknown;
     v->spec.lower = v->lower;
