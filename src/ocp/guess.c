@@ -51,7 +51,7 @@ static void guess_from_samples(const struct transcription *t, int p, const moray
         const struct node *node = &layout->node[n];
         const double time = first + (last - first) * node->tau;
         interpolate(samples, samples->x, phase->nx, time, x + node->x);
-        if (phase->nu > 0 && node->collocated)
+        if (node->collocated)
             interpolate(samples, samples->u, phase->nu, time, x + node->x + phase->nx);
     }
 }
@@ -80,10 +80,10 @@ static const double no_length = 1e-3; // of what the bounds leave: less is none
 // A phase that may begin at any late time begins where the one before it ends.
 static double start_after(const struct transcription *t, int p, const double *x, double otherwise)
 {
-    if (p == 0 || t->layout.phase[p].t0 == absent || t->ocp->phase[p].t0.upper < MORAY_ENDLESS)
+    if (p == 0 || t->ocp->phase[p].t0.upper < MORAY_ENDLESS)
         return otherwise;
     const int before = t->layout.phase[p - 1].tf;
-    return within(before >= 0 ? x[before] : t->ocp->phase[p - 1].tf.lower, t->ocp->phase[p].t0);
+    return within(before != absent ? x[before] : t->ocp->phase[p - 1].tf.lower, t->ocp->phase[p].t0);
 }
 
 // Middles of the bounds; where those leave no length, the phases share what lies between in turn, or where that is

@@ -75,7 +75,8 @@ static const struct line {
     {{1, 1}, {4, 4}, 1, 4},       {{0, 2}, {4, 8}, 1, 6},   {FREE, {3, 3}, 3, 3},      {{2, 2}, FREE, 2, 2},
     {ABOVE(2), {5, 5}, 5, 5},     {ABOVE(2), {1, 1}, 2, 1}, {BELOW(2), {5, 5}, 2, 5},  {{1, 1}, BELOW(-2), 1, -2},
     {{1, 1}, ABOVE(-2), 1, 1},    {ABOVE(2), FREE, 2, 2},   {FREE, BELOW(-3), -3, -3}, {FREE, FREE, 0, 0},
-    {ABOVE(2), BELOW(-3), 2, -3}, {{1, 3}, ABOVE(0), 2, 2}, {{-7, -5}, {1, 1}, -6, 1},
+    {ABOVE(2), BELOW(-3), 2, -3}, {{1, 3}, ABOVE(0), 2, 2}, {{-7, -5}, {1, 1}, -6, 1}, {ABOVE(2), ABOVE(5), 2, 5},
+    {BELOW(2), BELOW(-5), 2, -5}, {{1, 1}, BELOW(3), 1, 1},
 };
 
 static void test_lines(void)
@@ -124,6 +125,10 @@ static const struct span {
     {{3, 3}, ABOVE(2), FREE, 3, 4, false},
     {{3, 3}, ABOVE(7), FREE, 3, 7, false},
     {{2, 4}, ABOVE(2), FREE, 3, 4, false},
+    {{3, 3}, {2, 1e15}, FREE, 3, 4, false}, // endless
+    {ABOVE(2), ABOVE(5), FREE, 2, 5, false},
+    {{0, 10}, {0, 10}, {4, 10}, 0, 10, true}, // as long as may be
+    {{0, 2}, {4, 8}, {5, 9}, 1, 6, true},     // as short
     {{0, 10}, {0, 10}, {4.5, 5.5}, 0, 5, true},
     {{0, 10}, {0, 10}, {4.5, 11}, 0, 10, true},
     {{0, 2}, {2, 4}, {3, 4}, 0.5, 4, true},
@@ -158,6 +163,8 @@ static void test_turns(void)
         moray_bounds t0[3], tf[3];
         double at[3][2];
     } cases[] = {{{{0, 6}, {0, 6}, {0, 6}}, {{0, 6}, {0, 6}, {0, 6}}, {{0, 2}, {2, 4}, {4, 6}}},
+                 {{{2, 8}, {2, 8}, {2, 8}}, {{2, 8}, {2, 8}, {2, 8}}, {{2, 4}, {4, 6}, {6, 8}}},
+                 {{{0, 0}, {1, 1e15}, ABOVE(0)}, {{2, 2}, {1, 9}, ABOVE(0)}, {{0, 2}, {2, 5}, {5, 6}}},
                  {{{0, 0}, ABOVE(0), ABOVE(0)}, {{2, 2}, ABOVE(0), ABOVE(0)}, {{0, 2}, {2, 3}, {3, 4}}},
                  {{{0, 0}, ABOVE(0), ABOVE(7)}, {{1, 3}, {5, 7}, ABOVE(0)}, {{0, 2}, {2, 6}, {7, 8}}}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
