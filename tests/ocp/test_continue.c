@@ -190,6 +190,48 @@ static void test_fewer_phases(void)
     moray_ocp_free(two);
 }
 
+// Least integral of (1 - u^2)^2 + x^2, x' = u, x = 0 at both ends: no control is best but one that goes to and fro ever
+// faster.
+static void flutter(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    const moray_num off = 1 - at->u[0] * at->u[0];
+    out->f[0] = at->u[0];
+    out->g[0] = off * off + at->x[0] * at->x[0];
+}
+
+// The scheme that is gone on with may change as another, unless it is the phase's own.
+static void test_changes(const char *own)
+{
+    static const moray_bounds zero = {0, 0}, u = {-1.5, 1.5};
+    const moray_phase_spec phase = {.nx = 1,
+                                    .nu = 1,
+                                    .nq = 1,
+                                    .continuous = flutter,
+                                    .tf = moray_fixed(1),
+                                    .x0 = {&zero, 1},
+                                    .xf = {&zero, 1},
+                                    .u = {&u, 1},
+                                    .scheme = own};
+    moray_ocp *ocp;
+    moray_solution *first, *second;
+    int meshes, changed = 0;
+    const moray_settings settings = settings_of("gauss2", 8);
+    moray_settings more = settings_of("gauss2", 0);
+    more.max_refinements = 3;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = pay_for_one}), "flutter");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &first), "begun");
+    const moray_guess guess = moray_guess_from_solution(first);
+    CHECK_OK(moray_solve(ocp, &more, &guess, &second), "gone on with");
+    const moray_mesh_record *history = moray_solution_history(second, &meshes);
+    for (int k = 0; k < meshes; k++)
+        changed += history[k].changed_to != NULL;
+    CHECK((changed > 0) == !own, "the scheme changed %d times", changed);
+    moray_solution_free(first);
+    moray_solution_free(second);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     test_numbers();
@@ -197,5 +239,7 @@ int main(void)
     test_wrong_schemes();
     test_continued();
     test_fewer_phases();
+    test_changes(NULL);
+    test_changes("gauss2");
     return tap_done();
 }

@@ -70,7 +70,7 @@ static moray_ocp *make(const moray_map *endpoint)
     CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.name = "task",
                                                    .phases = phases,
                                                    .phase = phase,
-                                                   .ns = 1,
+                                                   .ns = 2,
                                                    .ne = 2,
                                                    .e = MORAY_BOUNDS_OF(any),
                                                    .e_names = e_names,
@@ -172,6 +172,56 @@ static void test_asked(void)
     moray_ocp_free(ocp);
 }
 
+// ---- Inputs that keep their values ----
+
+static const bool *held_by;
+static bool held_now[6]; // x, u, s, t
+
+static void hold(void *self, const bool *held)
+{
+    (void)self;
+    held_by = held;
+    if (held)
+        memcpy(held_now, held, sizeof held_now);
+}
+
+// Parameters whose bounds meet, and time where every phase has its times fixed.
+static void check_held(struct transcription *t, bool first, bool second, bool time)
+{
+    t->nlp.hold(t, true);
+    const bool want[6] = {false, false, false, first, second, time};
+    CHECK(held_by && memcmp(held_now, want, sizeof want) == 0, "parameters %d, %d and time %d are held: %d, %d, %d",
+          first, second, time, held_now[3], held_now[4], held_now[5]);
+    t->nlp.hold(t, false);
+    CHECK(!held_by, "until it ends");
+}
+
+static void test_held(void)
+{
+    moray_ocp *ocp = make(NULL);
+    struct transcription *t = transcribe(ocp, 2);
+    moray_map with_hold = *t->phase[1].map;
+    with_hold.hold = hold;
+    t->phase[1].map = &with_hold;
+    double *lower = t->bounds + t->layout.s, *upper = lower + t->layout.columns;
+    check_held(t, false, false, true);
+    lower[1] = upper[1] = 3;
+    check_held(t, false, true, true);
+    lower[0] = upper[0] = -1;
+    check_held(t, true, true, true);
+    upper[1] = 4;
+    for (int p = 0; p < phases; p++)
+        for (int end = 0; end < 2; end++) {
+            int *column = end ? &t->layout.phase[p].tf : &t->layout.phase[p].t0;
+            *column = 0; // free
+            check_held(t, true, false, false);
+            *column = absent;
+        }
+    check_held(t, true, false, true);
+    moray_transcription_free(t);
+    moray_ocp_free(ocp);
+}
+
 // ---- Without the curvature of constraints ----
 
 static void test_gauss_newton(void)
@@ -259,7 +309,7 @@ static void test_given_maps(void)
 {
     int row[] = {0, 1, 2}, col[] = {0, 2, 3}, one[] = {0}, found;
     double x[most];
-    const moray_map map = {.n_in = 17,
+    const moray_map map = {.n_in = 18,
                            .n_out = 3,
                            .jac = {3, row, col},
                            .hess = {1, one, one},
@@ -282,6 +332,7 @@ int main(void)
     test_not_finite();
     test_fixed_times();
     test_asked();
+    test_held();
     test_gauss_newton();
     test_widen();
     test_given_maps();
