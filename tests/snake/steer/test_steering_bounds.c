@@ -94,9 +94,8 @@ static void check_name(const char *got, const char *want)
 
 static void check_states(const struct phase *phase, bool control)
 {
-    static const char *const names[2][states] = {
-        {"theta", "p_x", "p_y", "v_theta", "v_t", "v_n", "phi_0", "phi_0'"},
-        {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y", "phi_0", "phi_0'"}};
+    static const char *const names[2][states] = {{"theta", "p_x", "p_y", "v_theta", "v_t", "v_n", "phi_0", "phi_0'"},
+                                                 {"theta", "p_x", "p_y", "v_theta", "v_x", "v_y", "phi_0", "phi_0'"}};
     for (int r = 0; r < states; r++) {
         check_name(phase->x_names[r], names[!control][r]);
         if (r == MORAY_STATE_PHI_0 || r == MORAY_STATE_V_PHI_0)
