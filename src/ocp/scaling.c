@@ -105,8 +105,8 @@ static int scratch_of(const struct transcription *t)
 {
     int most = 0;
     for (int p = 0; p < t->ocp->phases; p++) {
-        const moray_map *map = t->phase[p].map;
-        most = most > 2 * map->n_in + map->n_out ? most : 2 * map->n_in + map->n_out;
+        const int needed = 2 * t->phase[p].map->n_in + t->phase[p].map->n_out;
+        most = most > needed ? most : needed;
     }
     return most;
 }
