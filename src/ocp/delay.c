@@ -61,7 +61,7 @@ static void join_steps(const moray_ends *at, moray_end_values *out, const void *
 
 static moray_status check_list(const char *what, moray_bounds_list list, int n, bool required)
 {
-    if (list.n != n && (list.n != 0 || (required && n > 0)))
+    if (list.n != n && (list.n != 0 || required))
         return moray_error(MORAY_INPUT, "%s: %d bounds given, %d needed", what, list.n, n);
     return moray_ok();
 }

@@ -11,8 +11,6 @@
 double moray_bounds_middle(moray_bounds bounds)
 {
     const bool below = bounds.lower > -MORAY_ENDLESS, above = bounds.upper < MORAY_ENDLESS;
-    if (!below && !above)
-        return fmin(fmax(0, bounds.lower), bounds.upper);
     return below && above ? (bounds.lower + bounds.upper) / 2 : below ? bounds.lower : above ? bounds.upper : 0;
 }
 
@@ -82,7 +80,7 @@ static moray_status copy_bounds(moray_ocp *ocp, struct place place, moray_bounds
     *copy = own(ocp, (size_t)n * sizeof **copy);
     if (!*copy)
         return no_memory();
-    if (list.n != n && (list.n != 0 || (required && n > 0)))
+    if (list.n != n && (list.n != 0 || required))
         return moray_error(MORAY_INPUT, "%s of %s: %d bounds given, %d needed", place.what, place.where, list.n, n);
     for (int i = 0; i < n; i++) {
         (*copy)[i] = list.n ? list.at[i] : moray_free();
