@@ -2,9 +2,10 @@
 #include "control/orbit_system.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/number.h"
 
 double moray_orbit_period(const orbit_system *system)
 {
@@ -74,7 +75,6 @@ static void defects(const orbit_system *system, const double *z, double *F)
 
 bool moray_orbit_residual(orbit_system *system, const double *z, double *F)
 {
-    double sum = 0;
     read_parameters(system, z);
     if (!(moray_orbit_period(system) > 0))
         return false;
@@ -85,9 +85,7 @@ bool moray_orbit_residual(orbit_system *system, const double *z, double *F)
     defects(system, z, F);
     set_ends(system, z);
     system->closing->value(system->closing->self, system->ends, F + (system->nodes - 1) * system->nx);
-    for (int k = 0; k < system->unknowns; k++)
-        sum += fabs(F[k]);
-    return isfinite(sum);
+    return moray_all_finite(F, system->unknowns);
 }
 
 void moray_orbit_plant_slope(orbit_system *system, const double *x, double t, double *slope)
