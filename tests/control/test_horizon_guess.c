@@ -73,7 +73,8 @@ typedef struct guess {
     asked node[NODES];
 } guess;
 
-// At the nodes of a plan from t on: `plan` moved on, its gap to x closed in even steps, or else rest in x without control.
+// At the nodes of a plan from t on: `plan` moved on, its gap to x closed in even steps, or else rest in x without
+// control.
 static guess guess_of(const moray_solution *plan, double t, const double *x, double s)
 {
     guess g = {0};
@@ -201,8 +202,34 @@ static void test_bounds(void)
     moray_receding_horizon_free(receding);
 }
 
+// What plans cost, the first one aside where the longest is told.
+static void test_record(void)
+{
+    const moray_receding_horizon_spec spec = {
+        .replanner = {.nx = 2, .nu = 1, .ns = 1, .make = make, .free = release},
+        .settings = moray_settings_default(),
+        .horizon = horizon,
+        .interval = interval,
+    };
+    moray_receding_horizon *receding;
+    CHECK_OK(moray_receding_horizon_new(&receding, &spec), "a receding horizon");
+    const moray_receding_horizon_record *record = moray_receding_horizon_record_of(receding);
+    double longest = 0, seconds = 0;
+    for (int k = 0; k < 6; k++) {
+        CHECK_OK(moray_receding_horizon_measure(receding, k * interval, (double[]){1, 0.1 * k}), "planned");
+        const double took = moray_receding_horizon_replans(receding)[k].seconds;
+        seconds += took;
+        longest = k > 0 && took > longest ? took : longest;
+        CHECK(record->plans == k + 1 && took > 0 && record->longest == longest, "the longest of %d: %g s", k + 1,
+              record->longest);
+        CHECK_NEAR(record->seconds, seconds, 1e-12, "all together [s]");
+    }
+    moray_receding_horizon_free(receding);
+}
+
 int main(void)
 {
+    test_record();
     test_guess(NULL);
     test_guess(&(double){0.7});
     test_sizes();
