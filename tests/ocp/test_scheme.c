@@ -90,6 +90,16 @@ static void test_order_of_nodes(moray_family family, int stages)
     moray_scheme_free(&k);
 }
 
+// Whatever was there before.
+static void test_ends_of_lobatto(void)
+{
+    for (int s = 2; s < 5; s++) {
+        double node[5] = {9, 9, 9, 9, 9};
+        moray_legendre_lobatto(s, node);
+        CHECK(node[0] == 0 && node[s - 1] == 1 && node[s] == 9, "%d points from 0 to 1", s);
+    }
+}
+
 static void test_legendre_polynomials(void)
 {
     for (int k = 1; k < 10; k++) {
@@ -134,6 +144,7 @@ int main(void)
     test_exactness(MORAY_LOBATTO, MORAY_MAX_STAGES);
     test_exactness(MORAY_GAUSS, MORAY_MAX_STAGES);
     test_textbook_tables();
+    test_ends_of_lobatto();
     test_legendre_polynomials();
     test_names();
     return tap_done();
