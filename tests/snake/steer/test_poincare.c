@@ -67,6 +67,17 @@ static void test_model(moray_model model)
     spec.lookahead = 3;
     CHECK_OK(moray_poincare_multipliers(&spec, line), "line of sight");
     CHECK(cabs(line[0]) < 0.995, "brings the place back too: %.4f", cabs(line[0]));
+    spec.looks = 8;
+    CHECK_OK(moray_poincare_multipliers(&spec, line), "as few looks as there may be");
+    spec.lookahead = -1;
+    CHECK(moray_poincare_multipliers(&spec, line).code == MORAY_INPUT, "no lookahead behind");
+    spec.lookahead = 0;
+    spec.gain = -gain;
+    const moray_status status = moray_poincare_multipliers(&spec, line);
+    if (model == MORAY_CONTROL_ORIENTED) // whose straight swimming the gain does not see
+        CHECK(!moray_failed(status) && cabs(line[0]) > 1.01, "a gain that turns away: %.3f", cabs(line[0]));
+    else
+        CHECK(status.code == MORAY_NOT_SOLVED, "a gain that turns away never comes back: %s", status.text);
     spec.looks = 4;
     CHECK(moray_poincare_multipliers(&spec, line).code == MORAY_INPUT, "too few looks are refused");
 }

@@ -35,6 +35,11 @@ static void test_points(void)
     CHECK_NEAR(moray_reference_fastest(&ramps, 4, 10) / DEG, 5, 1e-12, "and from 4 s on");
     CHECK(moray_reference_fastest(&steps, 0, 10) == 0, "steps turn at no rate");
     moray_reference_free(&ramps);
+    ramps = read_ok("ramps:0=0,2=-30,3=-20,5=0");
+    CHECK_NEAR(moray_reference_fastest(&ramps, 1, 4) / DEG, 15, 1e-12, "fastest the other way [deg/s]");
+    CHECK_NEAR(moray_reference_fastest(&ramps, 2, 5) / DEG, 10, 1e-12, "what ends where the time begins aside");
+    CHECK_NEAR(moray_reference_fastest(&ramps, 2.5, 2.75) / DEG, 10, 1e-12, "within a line");
+    moray_reference_free(&ramps);
     moray_reference_free(&steps);
     moray_reference_free(&steps);
     CHECK(steps.n == 0 && !steps.time, "freed twice");
@@ -47,6 +52,10 @@ static void test_sine(void)
     check_at(&sine, 4, 0, -20 * 2 * M_PI / 8);
     check_at(&sine, 1, 20 * sqrt(0.5), 20 * sqrt(0.5) * 2 * M_PI / 8);
     CHECK_NEAR(moray_reference_fastest(&sine, 0, 100) / DEG, 20 * 2 * M_PI / 8, 1e-12, "fastest [deg/s]");
+    moray_reference_free(&sine);
+    sine = read_ok("sine:-20,8");
+    check_at(&sine, 2, -20, 0);
+    CHECK_NEAR(moray_reference_fastest(&sine, 0, 100) / DEG, 20 * 2 * M_PI / 8, 1e-12, "as fast the other way");
     moray_reference_free(&sine);
 }
 

@@ -257,6 +257,49 @@ static void test_motors(void)
     }
 }
 
+// ---- Where the task is looked at ----------------------------------------------------------------------------------
+
+// Depends on a state each at the far end of the time and of a control of its own, and everywhere on none but the first.
+static void far_off(void *self, const double complex *in, double complex *out)
+{
+    const double *from = self, t = creal(in[states + 3 + MORAY_STEERING_PARAMETERS]);
+    out[0] = in[0] * in[0];
+    out[0] += t > from[0] ? in[1] * in[1] : 0;
+    out[0] += t < from[1] ? in[2] * in[2] : 0;
+    out[0] += creal(in[states + 1]) > from[2] ? in[3] * in[3] : 0;
+    out[0] += creal(in[states + 2]) < from[3] ? in[4] * in[4] : 0;
+    out[1] = creal(in[5]) > 0.05 ? in[6] * in[6] : 0;
+    out[2] = out[3] = in[0];
+}
+
+// A bit for each of the states that a row knows of.
+static unsigned knows(const struct phase *phase, int row)
+{
+    unsigned bits = 0;
+    for (int e = 0; e < phase->map->jac.nnz; e++)
+        if (phase->map->jac.row[e] == row && phase->map->jac.col[e] < states)
+            bits |= 1u << phase->map->jac.col[e];
+    return bits;
+}
+
+static void test_looks(moray_bounds t0, moray_bounds tf, const double from[4])
+{
+    double thresholds[4] = {from[0], from[1], from[2], from[3]};
+    moray_steering_spec spec = spec_of(MORAY_CONTROL_ORIENTED, own_u, own_c, own_e);
+    moray_steering *problem;
+    spec.t0 = t0;
+    spec.tf = tf;
+    spec.task.extra = far_off;
+    spec.task.self = thresholds;
+    spec.task.events = NULL;
+    CHECK_OK(moray_steering_new(&problem, &spec), "problem");
+    const struct phase *phase = &moray_steering_ocp(problem)->phase[0];
+    CHECK(knows(phase, states) == 0x1f, "from end to end of time and controls: %x", knows(phase, states));
+    CHECK(knows(phase, states + 1) == 1u << 6, "and on either side of a state's typical value: %x",
+          knows(phase, states + 1));
+    moray_steering_free(problem);
+}
+
 // ---- Refusals ------------------------------------------------------------------------------------------------------
 
 static void refuse(const moray_steering_spec *spec, const char *says)
@@ -322,6 +365,8 @@ int main(void)
 {
     test_control();
     test_motors();
+    test_looks(moray_fixed(2), moray_between(5, 9), (double[]){8.7, 2.3, 3.6, 1.05});
+    test_looks(moray_fixed(-1), moray_between(-1, MORAY_INFINITY), (double[]){-0.9, -1.1, 3.6, 1.05});
     test_refused();
     test_mapped();
     return tap_done();
