@@ -235,6 +235,39 @@ static void test_bounds(void)
     swum_free(log);
 }
 
+// From where every step goes down, or up, it goes back as far as from where they differ.
+static void test_return(void)
+{
+    static const char *const few[] = {"c_t", "c_n", "current_x"};
+    moray_swim_log log[SWUM_LOGS];
+    swum_spec s;
+    moray_identify *v;
+    moray_estimate best, at;
+    double cost;
+    swum_logs(MORAY_FIRST_PRINCIPLES, swum_noise(), log);
+    swum_choose(&s, MORAY_FIRST_PRINCIPLES, few, 3);
+    CHECK_OK(moray_identify_new(&v, &s.spec, log, SWUM_LOGS), "new");
+    moray_identify_start(v, 0, &best);
+    CHECK_OK(moray_identify_solve(v, &best), "solve");
+    for (int side = -1; side <= 1; side++) {
+        double worst = 0;
+        at = best;
+        for (int k = 0; k < 3; k++)
+            at.value[k] += 0.01 * v->scale[k] * (side ? side : k - 1);
+        for (int r = 0; r < SWUM_LOGS; r++)
+            for (int i = 0; i < FIRST; i++)
+                at.first[r][i] += 0.01 * first_scale * (side ? side : i % 2 - 0.5);
+        CHECK_OK(moray_identify_solve(v, &at), "again");
+        for (int k = 0; k < 3; k++)
+            worst = tap_worse(worst, fabs(at.value[k] - best.value[k]) / v->scale[k]);
+        CHECK(worst < 1e-7 && at.converged && at.iterations > 1, "side %d: back to %.1e in %d iterations", side, worst,
+              at.iterations);
+        CHECK(moray_identify_equations(v, &at, &cost) && fabs(cost - best.cost) < 1e-9 * cost, "at the same cost");
+    }
+    moray_identify_free(v);
+    swum_free(log);
+}
+
 // Without iterations nothing is done, with one it has not converged; what cannot be swum is told.
 static void test_iterations(void)
 {
@@ -272,6 +305,7 @@ int main(void)
     test_derivatives();
     test_starts();
     test_bounds();
+    test_return();
     test_iterations();
     return tap_done();
 }
