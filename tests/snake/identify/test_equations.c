@@ -300,6 +300,53 @@ static void test_iterations(void)
     swum_free(log);
 }
 
+// The largest |sum of phi| that the steps of run r come across, and that of its end.
+static double widest(const moray_identify *v, int r, double *at_end)
+{
+    const struct run *run = &v->run[r];
+    const moray_gait gait =
+        moray_gait_map(&v->spec.start.robot, &run->motion.gait, MORAY_FIRST_PRINCIPLES, v->spec.model);
+    double phi[2], rates[4], most = 0;
+    *at_end = 0;
+    for (int k = 0; k <= 2 * run->steps; k++) {
+        moray_gait_reference(&gait, 2, run->log->t[0] + k * run->h / 2 + run->motion.shift, phi, rates, rates + 2);
+        *at_end = fabs(phi[0] + phi[1]);
+        most = fmax(most, *at_end);
+    }
+    return most;
+}
+
+// An added mass with which the accelerations are not determined, where the body is bent most, within a run that ends
+// well.
+static void test_not_swum(void)
+{
+    static const char *const few[] = {"mu_n"};
+    moray_swim_log logs[SWUM_LOGS];
+    swum_spec s;
+    moray_identify *v;
+    double residual[MOST_ITEMS];
+    swum_logs(MORAY_CONTROL_ORIENTED, swum_noise(), logs);
+    swum_choose(&s, MORAY_CONTROL_ORIENTED, few, 1);
+    CHECK_OK(moray_identify_new(&v, &s.spec, logs, SWUM_LOGS), "new");
+    for (int r = 0; r < SWUM_LOGS; r++) {
+        const moray_robot *robot = &v->spec.start.robot;
+        double at_end, cost;
+        const double most = widest(v, r, &at_end), a = 3 * (4 * robot->l) / (2 * most); // a sqrt(m (m + mu)) = mu
+        const double mu = a * robot->m * (a / 2 + sqrt(a * a / 4 + 1));
+        CHECK(at_end < 0.9 * most, "run %d: it ends straighter", r);
+        for (int beyond = 0; beyond < 2; beyond++) {
+            moray_estimate at;
+            moray_identify_start(v, 0, &at);
+            at.value[0] = mu * (beyond ? 1.02 : 0.98);
+            CHECK(moray_identify_residual(v, r, &at, residual, NULL) == !beyond, "run %d, mu_n = %.4g kg", r,
+                  at.value[0]);
+            CHECK(!beyond || !moray_identify_cost(v, &at, &cost), "has no cost");
+        }
+    }
+    moray_identify_free(v);
+    swum_free(logs);
+}
+
 int main(void)
 {
     test_derivatives();
@@ -307,5 +354,6 @@ int main(void)
     test_bounds();
     test_return();
     test_iterations();
+    test_not_swum();
     return tap_done();
 }

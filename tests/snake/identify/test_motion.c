@@ -9,11 +9,11 @@
 
 #include "snake/identify/motion.h"
 
-enum { ROWS = 150, JOINTS = 4, PARAMETERS = 6 };
+enum { ROWS = 150, JOINTS = 4, MOST_JOINTS = 6, PARAMETERS = 6 };
 static const char *const no_gait = "log made: the joints follow no gait (25)";
 
 static int line[ROWS];
-static double times[ROWS], angles[ROWS * JOINTS];
+static double times[ROWS], angles[ROWS * MOST_JOINTS];
 
 // Parameters in the order amplitude, omega, delta, offset, taper, phase at the first row.
 static double wave(const double p[PARAMETERS], int joints, int i, double t)
@@ -65,6 +65,8 @@ static void test_gaits(void)
     check_gait((const double[]){0.3, 5 / length, 0.5, 0.1, 0.1, 1}, 3, 2, 0.05, false);
     check_gait((const double[]){0.3, 0.95 * M_PI / 0.15, 0.5, 0.1, 0.1, 1}, 3, 2, 0.05, false);
     check_gait((const double[]){0.25, 7, 1.2, -0.4, -0.4, 1}, 3, 100, 0.03, true);
+    check_gait((const double[]){0.3, 2, 2.8, 0.1, 0.2, 1}, 6, 0, 0.05, true);
+    check_gait((const double[]){0.3, 2, -2.5, 0.1, -0.8, -1}, 6, 0, 0.05, false);
 }
 
 static double squares(const double p[PARAMETERS], const moray_swim_log *log, int *used)
@@ -131,6 +133,26 @@ static void test_no_gait(void)
     for (int k = 0; k < ROWS; k++)
         angles[k] = NAN;
     refused(&log, MORAY_LOGGED_GAIT, MORAY_NUMERIC, no_gait);
+}
+
+// Of what is no wave at all there is none, or one whose amplitude and rate are above nothing.
+static void test_noise_alone(void)
+{
+    int none = 0, found = 0, wrong = 0;
+    unsigned long long seed = 3;
+    for (int trial = 0; trial < 300; trial++) {
+        moray_swim_log log = log_of((const double[PARAMETERS]){0}, 1 + trial % 3, 0, 0.1);
+        struct motion m;
+        log.n = 8 + trial % 13;
+        for (int k = 0; k < log.n * log.joints; k++)
+            angles[k] = tap_random(&seed, -0.5, 0.5);
+        const moray_status status = moray_motion_fit_gait(&m, &log);
+        none += moray_failed(status);
+        found += !moray_failed(status);
+        wrong += moray_failed(status) ? strcmp(status.text, no_gait) != 0
+                                      : !(m.gait.amplitude > 0 && m.gait.omega > 0 && isfinite(m.rms));
+    }
+    CHECK(wrong == 0 && none > 20 && found > 20, "noise: %d gaits, %d none, %d wrong", found, none, wrong);
 }
 
 // ---- Splines -------------------------------------------------------------------------------------------------------
@@ -246,6 +268,7 @@ int main(void)
     test_gaits();
     test_least_squares();
     test_no_gait();
+    test_noise_alone();
     test_splines();
     test_choice();
     test_gaps();

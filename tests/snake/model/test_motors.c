@@ -183,7 +183,7 @@ static void test_limited(void)
         random_vector(&seed, 3, JOINTS, wanted);
         check_limit(wanted, tap_random(&seed, 0.5, 4));
     }
-    check_limit((const double[]){-1, -1, -1}, 2.5); // beyond below alone
+    check_limit((const double[]){-1, -1, -1}, 1.5); // beyond below alone
     check_limit((const double[]){1.5, 1, 0.5}, 3);  // beyond above alone
     check_limit((const double[]){0, 0, 0}, 0.4);    // exactly at the limit
     for (int fails = 1; fails <= JOINTS + 1; fails++) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "random_robot.h"
+#include "snake/model/fp_robot.h"
 #include "snake/model/links.h"
 #include "snake/model/model.h"
 #include "snake/model/series.h"
@@ -150,6 +151,24 @@ static void test_coefficients(void)
     }
 }
 
+// The part of a link that is even about its centre of buoyancy reaches to the nearer end.
+static void test_even_part(void)
+{
+    random_seed seed = 12;
+    moray_link link[N];
+    fp_part part[N];
+    int before = 0;
+    const moray_robot robot = random_unequal_robot(&seed, N, link);
+    moray_fp_robot_of(&robot, part);
+    for (int i = 0; i < N; i++) {
+        const moray_link it = moray_robot_link(&robot, i);
+        const double to_front = it.l - it.cb, to_rear = it.l + it.cb;
+        CHECK_NEAR(part[i].half, to_front < to_rear ? to_front : to_rear, 1e-15, "to the nearer end");
+        before += it.cb < 0;
+    }
+    CHECK(before > 0 && before < N, "on either side of the middle: %d", before);
+}
+
 // ---- Series --------------------------------------------------------------------------------------------------------
 
 // Mirrored in time, the wave runs the other way: mean angles stay, waves change sign with the shift between joints.
@@ -186,6 +205,7 @@ int main(void)
     test_parts(&moray_fp_model, false);
     test_places();
     test_coefficients();
+    test_even_part();
     test_direction();
     return tap_done();
 }
