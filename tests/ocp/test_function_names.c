@@ -163,9 +163,58 @@ static void test_numbered(void)
     moray_ocp_free(ocp);
 }
 
+// Data of two phases: those of the first come first.
+static void see_one(const moray_node *at, moray_num *y, const void *data)
+{
+    (void)at, (void)data;
+    y[0] = 0;
+}
+
+static void test_both_observed(void)
+{
+    static const double time[] = {1.5, 1.25, 1.75}, value[] = {1, 2, 3, 4, 5, 6};
+    const moray_bounds near[] = {moray_between(-9, 9), moray_between(-9, 9)};
+    moray_phase_spec phase[2];
+    for (int p = 0; p < 2; p++)
+        phase[p] = (moray_phase_spec){.name = p ? "down" : "up",
+                                      .nx = 1,
+                                      .nu = 2 * p,
+                                      .nc = 2,
+                                      .c = MORAY_BOUNDS_OF(near),
+                                      .continuous = fall,
+                                      .t0 = moray_between(0, 1),
+                                      .tf = moray_fixed(2),
+                                      .observed = {.n = p ? 3 : 2,
+                                                   .ny = 1 + p,
+                                                   .time = time,
+                                                   .value = value,
+                                                   .observe = p ? watch : see_one,
+                                                   .residual = {near, 1 + p},
+                                                   .sum = moray_at_most(3)}};
+    moray_ocp *ocp;
+    CHECK_OK(moray_ocp_new(&ocp,
+                           &(moray_ocp_spec){
+                               .phases = 2, .phase = phase, .ne = 2, .e = MORAY_BOUNDS_OF(near), .endpoint = judge}),
+             "both observed");
+    CHECK_ALL(ocp, moray_endpoint_input_name, "initial state x[0] of phase up", "initial time of phase up",
+              "final state x[0] of phase up", "final time of phase up", "initial state x[0] of phase down",
+              "initial time of phase down", "final state x[0] of phase down", "final time of phase down",
+              "state x[0] of phase up observed at t = 1.5", "state x[0] of phase up observed at t = 1.25",
+              "state x[0] of phase down observed at t = 1.5", "control u[0] of phase down observed at t = 1.5",
+              "control u[1] of phase down observed at t = 1.5", "state x[0] of phase down observed at t = 1.25");
+    CHECK_ALL(ocp, moray_endpoint_output_name, "objective", "event e[0]", "event e[1]",
+              "residual y[0] of phase up at t = 1.5", "residual y[0] of phase up at t = 1.25",
+              "sum of the observations of phase up", "residual y[0] of phase down at t = 1.5",
+              "residual y[1] of phase down at t = 1.5", "residual y[0] of phase down at t = 1.25",
+              "residual y[1] of phase down at t = 1.25", "residual y[0] of phase down at t = 1.75",
+              "residual y[1] of phase down at t = 1.75", "sum of the observations of phase down");
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     test_named();
     test_numbered();
+    test_both_observed();
     return tap_done();
 }
