@@ -42,7 +42,7 @@ static moray_identify_spec spec_of(const struct search *s, const moray_gait *gai
 {
     moray_identify_spec spec = s->of->spec;
     for (int kind = 0; kind < MORAY_CHANNELS; kind++)
-        spec.sigma[kind] = s->of->run[0].sigma[kind] > 0 ? s->of->run[0].sigma[kind] : 1;
+        spec.sigma[kind] = s->of->run[0].sigma[kind];
     spec.joints = MORAY_LOGGED_GAIT;
     spec.step = 2 * M_PI / gait->omega / COARSE;
     spec.rest = false;

@@ -300,6 +300,52 @@ static void test_unwrapped(void)
     moray_swim_log_free(&log);
 }
 
+// Missing values by their texts, a joint in the first column, and text that is no number.
+static void test_texts(void)
+{
+    static const char *const nothing[] = {"", "nan", "NaN", "na", "NA", "n"};
+    const moray_swim_log_format f = usual();
+    table of = sound();
+    for (int k = 0; k < 6; k++) {
+        moray_swim_log log;
+        FILE *file = fopen(path, "w");
+        fputs("phi_1,t,heading,phi_2\n", file);
+        for (int row = 0; row < ROWS; row++)
+            fprintf(file, "%.17g,%.17g,%s,%.17g\n", of.at[row][PHI], of.at[row][T], row == 5 ? nothing[k] : "0.5",
+                    of.at[row][PHI + 1]);
+        fclose(file);
+        const moray_status status = moray_swim_log_read(&log, path, &f);
+        if (k < 5)
+            CHECK(!moray_failed(status) && log.phi[4] == of.at[2][PHI] && log.phi[5] == of.at[2][PHI + 1] &&
+                      isnan(log.heading[5]) && log.heading[4] == 0.5 && log.t[3] == of.at[3][T],
+                  "\"%s\" is no value: %s", nothing[k], status.text);
+        else
+            CHECK(status.code == MORAY_INPUT && strstr(status.text, "log.csv:7: ") == status.text, "%s", status.text);
+        moray_swim_log_free(&log);
+    }
+}
+
+// Of a path as long as there is room for, and longer; of a folder that is not there.
+static void test_not_saved(void)
+{
+    const moray_swim_log_format f = usual();
+    const table of = sound();
+    moray_swim_log log;
+    static char name[4300];
+    put(&of, names);
+    CHECK_OK(moray_swim_log_read(&log, path, &f), "a log");
+    moray_status status = moray_swim_log_save(&log, "nowhere/log.csv");
+    CHECK(status.code == MORAY_IO && strcmp(status.text, "log nowhere/log.csv: No such file or directory") == 0, "%s",
+          status.text);
+    for (int longer = 0; longer < 2; longer++) {
+        memset(name, 'x', sizeof name);
+        name[4195 + longer] = 0;
+        status = moray_swim_log_save(&log, name);
+        CHECK(status.code == (longer ? MORAY_INPUT : MORAY_IO), "%s", status.text);
+    }
+    moray_swim_log_free(&log);
+}
+
 // A log saved is read again to the last bit.
 static void test_saved(void)
 {
@@ -342,6 +388,8 @@ int main(void)
     test_notes();
     test_unwrapped();
     test_saved();
+    test_texts();
+    test_not_saved();
     remove(path);
     rmdir(folder);
     return tap_done();

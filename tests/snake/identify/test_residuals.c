@@ -187,6 +187,13 @@ static double torque_of_joint_2(int run, moray_channel_kind kind, int joint, int
     return here ? 1.5 * (row % 2 ? -1 : 1) + 0.3 * unit(row) : white(run, kind, joint, row);
 }
 
+// The first channel of all.
+static double coloured_first(int run, moray_channel_kind kind, int joint, int row)
+{
+    const bool here = run == 0 && kind == MORAY_CHANNEL_X;
+    return here ? 1.4 * cos(0.5 * row) : white(run, kind, joint, row);
+}
+
 static double nothing_left(int run, moray_channel_kind kind, int joint, int row)
 {
     (void)run, (void)kind, (void)joint, (void)row;
@@ -265,9 +272,46 @@ static void test_estimated_sigma(void)
     swum_free(log);
 }
 
+// As many measurements as unknowns and first states are too few; one more is enough.
+static void test_freedom(void)
+{
+    static const char *const names[] = {
+        "c_t", "c_n",       "mu_n",      "lambda_1",     "lambda_2", "lambda_3",        "m",
+        "J",   "current_x", "current_y", "heading_bias", "camera_x", "camera_rotation", "position_delay"};
+    moray_swim_log log[SWUM_LOGS];
+    swum_logs(MORAY_FIRST_PRINCIPLES, swum_noise(), log);
+    log[0].u = log[0].p_x = log[0].p_y = NULL;
+    for (int row = 20; row < SWUM_ROWS; row++)
+        log[0].heading[row] = NAN;
+    for (int n = 13; n <= 14; n++) {
+        swum_spec s;
+        moray_identify *v;
+        moray_estimate at;
+        moray_identify_fit fit;
+        swum_choose(&s, MORAY_FIRST_PRINCIPLES, names, n);
+        if (n == 14)
+            s.lower[13] = -1e-9, s.upper[13] = s.spec.start.position_delay = 0;
+        CHECK_OK(moray_identify_new(&v, &s.spec, log, 1), "new");
+        moray_identify_start(v, 0, &at);
+        const moray_status status = moray_identify_residuals(v, &at, &fit);
+        if (n == 13)
+            CHECK(!moray_failed(status) && fit.freedom == 1 && fit.n == 20, "%d degrees of freedom: %s", fit.freedom,
+                  status.text);
+        else
+            CHECK(status.code == MORAY_INPUT &&
+                      strcmp(status.text, "20 measurements are no more than the 14 unknowns and the 6 first states of "
+                                          "the logs") == 0,
+                  "%s", status.text);
+        moray_identify_fit_free(&fit);
+        moray_identify_free(v);
+    }
+    swum_free(log);
+}
+
 int main(void)
 {
-    const moray_channel_fit heading = {.run = 0, .kind = MORAY_CHANNEL_HEADING},
+    const moray_channel_fit first = {.run = 0, .kind = MORAY_CHANNEL_X},
+                            heading = {.run = 0, .kind = MORAY_CHANNEL_HEADING},
                             torque = {.run = 1, .kind = MORAY_CHANNEL_TORQUE, .joint = 1};
     check_case(MORAY_FIRST_PRINCIPLES, white, false, "residuals are white.", NULL);
     check_case(MORAY_CONTROL_ORIENTED, white, false, "residuals are white.", NULL);
@@ -275,9 +319,11 @@ int main(void)
     check_case(MORAY_CONTROL_ORIENTED, outlying, false,
                "residuals are white, but some are far out: outliers (--loss huber).", NULL);
     check_case(MORAY_FIRST_PRINCIPLES, coloured, true, "heading", &heading);
+    check_case(MORAY_CONTROL_ORIENTED, coloured_first, true, "p_x", &first);
     check_case(MORAY_CONTROL_ORIENTED, quiet, false, "residuals are white.", NULL);
     check_case(MORAY_FIRST_PRINCIPLES, torque_of_joint_2, true, "torque", &torque);
     check_case(MORAY_FIRST_PRINCIPLES, nothing_left, false, "residuals are white.", NULL);
     test_estimated_sigma();
+    test_freedom();
     return tap_done();
 }

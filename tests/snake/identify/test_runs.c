@@ -135,6 +135,18 @@ static void test_spec_refused(moray_swim_log log[SWUM_LOGS])
     s.spec.n = 2;
     refused(&s, log, 0, "0 logs: must be 1 to 12");
     refused(&s, log, 13, "13 logs: must be 1 to 12");
+    moray_swim_log many[MORAY_IDENTIFY_RUNS];
+    moray_identify *of_many;
+    for (int k = 0; k < MORAY_IDENTIFY_RUNS; k++)
+        many[k] = log[k % 2];
+    CHECK_OK(moray_identify_new(&of_many, &s.spec, many, MORAY_IDENTIFY_RUNS), "twelve logs");
+    moray_identify_free(of_many);
+    s.spec.n = MORAY_MOST_UNKNOWNS;
+    s.lower[0] = s.upper[0] = 1;
+    char text[120];
+    snprintf(text, sizeof text, "c_t = %g at the start: must be within its bounds, 1 to 1", s.spec.start.robot.c_t);
+    refused(&s, log, 1, text); // not for their number
+    swum_choose(&s, MORAY_FIRST_PRINCIPLES, few, 2);
     s.unknown[1] = moray_unknown_named("rot_gain");
     refused(&s, log, 1, "rot_gain: the first-principles model with this hydrodynamics does not feel it");
     s.unknown[1] = moray_unknown_named("c_n");

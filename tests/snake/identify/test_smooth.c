@@ -154,10 +154,23 @@ static void test_few(void)
     moray_smooth_free(&s);
 }
 
+// Of values that are nothing every number of pieces leaves nothing: the fewest are taken.
+static void test_nothing(void)
+{
+    double t[N], y[N] = {0};
+    struct smooth s;
+    for (int k = 0; k < N; k++)
+        t[k] = from + length * k / (N - 1);
+    CHECK_OK(moray_smooth_fit(&s, N, t, y, 1), "fit");
+    CHECK(s.pieces == 2 && s.noise == 0, "%d pieces, noise %g", s.pieces, s.noise);
+    moray_smooth_free(&s);
+}
+
 int main(void)
 {
     test_quintic();
     test_waves();
     test_few();
+    test_nothing();
     return tap_done();
 }

@@ -218,6 +218,28 @@ static void test_told(void)
     CHECK(text[0] == 0, "nothing is open: %s", text);
 }
 
+static void test_names(void)
+{
+    int n = 0;
+    for (; moray_unknown_name(n); n++)
+        CHECK(moray_unknown_named(moray_unknown_name(n)) == n && moray_unknown_unit(n), "%s", moray_unknown_name(n));
+    CHECK(n == 19 && moray_unknown_named("c") == -1 && moray_unknown_named("c_t_") == -1, "%d names", n);
+    moray_robot robot = moray_robot_paper();
+    for (int strips = 0; strips < 2; strips++)
+        for (int model = 0; model < 2; model++)
+            for (int k = 0; k < n; k++) {
+                const char *name = moray_unknown_name(k);
+                const bool first = model == MORAY_FIRST_PRINCIPLES, torque = strncmp(name, "lambda", 6) == 0;
+                robot.hydro.rotation = strips ? MORAY_ROTATION_STRIP : MORAY_ROTATION_PAPER;
+                const bool applies = torque                         ? first && !strips
+                                     : strcmp(name, "J") == 0       ? first
+                                     : strncmp(name, "rot", 3) == 0 ? !first
+                                                                    : true;
+                CHECK(moray_unknown_applies(k, &robot, (moray_model)model) == applies, "%s: felt by model %d or not",
+                      name, model);
+            }
+}
+
 int main(void)
 {
     char folder[] = "/tmp/moray-worlds-XXXXXX";
@@ -228,6 +250,7 @@ int main(void)
     test_written();
     test_read();
     test_told();
+    test_names();
     rmdir(folder);
     return tap_done();
 }

@@ -145,6 +145,30 @@ static void test_no_phase(void)
     moray_map_release(&mean);
 }
 
+// In the paper's frame the robot feels its velocity through the water alone, on whichever heading.
+static void test_current(void)
+{
+    const double V[2] = {0.3, -0.2}, x[8] = {0.7, 1, 2, 0.1, 0.25, -0.08, 0.012, 0.004};
+    moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_STEERED};
+    moray_map still, moving;
+    double through[8], out[2][9];
+    CHECK_OK(moray_average_plant(&still, &spec), "in still water");
+    memcpy(spec.current, V, sizeof V);
+    CHECK_OK(moray_average_plant(&moving, &spec), "in a current");
+    memcpy(through, x, sizeof x);
+    through[4] -= V[0] * cos(x[0]) + V[1] * sin(x[0]);
+    through[5] -= V[1] * cos(x[0]) - V[0] * sin(x[0]);
+    evaluate(&(closed_loop){&moving, {0.045, 2, 0.7}, 0.01}, 0, x, out[0]);
+    evaluate(&(closed_loop){&still, {0.045, 2, 0.7}, 0.01}, 0, through, out[1]);
+    for (int i = 0; i < 9; i++)
+        if (i != 1 && i != 2)
+            CHECK_RELATIVE(out[0][i], out[1][i], 1e-13, "the same through the water");
+    CHECK_RELATIVE(out[0][1], x[4] * cos(x[0]) - x[5] * sin(x[0]), 1e-14, "over ground along x");
+    CHECK_RELATIVE(out[0][2], x[4] * sin(x[0]) + x[5] * cos(x[0]), 1e-14, "and along y");
+    moray_map_release(&still);
+    moray_map_release(&moving);
+}
+
 static void test_refusals(void)
 {
     moray_plant_spec spec = {.robot = moray_robot_paper(), .joints = MORAY_JOINTS_ON_GAIT};
@@ -179,6 +203,7 @@ int main(void)
         for (int frame = 0; frame < 2; frame++)
             test_derivatives(links, (moray_frame)frame);
     test_no_phase();
+    test_current();
     test_refusals();
     return tap_done();
 }
