@@ -73,7 +73,7 @@ static moray_solution *begin(const moray_ocp *ocp, const char *scheme)
     for (int i = 0; i < nlp->m; i++)
         it->lambda[i] = -1 / (i + 1000.);
     it->objective = 1 / 7.;
-    solution->info.iterations = 0;
+    solution->info.iterations = 17;
     solution->info.seconds = 1 / 9.;
     return solution;
 }
@@ -92,7 +92,7 @@ static void test_back(const moray_ocp *ocp, const char *scheme, moray_nlp_outcom
               memcmp(was->z_upper, is->z_upper, columns) == 0 && memcmp(was->lambda, is->lambda, rows) == 0,
           "%s: every number is back", scheme);
     CHECK(memcmp(loaded->guess, was->x, columns) == 0, "%s: and is what a solve would begin from", scheme);
-    CHECK(is->objective == was->objective && loaded->info.iterations == 0 && loaded->info.seconds == 1 / 9. &&
+    CHECK(is->objective == was->objective && loaded->info.iterations == 17 && loaded->info.seconds == 1 / 9. &&
               loaded->info.outcome == outcome,
           "%s: objective, iterations, seconds and outcome", scheme);
     for (int p = 0; p < 2; p++)
@@ -201,6 +201,22 @@ static void test_changed(const moray_ocp *ocp)
                  n + (wrong == 0), m + (wrong == 1), n, m);
         check_refused(ocp, 10, text, count, expected);
     }
+    static const char *const names[] = {"kep", "kepts", "other"};
+    for (int k = 0; k < 3; k++) {
+        snprintf(text, sizeof text, "moray-solution 1 %s\n", names[k]);
+        snprintf(expected, sizeof expected, "test_keep.solution: is of problem %s, not of kept", names[k]);
+        check_refused(ocp, 1, text, count, expected);
+    }
+    check_refused(ocp, 1, "moray-solution 2 kept\n", count, "line 1: moray-solution 1 expected");
+    check_refused(ocp, 2, "scheme radau phases 2 parameters 1 events 1 more\n", count,
+                  "line 2: scheme, phases, parameters and events expected");
+    check_refused(ocp, 3, "phase 1 1 1 1 intervals 2 gauss more\n", count, "line 3: phase nx nu nc nq intervals k");
+    check_refused(ocp, 10, "objective 1 variables 1 constraints 1 more\n", count,
+                  "line 10: objective, variables and constraints expected");
+    check_refused(ocp, 10, "objective inf variables 1 constraints 1\n", count,
+                  "line 10: objective, variables and constraints expected");
+    check_refused(ocp, 9, "outcome 0 iterations 1 seconds nan\n", count, "line 9: outcome, iterations and seconds");
+    check_refused(ocp, 5, "3 1.5\n", count, "line 5: 1 as the end of the last interval expected");
     check_refused(ocp, count, "end of it\n", count, "the end expected");
     check_refused(ocp, count, "end\nmore\n", count, "nothing after the end expected");
     check_refused(ocp, 9, "outcome -1 iterations 1 seconds 0\n", count, "line 9: outcome");
@@ -215,8 +231,9 @@ static void test_changed(const moray_ocp *ocp)
 int main(void)
 {
     moray_ocp *ocp = build();
-    static const char *const schemes[] = {"gauss1", "radau1", "radau3", "lobatto2", "lobatto64"};
-    for (int k = 0; k < 5; k++)
+    static const char *const schemes[] = {"gauss1",    "radau1",        "radau3",         "lobatto2",
+                                          "lobatto64", "radau3,gauss2", "lobatto3,radau2"};
+    for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++)
         test_back(ocp, schemes[k], MORAY_NLP_ITERATION_LIMIT);
     test_changed(ocp);
     moray_ocp_free(ocp);
