@@ -38,11 +38,11 @@ static void test_heading_law(double scale, unsigned long long seed)
         const double reference_at = (ahead < 4 ? 15 * ahead : ahead < 8 ? 60 - 37.5 * (ahead - 4) : -90) * DEG;
         const double reference_rate = (ahead < 4 ? 15 : ahead < 8 ? -37.5 : 0) * DEG;
         wandering += 0.1 * (reference_at - wandering) + tap_random(&seed, -0.5, 0.5);
-        const moray_swim_sample sample = {.t = t,
-                                          .pose = {.heading = wandering + 0.04 * cos(2 * t) - 0.03 * sin(2 * t)}};
-        const double before = k ? filtered : wandering;
-        filtered = before + (1 - exp(-period / smoothing)) * wrapped(wandering - before);
-        const double rate = (filtered - before) / period, error = wrapped(reference_at - wandering);
+        const double shown = wandering + 2 * M_PI * (k / 7 % 3); // a compass knows no turns
+        const moray_swim_sample sample = {.t = t, .pose = {.heading = shown + 0.04 * cos(2 * t) - 0.03 * sin(2 * t)}};
+        const double before = k ? filtered : shown;
+        filtered = before + (1 - exp(-period / smoothing)) * wrapped(shown - before);
+        const double rate = (filtered - before) / period, error = wrapped(reference_at - shown);
         const double rest = scale * (0.12 * reference_rate + 0.05 * 0.5 * (reference_rate - rate));
         const double gain = scale * 0.05 * 0.9, wanted = scale * 0.05 * error + rest + gain * integral;
         const bool moves = fabs(wanted) < offset || wanted * gain * error < 0;
@@ -122,6 +122,28 @@ static void test_plan(void)
     moray_path_free(&path);
 }
 
+// Nothing is left of a plan that cannot be.
+static void test_no_plan(void)
+{
+    moray_path path;
+    moray_reference reference = read_ok("ramps:0=20");
+    const moray_settings settings = moray_settings_default();
+    CHECK_OK(moray_path_read(&path, "0,0 4,1", 0.8), "a path");
+    const moray_path_spec along = {.robot = moray_robot_paper(), .path = &path, .tube = -1};
+    const moray_heading_spec heading = {
+        .robot = moray_robot_paper(), .reference = &reference, .max_error = -1, .t1 = 5};
+    const moray_gait gait = moray_gait_paper(&along.robot);
+    for (int on_path = 0; on_path < 2; on_path++) {
+        moray_steering_plan plan;
+        const moray_status status =
+            on_path ? moray_path_plan_make(&plan, &along, &settings, &gait, (double[]){0, 1}, 0, NULL)
+                    : moray_heading_plan_make(&plan, &heading, &settings, &gait, NULL);
+        CHECK(status.code == MORAY_INPUT && !plan.problem.task && plan.straight.speed == 0, "%s", status.text);
+    }
+    moray_path_free(&path);
+    moray_reference_free(&reference);
+}
+
 // ---- Actuators -----------------------------------------------------------------------------------------------------
 
 typedef struct speaker {
@@ -180,6 +202,7 @@ int main(void)
     test_heading_law(1, 4);
     test_heading_law(-2.5, 8);
     test_plan();
+    test_no_plan();
     for (int dead = 0; dead < 4; dead += 3) {
         test_actuators(dead, 0);
         test_actuators(dead, 0.8);

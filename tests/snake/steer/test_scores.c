@@ -70,6 +70,11 @@ static void test_path(void)
     CHECK_NEAR(score.settled_rms, sqrt((0.16 + 0.04 + 0.09 + 0.01) / 4), 1e-14, "a metre beyond the start");
     CHECK_NEAR(score.settled_largest, 0.4, 1e-14, "at most, to the right");
     CHECK_NEAR(score.power, 72.0 / 16, 1e-14, "power until the end");
+    const moray_swim_closed_loop shorter = {.track = {.n = 6, .t = t, .energy = energy, .pose = pose}};
+    const moray_path_score less = moray_swim_closed_loop_path_score(&shorter, &path, 1);
+    CHECK(isnan(less.time), "what comes after its samples is not looked at: %g s", less.time);
+    CHECK_NEAR(less.rms, sqrt((0.81 + 0.25 + 0.01 + 0.16 + 0.04 + 0.09) / 6), 1e-14, "all its way");
+    CHECK_NEAR(less.power, 50.0 / 15, 1e-14, "power until its end");
     moray_path_free(&path);
 }
 

@@ -180,8 +180,19 @@ static void test_way(const double end[2], double heading, double turn_rate)
     moray_steering_plan_free(&plan);
 }
 
+static void test_none(void)
+{
+    const moray_turn_spec spec = spec_of(MORAY_CONTROL_ORIENTED, NAN);
+    const moray_gait gait = moray_gait_paper(&spec.robot);
+    const moray_settings settings = moray_settings_default();
+    moray_steering_plan plan;
+    CHECK(moray_turn_plan_make(&plan, &spec, &settings, &gait, 0.1, NULL, 1).code == MORAY_INPUT, "no end to turn to");
+    CHECK(!plan.problem.task && plan.straight.speed == 0, "and nothing is left");
+}
+
 int main(void)
 {
+    test_none();
     for (int k = 0; k < 4; k++) {
         const double side = k % 2 ? -1 : 1, rate = k / 2 ? -0.1 : 0.1;
         test_steady(MORAY_CONTROL_ORIENTED, true, side * 100 * DEG, rate);
