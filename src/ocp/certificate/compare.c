@@ -42,7 +42,7 @@ static void compare(const struct witness *w, int p, int n, const double *in_use,
     for (int k = 0; k < block - (timeless ? map->n_out : 0); k++) {
         const int row = k % map->n_out, col = k / map->n_out;
         const double far = (distance(in_use[k], jac[k], kink[k]) - certain * doubt[k]) * size[col];
-        const double moves = out_size[row] > 0 ? out_size[row] : fabs(far); // one that nothing moves has no slope
+        const double moves = out_size[row] > 0 ? out_size[row] : far; // one that nothing moves has no slope
         const double error = isfinite(doubt[k]) && moves > 0 ? far / moves : 0;
         const bool speaks = moray_witness_speaks(doubt[k], kink[k], size[col], out_size[row]);
         tally->all += in_use[k] != 0 || (speaks && jac[k] != 0);

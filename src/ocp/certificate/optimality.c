@@ -175,8 +175,8 @@ static double row_gain(const struct measure *m, int i, struct optimality *o)
 // Beyond what solvers let a bound give way by.
 static double outside(double value, double lower, double upper)
 {
-    const double low = fabs(lower) < MORAY_INFINITY && lower < upper ? give * fabs(lower) : 0;
-    const double high = fabs(upper) < MORAY_INFINITY && lower < upper ? give * fabs(upper) : 0;
+    const double low = lower > -MORAY_INFINITY && lower < upper ? give * fabs(lower) : 0;
+    const double high = upper < MORAY_INFINITY && lower < upper ? give * fabs(upper) : 0;
     return isnan(value) ? INFINITY : fmax(fmax(lower - low - value, value - upper - high), 0);
 }
 

@@ -51,8 +51,8 @@ void moray_size_by_range(struct witness *e, int p)
 {
     const int time = moray_witness_cache(e, p)->map->n_in - 1, parameters = time - e->solution->transcription->ocp->ns;
     double *size = e->phase[p].size;
-    for (int i = 0; i < time; i++)
-        size[i] = i < parameters ? range_of(e, p, i) : fabs(moray_witness_cache(e, p)->in[i]);
+    for (int i = 0; i < parameters; i++)
+        size[i] = range_of(e, p, i);
     for (int i = parameters; i < time; i++)
         size[i] = fabs(moray_solution_parameters(e->solution)[i - parameters]);
     size[time] = fabs(moray_witness_span(e, p));

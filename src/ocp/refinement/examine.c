@@ -111,6 +111,7 @@ static double distance_outside(double value, moray_bounds bounds, double size)
     return far > 0 ? far / ((size > 0 ? size : 1) + fabs(bound)) : 0;
 }
 
+// Interpolated controls are kept within their bounds.
 static double worst_outside(const struct examiner *e)
 {
     const struct phase *phase = &e->solution->transcription->ocp->phase[e->p];
@@ -119,8 +120,6 @@ static double worst_outside(const struct examiner *e)
     double worst = 0;
     for (int r = 0; r < nx; r++)
         worst = fmax(worst, distance_outside(e->in[r], phase->x[r], in_size[r]));
-    for (int r = nx; r < nx + phase->nu; r++)
-        worst = fmax(worst, distance_outside(e->in[r], phase->u[r - nx], in_size[r]));
     for (int r = nx; r < nx + phase->nc; r++)
         worst = fmax(worst, distance_outside(e->out[r], phase->c[r - nx], out_size[r]));
     return worst;
