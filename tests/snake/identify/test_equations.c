@@ -268,6 +268,37 @@ static void test_return(void)
     swum_free(log);
 }
 
+// A heading that was logged turns away is the same.
+static void test_turns(void)
+{
+    static const char *const few[] = {"c_t"};
+    moray_swim_log log[SWUM_LOGS];
+    swum_spec s;
+    moray_identify *v;
+    moray_estimate at;
+    double residual[SWUM_LOGS][MOST_ITEMS], again[MOST_ITEMS];
+    swum_logs(MORAY_FIRST_PRINCIPLES, swum_noise(), log);
+    swum_choose(&s, MORAY_FIRST_PRINCIPLES, few, 1);
+    CHECK_OK(moray_identify_new(&v, &s.spec, log, SWUM_LOGS), "new");
+    moray_identify_start(v, 0, &at);
+    for (int r = 0; r < SWUM_LOGS; r++)
+        CHECK(moray_identify_residual(v, r, &at, residual[r], NULL), "swum");
+    moray_identify_free(v);
+    for (int r = 0; r < SWUM_LOGS; r++)
+        for (int row = 0; row < SWUM_ROWS; row++)
+            log[r].heading[row] += r ? -2 * M_PI : 4 * M_PI;
+    CHECK_OK(moray_identify_new(&v, &s.spec, log, SWUM_LOGS), "new");
+    for (int r = 0; r < SWUM_LOGS; r++) {
+        double worst = 0;
+        CHECK(moray_identify_residual(v, r, &at, again, NULL), "swum");
+        for (int k = 0; k < v->run[r].items; k++)
+            worst = tap_worse(worst, fabs(again[k] - residual[r][k]));
+        CHECK(worst < 1e-9, "run %d: the same residuals, %.1e", r, worst);
+    }
+    moray_identify_free(v);
+    swum_free(log);
+}
+
 // Without iterations nothing is done, with one it has not converged; what cannot be swum is told.
 static void test_iterations(void)
 {
@@ -353,6 +384,7 @@ int main(void)
     test_starts();
     test_bounds();
     test_return();
+    test_turns();
     test_iterations();
     test_not_swum();
     return tap_done();
