@@ -267,6 +267,51 @@ static void test_names(void)
     moray_ocp_free(single);
 }
 
+// ---- Observations ----
+
+static void see(const moray_node *at, moray_num *y, const void *data)
+{
+    (void)data;
+    y[0] = at->x[0], y[1] = at->x[1];
+}
+
+static void test_observations(void)
+{
+    const char *names[] = {"radar", "eye"};
+    double time[] = {3, 2.5, 3.5}, value[] = {1, 2, 3, NAN, 5, 6}, weight[] = {4, 0.5};
+    moray_bounds residual[] = {{-1, 2}, {-3, 4}};
+    const moray_observations plain = {.n = 3, .ny = 2, .time = time, .value = value, .observe = see};
+    moray_phase_spec phase[] = {usual, usual};
+    phase[0].name = "before", phase[0].observed = phase[1].observed = plain;
+    moray_observations *full = &phase[1].observed;
+    full->names = names, full->weight = weight, full->residual = (moray_bounds_list){residual, 2};
+    full->loss = MORAY_HUBER, full->threshold = 1.5, full->sum = moray_between(0, 7), full->events_only = true;
+    moray_ocp *ocp = make(phase, 2);
+    const struct observed *one = &ocp->phase[0].observed, *other = &ocp->phase[1].observed;
+    time[1] = value[2] = value[5] = weight[1] = 77, names[1] = "gone", residual[1] = moray_fixed(77);
+    CHECK(one->n == 3 && one->ny == 2 && one->time[1] == 2.5 && one->time[2] == 3.5 && one->value[2] == 3 &&
+              one->value[5] == 6 && isnan(one->value[3]),
+          "times and values are copied");
+    CHECK(one->weight[0] == 1 && one->weight[1] == 1 && !one->names && !one->residual && !one->has_sum &&
+              !one->events_only && one->loss == MORAY_LEAST_SQUARES,
+          "the rest is as usual");
+    CHECK(other->weight[0] == 4 && other->weight[1] == 0.5 && strcmp(other->names[1], "eye") == 0 &&
+              same(other->residual[0], -1, 2) && same(other->residual[1], -3, 4) && other->has_sum &&
+              same(other->sum, 0, 7) && other->events_only && other->loss == MORAY_HUBER && other->threshold == 1.5,
+          "or as given");
+    moray_ocp_free(ocp);
+    time[1] = 2.5, names[1] = "eye", residual[1] = moray_between(4, -3);
+    refused(phase[1], "residual[1] eye of leg: lower bound 4 is above upper bound -3");
+    residual[1] = moray_free(), full->sum = moray_between(-2, 0);
+    ocp = make(phase, 2);
+    CHECK(ocp->phase[1].observed.has_sum && same(ocp->phase[1].observed.sum, -2, 0), "bounds with one that is 0");
+    moray_ocp_free(ocp);
+    full->sum = moray_between(3, 2);
+    refused(phase[1], "sum of observations[0] of leg: lower bound 3 is above upper bound 2");
+    full->sum = moray_between(0, 7), full->residual.n = 1;
+    refused(phase[1], "residual of leg: 1 bounds given, 2 needed");
+}
+
 // ---- Restart ----
 
 static void restart_refused(moray_ocp *ocp, double t, double length, double second, const char *text)
@@ -307,6 +352,7 @@ int main(void)
     test_lengths();
     test_meshes();
     test_names();
+    test_observations();
     test_restart();
     return tap_done();
 }
