@@ -139,6 +139,60 @@ static void test_inside(void)
     }
 }
 
+// ---- Many waypoints ------------------------------------------------------------------------------------------------
+
+enum { MANY = 40 };
+
+// Of a staircase, read from a list, from a file with its columns the other way round, and given.
+static void test_many(void)
+{
+    const char *const name = "test_path_sides.csv";
+    double waypoint[MANY][2];
+    char list[4000] = "", rows[4000] = "y_m,x_m\n";
+    moray_path path[3];
+    for (int k = 0; k < MANY; k++) {
+        waypoint[k][0] = -1.5 + 3 * (k / 2);
+        waypoint[k][1] = 0.25 + 2 * ((k + 1) / 2);
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%g , %g", k ? " " : "", waypoint[k][0],
+                 waypoint[k][1]);
+        snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%g,%g\n", waypoint[k][1], waypoint[k][0]);
+    }
+    FILE *file = fopen(name, "w");
+    CHECK(file && fputs(rows, file) >= 0 && fclose(file) == 0, "%s is written", name);
+    CHECK_OK(moray_path_read(&path[0], list, 0.5), "a list");
+    CHECK_OK(moray_path_read(&path[1], name, 0.5), "a file");
+    CHECK_OK(moray_path_through(&path[2], (const double(*)[2])waypoint, MANY, 0.5), "waypoints");
+    remove(name);
+    CHECK(path[2].n == 2 * MANY - 3, "legs and the arcs between them: %d", path[2].n);
+    CHECK_NEAR(path[2].length, 20 * 2 + 19 * 3 - (MANY - 2) * (1 - M_PI / 4), 1e-9, "length");
+    for (int k = 0; k < 2; k++) {
+        CHECK(path[k].n == path[2].n &&
+                  memcmp(path[k].piece, path[2].piece, (size_t)path[2].n * sizeof *path[2].piece) == 0,
+              "the same path");
+    }
+    for (int k = 0; k < 3; k++)
+        moray_path_free(&path[k]);
+}
+
+// A list begins with a digit, a sign, a point or a blank; all else is the name of a file.
+static void test_lists(void)
+{
+    static const char *const lists[] = {"+1,2 3,4", "-1,2 3,4", ".5,2 3,4", " 7,8 9,10", "3,0 0,4"};
+    for (int k = 0; k < 5; k++) {
+        moray_path path;
+        CHECK_OK(moray_path_read(&path, lists[k], 1), lists[k]);
+        CHECK(path.n == 1, "one leg");
+        moray_path_free(&path);
+    }
+    moray_path path;
+    moray_status status = moray_path_read(&path, "x1,2 3,4", 1);
+    CHECK(status.code == MORAY_IO && strncmp(status.text, "path x1,2 3,4: neither waypoints", 32) == 0, "%s",
+          status.text);
+    status = moray_path_read(&path, "1,2 3;4", 1);
+    CHECK(status.code == MORAY_INPUT && strcmp(status.text, "path: '3;4': must be waypoints X,Y X,Y ... in m") == 0,
+          "%s", status.text);
+}
+
 // ---- Texts ---------------------------------------------------------------------------------------------------------
 
 static void refuse(const double (*waypoint)[2], int n, double radius, const char *says)
@@ -209,6 +263,8 @@ int main(void)
     test_mirror(false);
     test_mirror(true);
     test_inside();
+    test_many();
+    test_lists();
     test_refused();
     test_currents();
     return tap_done();
