@@ -8,7 +8,7 @@
 struct moray_delay {
     moray_delay_spec spec;
     moray_ocp *ocp;
-    moray_num *past; // scratch [nx + nu], then g[1]
+    moray_num *past; // scratch [nx + nu], then as much for what of the past was not asked for
     moray_bounds *bounds;
 };
 
@@ -25,14 +25,14 @@ static void all_steps(const moray_node *at, moray_rates *out, const void *data)
     const moray_delay *d = data;
     const moray_delay_spec *spec = &d->spec;
     const int nx = spec->nx, nu = spec->nu;
-    moray_num *past_x = d->past, *past_u = past_x + nx, *other_x = past_u + nu, *other_u = other_x + nx;
+    moray_num *past_x = d->past, *past_u = past_x + nx, *unasked = past_u + nu;
     out->g[0] = 0;
     for (int k = 0; k < spec->steps; k++) {
         const moray_num t = at->t + k * spec->step;
         if (k < spec->x_delay)
-            spec->past(t - spec->x_delay * spec->step, past_x, other_u, spec->data);
+            spec->past(t - spec->x_delay * spec->step, past_x, unasked, spec->data);
         if (k < spec->u_delay)
-            spec->past(t - spec->u_delay * spec->step, other_x, past_u, spec->data);
+            spec->past(t - spec->u_delay * spec->step, unasked, past_u, spec->data);
         const moray_delay_node node = {.x = at->x + k * nx,
                                        .u = at->u + k * nu,
                                        .past_x = before(at->x, nx, k, spec->x_delay, past_x),
