@@ -197,6 +197,8 @@ static void test_limited(void)
     const torque_limit limit = {JOINTS, 0.5, room};
     motion m = {{{1, 0, 0}, {0, 0, 0}, {0, 0, 1}}, {1, 1, 1}, 0, 0};
     CHECK(!moray_torque_limited(&limit, efforts, &m, ubar), "a joint without inertia");
+    const torque_limit exact = {JOINTS, 4, room};
+    CHECK(moray_torque_limited(&exact, efforts, &m, ubar) && ubar[0] == 3, "which does not matter at the limit itself");
 }
 
 int main(void)
