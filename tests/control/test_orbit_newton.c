@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// How Newton's method comes to an orbit: from guesses whose defects are all of one sign, and at no cost from where it
+// is there already.
+#include "tap.h"
+
+#include "moray/control/periodic_orbit.h"
+#include "moray/num.h"
+
+static const double probe[] = {0.3, 0.7, 0.4, 0.9, 1.1, 0.6};
+
+static void start_at(double t, double *x, const void *self)
+{
+    (void)t;
+    x[0] = ((const double *)self)[0];
+    x[1] = ((const double *)self)[1];
+}
+
+static moray_periodic_orbit *orbit_of(const moray_map *plant, const moray_map *closing, const char *scheme)
+{
+    moray_periodic_orbit *orbit;
+    const moray_periodic_orbit_spec spec = {
+        .nx = 2, .ns = 1, .plant = plant, .closing = closing, .scheme = scheme, .intervals = 8};
+    CHECK_OK(moray_periodic_orbit_new(&orbit, &spec), "orbit");
+    return orbit;
+}
+
+static moray_map returning(void)
+{
+    static const moray_closing_condition both[] = {{MORAY_CLOSE_RETURNS, 0, 0}, {MORAY_CLOSE_RETURNS, 1, 0}};
+    moray_map closing;
+    CHECK_OK(moray_closing_map(&closing, 2, 1, both, 2), "closing conditions");
+    return closing;
+}
+
+// ---- To rest -------------------------------------------------------------------------------------------------------
+
+// x + x^3 = p is where both come to rest.
+static void resting(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    for (int r = 0; r < 2; r++)
+        out[r] = in[2] - in[r] - in[r] * in[r] * in[r];
+}
+
+// From below or above all defects have one sign.
+static void test_signs(const char *scheme)
+{
+    moray_map plant, closing = returning();
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, resting, NULL, NULL, probe), "plant");
+    for (int k = 0; k < 4; k++) {
+        moray_periodic_orbit *orbit = orbit_of(&plant, &closing, scheme);
+        const double side = k % 2 ? -1 : 1, from[] = {k < 2 ? 0 : 1.5 * side, k < 2 ? 0 : 1.2 * side};
+        const double p[2] = {side, 0.7}, rest = side * 0.6823278038280193;
+        const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+        moray_periodic_orbit_info info;
+        double x[2];
+        CHECK_OK(moray_periodic_orbit_solve(orbit, p, &guess, &info), "found");
+        moray_periodic_orbit_state(orbit, 0.3, x);
+        CHECK_NEAR(x[0], rest, 1e-10, "at rest");
+        CHECK_NEAR(x[1], rest, 1e-10, "and the other one");
+        CHECK(info.residual <= 1e-11 && info.iterations > 2, "to %.1e in %d steps", info.residual, info.iterations);
+        moray_periodic_orbit_free(orbit);
+    }
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
+// ---- A driven spring -----------------------------------------------------------------------------------------------
+
+static void driven(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    out[0] = in[1];
+    out[1] = -in[0] - in[0] * in[0] * in[0] - 0.3 * in[1] + in[2] * ccos(2 * in[3]);
+}
+
+// Solved again it takes the slopes it has, wherever rounding has left it.
+static void test_again(void)
+{
+    moray_map plant, closing = returning();
+    const double from[2] = {0.1, 0};
+    const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+    moray_periodic_orbit_info info;
+    int by_old = 0;
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, driven, NULL, NULL, probe), "plant");
+    for (int k = 0; k < 12; k++) {
+        moray_periodic_orbit *orbit = orbit_of(&plant, &closing, "radau3");
+        double p[2] = {0.2 + 0.07 * k, M_PI};
+        CHECK_OK(moray_periodic_orbit_solve(orbit, p, &guess, &info), "found");
+        CHECK(info.slopes >= 1, "by %d slopes", info.slopes);
+        CHECK_OK(moray_periodic_orbit_solve(orbit, p, NULL, &info), "again");
+        by_old += info.slopes == 0 && info.iterations == 1;
+        p[0] *= 1 + 1e-4;
+        CHECK_OK(moray_periodic_orbit_solve(orbit, p, NULL, &info), "a little further");
+        CHECK(info.residual <= 1e-11 && info.iterations >= 1 && info.iterations <= 12, "in %d steps", info.iterations);
+        moray_periodic_orbit_free(orbit);
+    }
+    CHECK(by_old == 12, "%d of 12 by no slopes of their own", by_old);
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
+int main(void)
+{
+    test_signs("radau3");
+    test_signs("gauss2");
+    test_signs("lobatto3");
+    test_again();
+    return tap_done();
+}
