@@ -88,7 +88,7 @@ moray_status moray_sim_advance(moray_sim *sim, double t)
     if (!(t >= sim->t && isfinite(t)))
         return moray_error(MORAY_INPUT, "simulation to t = %.10g: must be finite and not before the present t = %.10g",
                            t, sim->t);
-    if (t - sim->t <= 100 * DBL_EPSILON * fmax(fabs(t), fabs(sim->t))) { // too short a way for a step
+    if (t - sim->t <= 100 * DBL_EPSILON * fmax(t, -sim->t)) { // too short a way for a step
         sim->t = t;
         return moray_ok();
     }
