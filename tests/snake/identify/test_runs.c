@@ -112,6 +112,53 @@ static void test_grid(void)
     swum_free(log);
 }
 
+// ---- First states --------------------------------------------------------------------------------------------------
+
+// Of a straight line by a camera that is turned, without headings: it looks where it goes, from the first row to the
+// last, or as fast as it begins where the last is missing.
+static void check_guess(moray_model model, bool rest, int missing)
+{
+    static const char *const few[] = {"c_t"};
+    const double turned = 0.4, camera[2] = {0.3, -0.2}, way = atan2(0.4, -0.3) - turned;
+    moray_swim_log log[SWUM_LOGS];
+    swum_spec s;
+    moray_identify *v;
+    moray_estimate at;
+    swum_logs(model, (moray_swim_log_noise){0}, log);
+    for (int row = 0; row < SWUM_ROWS; row++) {
+        log[0].p_x[row] = 1 - 0.3 * row * swum_step;
+        log[0].p_y[row] = 0.2 + 0.4 * row * swum_step;
+    }
+    if (missing >= 0)
+        log[0].p_y[missing] = NAN;
+    log[0].heading = NULL;
+    swum_choose(&s, model, few, 1);
+    s.spec.rest = rest;
+    CHECK_OK(moray_identify_new(&v, &s.spec, log, 1), "new");
+    moray_identify_start(v, 0, &at);
+    const double h = model == MORAY_CONTROL_ORIENTED ? way : 0, *got = at.first[0]; // the other's are along x and y
+    const double want[FIRST] = {way,
+                                cos(turned) * 1 + sin(turned) * 0.2 + camera[0],
+                                -sin(turned) * 1 + cos(turned) * 0.2 + camera[1],
+                                0,
+                                rest ? 0 : 0.5 * cos(way - h),
+                                rest ? 0 : 0.5 * sin(way - h)};
+    for (int i = 0; i < FIRST; i++)
+        CHECK_NEAR(remainder(got[i] - want[i], 2 * M_PI), 0, 1e-6, "first state");
+    moray_identify_free(v);
+    swum_free(log);
+}
+
+static void test_guesses(void)
+{
+    for (int model = 0; model < 2; model++)
+        for (int rest = 0; rest < 2; rest++) {
+            check_guess((moray_model)model, rest, -1);
+            check_guess((moray_model)model, rest, 0);
+            check_guess((moray_model)model, rest, SWUM_ROWS - 1);
+        }
+}
+
 // ---- Refusals ------------------------------------------------------------------------------------------------------
 
 static void refused(const swum_spec *s, const moray_swim_log *log, int logs, const char *text)
@@ -189,6 +236,7 @@ int main(void)
     moray_swim_log log[SWUM_LOGS];
     test_items();
     test_grid();
+    test_guesses();
     swum_logs(MORAY_FIRST_PRINCIPLES, swum_noise(), log);
     test_spec_refused(log);
     test_logs_refused(log);
