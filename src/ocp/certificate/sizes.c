@@ -44,7 +44,7 @@ static double range_of(const struct witness *e, int p, int i)
         least = fmin(least, cache->in[n * cache->map->n_in + i]);
         most = fmax(most, cache->in[n * cache->map->n_in + i]);
     }
-    return fmax(most - least, least_part * fmax(fabs(least), fabs(most)));
+    return fmax(most - least, least_part * fmax(-least, most));
 }
 
 void moray_size_by_range(struct witness *e, int p)

@@ -44,7 +44,7 @@ static void goal(const moray_ends *at, moray_end_values *out, const void *data)
 
 static double state(int i, double tau)
 {
-    return i == 0 ? -4 + 3 * tau : i == 1 ? -500 : i == 3 ? 6 * tau - 3 : i == 4 ? 0.2 + tau : 0;
+    return i == 0 ? -4 + 3 * tau : i == 1 ? tau / 10 - 500 : i == 3 ? 6 * tau - 3 : i == 4 ? 0.2 + tau : 0;
 }
 
 static double control(int i, double tau)
@@ -89,12 +89,12 @@ static void check_inputs(const struct witness *w, struct reach reach, double nea
 {
     const double *size = w->phase[0].size, range = reach.most - reach.least;
     CHECK_RELATIVE(size[0], 3 * range, near, "the range of the first state");
-    CHECK_RELATIVE(size[1], 0.5, near, "a thousandth of one that stands at -500");
+    CHECK_RELATIVE(size[1], 0.5 - 1e-4 * reach.least, near, "a thousandth of one that hardly moves from -500");
     CHECK_RELATIVE(size[2], 0.1 * (3 * range) / (0.25 * T_SPAN), near, "a tenth of what moves the first state");
     CHECK_RELATIVE(size[3], 1.5, near, "no more than its bounds are apart");
     CHECK_RELATIVE(size[4], range, near, "less than its bounds are apart");
     CHECK_RELATIVE(size[NX], 6 * range, near, "the range of the first control");
-    CHECK_RELATIVE(size[NX + 1], 0.1 * fmin(3 * range / (2 * T_SPAN), 0.5 / (10 * T_SPAN)), near,
+    CHECK_RELATIVE(size[NX + 1], 0.1 * fmin(3 * range / (2 * T_SPAN), size[1] / (10 * T_SPAN)), near,
                    "a tenth of what moves the state that is moved most easily");
     CHECK_RELATIVE(size[NX + 2], 3 * range, near, "the range of the last control");
     CHECK_RELATIVE(size[NX + NU], 2, near, "a parameter, whatever its sign");
