@@ -119,13 +119,11 @@ static moray_status build(moray_delay *d)
                                     .xf = spread(spec, spec->xf, spec->nx, last, last, &next),
                                     .u = spread(spec, spec->u, spec->nu, 0, last, &next),
                                     .c = spread(spec, spec->c, spec->nc, 0, last, &next)};
-    for (int i = 0; i < joins; i++)
-        next[i] = moray_fixed(0);
     return moray_ocp_new(&d->ocp, &(moray_ocp_spec){.name = spec->name,
                                                     .phases = 1,
                                                     .phase = &phase,
                                                     .ne = joins,
-                                                    .e = {next, joins},
+                                                    .e = {next, joins}, // zeroed, which fixes them to 0
                                                     .endpoint = join_steps,
                                                     .data = d});
 }
