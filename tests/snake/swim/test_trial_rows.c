@@ -94,9 +94,24 @@ static void test_steady(void)
           "a course that is not held has no speed along it");
 }
 
+// By links: 15 to 90 deg for those whose paper's gait has 40 deg, and what that is of a shorter or longer robot's.
+static void test_usual_delta(void)
+{
+    static const double expected[][3] = {
+        {10, 15, 90}, {5, 15, 150}, {8, 15, 2.25 * 360 / 7}, {31, 4.5, 90}, {401, 1, 90}};
+    for (int k = 0; k < 5; k++) {
+        moray_robot robot = moray_robot_paper();
+        robot.links = (int)expected[k][0];
+        const moray_bounds delta = moray_gait_usual_delta(&robot);
+        CHECK_NEAR(delta.lower / DEG, expected[k][1], 1e-12, "least delta [deg]");
+        CHECK_NEAR(delta.upper / DEG, expected[k][2], 1e-12, "most delta [deg]");
+    }
+}
+
 int main(void)
 {
     test_gaits();
     test_steady();
+    test_usual_delta();
     return tap_done();
 }
