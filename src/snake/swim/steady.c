@@ -61,24 +61,18 @@ static moray_status advance(closed_loop *v, double t, moray_swim_sample *now)
     return moray_ok();
 }
 
-// Relative changes of speed and power over the last period, and how much these differ from the ones before.
-typedef struct {
-    double speed, power, bend;
-} changes;
-
 static double change(double now, double before)
 {
     return (now - before) / fmax(fabs(now), SLOW);
 }
 
-static changes changes_between(const moray_steady *before, const moray_steady *now, const changes *earlier)
+steady_changes moray_steady_changes(const moray_steady *before, const moray_steady *now, const steady_changes *earlier)
 {
     const double speed = change(now->speed, before->speed), power = change(now->power, before->power);
-    return (changes){speed, power, fmax(fabs(speed - earlier->speed), fabs(power - earlier->power))};
+    return (steady_changes){speed, power, fmax(fabs(speed - earlier->speed), fabs(power - earlier->power))};
 }
 
-// No change, or nothing but the trend with which the first-principles model turns in a cross current.
-static bool settled(const changes *now, double agreement)
+bool moray_steady_settled(const steady_changes *now, double agreement)
 {
     const double largest = fmax(fabs(now->speed), fabs(now->power));
     return largest < agreement || (largest < TREND && now->bend < agreement);
@@ -88,7 +82,7 @@ static bool settled(const changes *now, double agreement)
 static moray_status settle(closed_loop *v, int min_periods, moray_steady *steady, moray_swim_sample *now)
 {
     const moray_swim_settings *settings = &v->setup->settings;
-    changes last = {.speed = INFINITY, .power = INFINITY};
+    steady_changes last = {.speed = INFINITY, .power = INFINITY};
     MORAY_TRY(advance(v, 0, now));
     for (int k = 1; k < settings->max_periods; k++) {
         const moray_swim_sample start = *now;
@@ -96,8 +90,8 @@ static moray_status settle(closed_loop *v, int min_periods, moray_steady *steady
         MORAY_TRY(advance(v, k * v->period, now));
         means(v, &start, now, steady);
         steady->periods = k;
-        last = changes_between(&before, steady, &last);
-        if (k > 1 && k + 1 >= min_periods && settled(&last, settings->agreement))
+        last = moray_steady_changes(&before, steady, &last);
+        if (k > 1 && k + 1 >= min_periods && moray_steady_settled(&last, settings->agreement))
             return moray_ok();
     }
     return moray_error(MORAY_NOT_SOLVED,

@@ -53,6 +53,33 @@ static void test_offsets(void)
           "both, in contradiction");
 }
 
+// Waves that run the other way in terms that agree to 1e-6, and in terms that do not, on either side.
+static void test_negative(void)
+{
+    const double a = 0.14 * cos(20 * DEG) * sin(-15 * DEG);
+    moray_gait_input input = moray_gait_input_default();
+    moray_gait gait;
+    input.theta_max = -15 * DEG;
+    for (int side = -1; side <= 1; side += 2) {
+        input.a = a * (1 + side * 0.9e-6);
+        CHECK_NEAR(made(&input, MORAY_CONTROL_ORIENTED).amplitude, a, 1e-15, "the first of two that agree");
+        input.a = a * (1 + side * 1.1e-6);
+        const moray_status status = moray_gait_input_make(&input, &robot, MORAY_CONTROL_ORIENTED, &gait);
+        CHECK(status.code == MORAY_INPUT && strstr(status.text, "contradicts theta_max_deg = -15: give one of them"),
+              "two that do not: %s", status.text);
+    }
+    for (int side = -1; side <= 1; side += 2) {
+        input = moray_gait_input_default();
+        input.alpha = side * 2 * sin(20 * DEG) * 89 * DEG;
+        CHECK_NEAR(made(&input, MORAY_CONTROL_ORIENTED).amplitude, side * 0.14 * cos(20 * DEG) * sin(89 * DEG), 1e-12,
+                   "link angles of 89 deg");
+        input.alpha = side * 2 * sin(20 * DEG) * 91 * DEG;
+        const moray_status status = moray_gait_input_make(&input, &robot, MORAY_CONTROL_ORIENTED, &gait);
+        CHECK(status.code == MORAY_INPUT && strstr(status.text, "no link-angle amplitude below 90 deg"),
+              "but not of 91: %s", status.text);
+    }
+}
+
 static FILE *start(char path[32])
 {
     strcpy(path, "/tmp/gait_XXXXXX");
@@ -97,6 +124,7 @@ int main(void)
     robot = moray_robot_paper();
     test_amplitudes();
     test_offsets();
+    test_negative();
     test_inheritance();
     return tap_done();
 }
