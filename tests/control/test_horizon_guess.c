@@ -16,7 +16,7 @@ typedef struct asked {
 } asked;
 
 static asked seen[LOG];
-static int n_seen;
+static int n_seen, n_problems; // the latter of those not yet freed
 
 // Real points of a nonlinear spring with a parameter, which is drawn to 0.3.
 static void spring(const moray_node *at, moray_rates *out, const void *data)
@@ -49,6 +49,7 @@ static moray_status make(void *self, double t, const double *x, void **problem, 
                                     .tf = moray_fixed(t + horizon),
                                     .x0 = MORAY_BOUNDS(moray_fixed(x[0]), moray_fixed(x[1]))};
     MORAY_TRY(moray_ocp_new(&made, &(moray_ocp_spec){.phases = 1, .phase = &phase, .ns = 1, .endpoint = integral}));
+    n_problems++;
     *problem = made;
     *ocp = made;
     return moray_ok();
@@ -56,6 +57,7 @@ static moray_status make(void *self, double t, const double *x, void **problem, 
 
 static void release(void *problem)
 {
+    n_problems--;
     moray_ocp_free(problem);
 }
 
@@ -223,8 +225,10 @@ static void test_record(void)
         CHECK(record->plans == k + 1 && took > 0 && record->longest == longest, "the longest of %d: %g s", k + 1,
               record->longest);
         CHECK_NEAR(record->seconds, seconds, 1e-12, "all together [s]");
+        CHECK(n_problems == 1, "%d problems kept", n_problems);
     }
     moray_receding_horizon_free(receding);
+    CHECK(n_problems == 0, "and none in the end");
 }
 
 int main(void)

@@ -195,6 +195,58 @@ static void test_singular(void)
     moray_kalman_free(filter);
 }
 
+// ---- What is seen is no sum ---------------------------------------------------------------------------------------
+
+static void see_square(void *self, const double *x, double *z)
+{
+    (void)self;
+    z[0] = x[0] * x[0];
+}
+
+// Of one state two points, x +- sqrt P: their squares are P larger than that of x in the mean.
+static void test_square(void)
+{
+    const double x = 1.5, P = 0.16, error = 0.3, z = 3.1;
+    moray_kalman *filter;
+    CHECK_OK(moray_kalman_new(&filter, 1, &x, &P), "new");
+    CHECK_OK(moray_kalman_update(filter, 1, see_square, NULL, &z, &error, 0), "updated");
+    const double gain = 2 * x * P / (4 * x * x * P + error);
+    CHECK_NEAR(moray_kalman_estimate(filter)[0], x + gain * (z - x * x - P), 1e-14, "estimate");
+    CHECK_NEAR(moray_kalman_covariance(filter, 0, 0), P - gain * 2 * x * P, 1e-14, "variance");
+    moray_kalman_free(filter);
+}
+
+static void see_squares(void *self, const double *x, double *z)
+{
+    (void)self;
+    z[0] = x[0] * x[0];
+    z[1] = x[1] * x[1];
+}
+
+// Of two states four points, x +- sqrt(2 P) along each: squares vary by 4 x^2 P + P^2, and together by -P0 P1.
+static void test_squares(void)
+{
+    const double x[2] = {1.5, -0.8}, P[2] = {0.16, 0.3}, error[2] = {0.3, 0.1}, z[2] = {3.1, 0.2};
+    moray_kalman *filter;
+    CHECK_OK(moray_kalman_new(&filter, 2, x, P), "new");
+    CHECK_OK(moray_kalman_update(filter, 2, see_squares, NULL, z, error, 0), "updated");
+    double S[2], C[2], step[2];
+    for (int i = 0; i < 2; i++) {
+        S[i] = 4 * x[i] * x[i] * P[i] + P[i] * P[i] + error[i];
+        C[i] = 2 * x[i] * P[i];
+        step[i] = z[i] - x[i] * x[i] - P[i];
+    }
+    const double beside = -P[0] * P[1], det = S[0] * S[1] - beside * beside;
+    for (int i = 0; i < 2; i++) {
+        const int j = 1 - i;
+        const double own = C[i] * S[j] / det, other = -C[i] * beside / det; // the gains
+        CHECK_NEAR(moray_kalman_estimate(filter)[i], x[i] + own * step[i] + other * step[j], 1e-13, "estimate");
+        CHECK_NEAR(moray_kalman_covariance(filter, i, i), P[i] - own * C[i], 1e-13, "variance");
+        CHECK_NEAR(moray_kalman_covariance(filter, i, j), -other * C[j], 1e-13, "covariance");
+    }
+    moray_kalman_free(filter);
+}
+
 // ---- Refusals ------------------------------------------------------------------------------------------------------
 
 static bool blow(void *self, double time, double *x)
@@ -262,6 +314,8 @@ int main(void)
     test_known();
     test_together();
     test_singular();
+    test_square();
+    test_squares();
     test_many();
     test_refusals();
     return tap_done();

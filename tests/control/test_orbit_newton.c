@@ -68,9 +68,11 @@ static void test_signs(const char *scheme)
 
 // ---- A driven spring -----------------------------------------------------------------------------------------------
 
+// Its states' rates, and an output of its own.
 static void driven(void *self, const moray_num *in, moray_num *out)
 {
     (void)self;
+    out[2] = in[0] * in[0] * in[2] + in[1] * in[1] * in[1] * in[1] + in[3] * in[0];
     out[0] = in[1];
     out[1] = -in[0] - in[0] * in[0] * in[0] - 0.3 * in[1] + in[2] * ccos(2 * in[3]);
 }
@@ -83,7 +85,7 @@ static void test_again(void)
     const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
     moray_periodic_orbit_info info;
     int by_old = 0;
-    CHECK_OK(moray_map_from_complex(&plant, 4, 2, driven, NULL, NULL, probe), "plant");
+    CHECK_OK(moray_map_from_complex(&plant, 4, 3, driven, NULL, NULL, probe), "plant");
     for (int k = 0; k < 12; k++) {
         moray_periodic_orbit *orbit = orbit_of(&plant, &closing, "radau3");
         double p[2] = {0.2 + 0.07 * k, M_PI};
@@ -101,8 +103,38 @@ static void test_again(void)
     moray_map_release(&closing);
 }
 
+// The mean of an output over the period: its slopes against differences of it.
+static void test_mean(const char *scheme)
+{
+    moray_map plant, closing = returning();
+    const double from[2] = {0.1, 0}, h = 1e-5;
+    const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+    moray_periodic_orbit_info info;
+    double by[2], mean[2];
+    CHECK_OK(moray_map_from_complex(&plant, 4, 3, driven, NULL, NULL, probe), "plant");
+    moray_periodic_orbit *orbit = orbit_of(&plant, &closing, scheme);
+    for (int k = 0; k < 2; k++) {
+        for (int side = 0; side < 2; side++) {
+            double p[2] = {0.6, M_PI};
+            p[k] += side ? h : -h;
+            CHECK_OK(moray_periodic_orbit_solve(orbit, p, &guess, &info), "beside");
+            mean[side] = moray_periodic_orbit_integral(orbit, 2, p[1]) / p[1];
+        }
+        CHECK_OK(moray_periodic_orbit_solve(orbit, (double[]){0.6, M_PI}, &guess, &info), "found");
+        CHECK_OK(moray_periodic_orbit_mean_gradient(orbit, 2, by), "gradient");
+        CHECK_NEAR(by[k], (mean[1] - mean[0]) / (2 * h), 1e-6, k ? "by the period" : "by the parameter");
+        CHECK(fabs(by[k]) > 1e-3, "which counts: %g", by[k]);
+    }
+    moray_periodic_orbit_free(orbit);
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
 int main(void)
 {
+    test_mean("radau3");
+    test_mean("gauss3");
+    test_mean("lobatto4");
     test_signs("radau3");
     test_signs("gauss2");
     test_signs("lobatto3");

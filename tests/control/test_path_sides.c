@@ -208,6 +208,10 @@ static void test_refused(void)
     const double good[][2] = {{0, 0}, {5, 0}, {5, 9}}, endless[][2] = {{0, 0}, {1, 2}, {3, INFINITY}, {4, 4}},
                  undefined[][2] = {{NAN, 1}, {1, 2}}, again[][2] = {{0, 0}, {2, 3}, {2, 3 + 5e-10}, {9, 9}},
                  back[][2] = {{0, 0}, {9, 0}, {9, -1}, {0, -1}};
+    moray_path least;
+    CHECK_OK(moray_path_through(&least, (const double[][2]){{0, 0}, {1e-9, 0}}, 2, 1), "just apart");
+    CHECK(least.n == 1 && least.length == 1e-9, "a leg of %g m", least.length);
+    moray_path_free(&least);
     refuse(good, 3, 0, "radius_m = 0: must be above 0");
     refuse(good, 3, INFINITY, "radius_m = inf: must be above 0");
     refuse(good, 1, 1, "path: 1 waypoint: must be at least 2");

@@ -42,6 +42,10 @@ static void test_heading(void)
     score = judge((double[]){0.1, 0.1, 0.3, -0.5}, 4, &jumping);
     CHECK_NEAR(score.largest, 0.9, 1e-15, "largest just after a jump");
     CHECK_NEAR(score.rms, sqrt((square(0, 0) + square(0, 0.2) + square(0.9, 0.1)) / 3), 1e-15, "across it");
+    to[1] = 1.1;
+    score = judge((double[]){0.1, 0.1, 0.2, 0.9}, 4, &jumping);
+    CHECK_NEAR(score.largest, 0.9, 1e-15, "largest just after a jump to the other side");
+    to[1] = -0.6;
     score = judge((double[]){0.1, 0.1, 0.3}, 3, &jumping);
     CHECK_NEAR(score.largest, 0.2, 1e-15, "what comes after the end does not count");
     score = judge((double[]){0.1, 0.1, -0.8, -0.5}, 4, &jumping);
