@@ -163,11 +163,31 @@ static void verdict_of(double first, double others, int without, unsigned found_
     CHECK(strcmp(text, expected) == 0, "%s", text);
 }
 
+// Gains to either side of nothing, with what rounds to it; two ladders beside each other.
+static void check_table(void)
+{
+    static const double gain[] = {-3, 0.0049, -0.0049, 0.0051, -0.0051, 2}, shown[] = {-3, 0, 0, 0.0051, -0.0051, 2};
+    moray_ladder_row one[MORAY_RUNGS], other[MORAY_RUNGS];
+    const moray_ladder_row *const ladders[] = {one, other};
+    moray_table_row rows[MORAY_RUNGS];
+    for (int k = 0; k < MORAY_RUNGS; k++) {
+        one[k] = (moray_ladder_row){.model = k % 2 ? "odd" : "even", .gain_percent = gain[k % 6]};
+        other[k] = (moray_ladder_row){.model = "other", .gain_percent = k == 1 ? NAN : -7.0 - k};
+    }
+    CHECK(moray_ladder_rows(ladders, 2, rows) == MORAY_RUNGS, "a row each");
+    for (int k = 0; k < MORAY_RUNGS; k++) {
+        CHECK(strcmp(rows[k].label, k % 2 ? "odd" : "even") == 0 && strcmp(rows[k].unit, "%") == 0, "label");
+        CHECK(rows[k].value[0] == shown[k % 6], "gain %g: %g", one[k].gain_percent, rows[k].value[0]);
+        CHECK(k == 1 ? isnan(rows[k].value[1]) : rows[k].value[1] == -7 - k, "the other's");
+    }
+}
+
 int main(void)
 {
     check_rungs();
     check_notes();
     check_left_out();
+    check_table();
     verdict_of(4.03, 1.3, -1, 1, "wins on all 15, from +1.30 to +4.03 %");
     verdict_of(4.03, -1.3, -1, 1, "wins only on the model it was found on, 1 of 15, from -1.30 to +4.03 %");
     verdict_of(4.03, -1.3, -1, 3, "wins only on the models it was found on, 1 of 15, from -1.30 to +4.03 %");
