@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+//
+// What simulators refuse, on either side of every bound, and what they say where they can go no further.
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/sim.h"
+#include "sim/times.h"
+
+static void says(moray_status status, moray_code code, const char *text)
+{
+    CHECK(status.code == code && strcmp(status.text, text) == 0, "%s, not %s", status.text, text);
+}
+
+static void test_settings(void)
+{
+    moray_sim_settings s = moray_sim_settings_default();
+    s.rtol = 1e-14;
+    CHECK_OK(moray_sim_settings_check(&s), "least rtol");
+    s.rtol = 0.9e-14;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "rtol = 9e-15: must be at least 1e-14 and below 1");
+    s.rtol = 1;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "rtol = 1: must be at least 1e-14 and below 1");
+    s.rtol = 0.99;
+    CHECK_OK(moray_sim_settings_check(&s), "most rtol");
+    s.atol = 0;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "atol = 0: must be finite and above 0");
+    s.atol = INFINITY;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "atol = inf: must be finite and above 0");
+    s.atol = -1;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "atol = -1: must be finite and above 0");
+    s.atol = 1e-300;
+    s.max_step = -1;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "max_step = -1: must be finite and at least 0 (no limit)");
+    s.max_step = INFINITY;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "max_step = inf: must be finite and at least 0 (no limit)");
+    s.max_step = 1e-300;
+    s.max_steps = 0;
+    says(moray_sim_settings_check(&s), MORAY_INPUT, "max_steps = 0: must be at least 1");
+    s.max_steps = 1;
+    CHECK_OK(moray_sim_settings_check(&s), "one step");
+    for (int method = -1; method <= 3; method++) {
+        s.method = (moray_sim_method)method;
+        CHECK(moray_failed(moray_sim_settings_check(&s)) == (method < 0 || method > 2), "method %d", method);
+    }
+}
+
+static void test_times(void)
+{
+    CHECK_OK(moray_sim_check_times(2, 2, (double[]){2, 2}, 2), "no way, twice");
+    CHECK_OK(moray_sim_check_times(-1, 2, (double[]){-1, 0.5, 0.5, 2}, 4), "from end to end");
+    says(moray_sim_check_times(2, 1.5, NULL, 0), MORAY_INPUT,
+         "simulation from t0 = 2 to t1 = 1.5: must be finite, t1 not before t0");
+    CHECK(moray_failed(moray_sim_check_times(0, INFINITY, NULL, 0)), "an end that is not finite");
+    CHECK(moray_failed(moray_sim_check_times(-INFINITY, 0, NULL, 0)), "nor a start");
+    says(moray_sim_check_times(-1, 2, (double[]){-1.5}, 1), MORAY_INPUT, "times[0] = -1.5: must lie between -1 and 2");
+    says(moray_sim_check_times(-1, 2, (double[]){0, 0.5, 0.25}, 3), MORAY_INPUT,
+         "times[2] = 0.25: must lie between 0.5 and 2");
+    says(moray_sim_check_times(-1, 2, (double[]){0, 2.5}, 2), MORAY_INPUT, "times[1] = 2.5: must lie between 0 and 2");
+}
+
+// One of three slopes is not finite once the time is 1.
+static bool one_of_three(double t, const double *x, double *dx, void *self)
+{
+    (void)x;
+    for (int i = 0; i < 3; i++)
+        dx[i] = t >= 1 && i == *(int *)self ? INFINITY : 1;
+    return true;
+}
+
+// x' = x^2 from 1 is gone at 1.
+static bool explosion(double t, const double *x, double *dx, void *self)
+{
+    (void)t, (void)self;
+    dx[0] = x[0] * x[0];
+    return true;
+}
+
+static void test_states(moray_sim_method method)
+{
+    moray_sim_settings settings = moray_sim_settings_default();
+    settings.method = method;
+    settings.rtol = settings.atol = 1e-6;
+    for (int i = 0; i < 3; i++) {
+        moray_sim *sim;
+        double x[3] = {1, 2, 3};
+        CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 3, .rhs = one_of_three, .self = &i}, &settings), "new");
+        x[i] = NAN;
+        CHECK(moray_sim_start(sim, 0, x).code == MORAY_NUMERIC, "no start from a NaN");
+        x[i] = i + 1;
+        CHECK_OK(moray_sim_start(sim, 0, x), "start");
+        const moray_status status = moray_sim_advance(sim, 2);
+        CHECK(status.code == MORAY_NUMERIC && strstr(status.text, "outside its domain or not finite"), "slope %d: %s",
+              i, status.text);
+        CHECK_NEAR(moray_sim_time(sim), 1, 1e-6, "up to there");
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(moray_sim_state(sim)[k], k + 2, 1e-5, "state");
+        moray_sim_free(sim);
+    }
+    moray_sim *sim;
+    CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 1, .rhs = explosion}, &settings), "new");
+    CHECK_OK(moray_sim_start(sim, 0, (double[]){1}), "start");
+    const moray_status status = moray_sim_advance(sim, 2);
+    CHECK(status.code == MORAY_NUMERIC && strstr(status.text, "with ever shorter steps"), "no way on: %s", status.text);
+    moray_sim_free(sim);
+}
+
+int main(void)
+{
+    test_settings();
+    test_times();
+    for (int method = MORAY_SIM_EXPLICIT; method <= MORAY_SIM_TR_BDF2; method++)
+        test_states((moray_sim_method)method);
+    return tap_done();
+}
