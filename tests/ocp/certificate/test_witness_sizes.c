@@ -9,9 +9,9 @@
 
 #include "ocp/certificate/sizes.h"
 
-enum { NX = 5, NU = 3, NC = 4, NQ = 2, NS = 2, T_SPAN = 2, TIME = NX + NU + NS, OUT = NX + NC + NQ };
+enum { NX = 6, NU = 3, NC = 4, NQ = 2, NS = 2, T_SPAN = 2, TIME = NX + NU + NS, OUT = NX + NC + NQ };
 
-// Of a phase from 1 to 3; the second is longer.
+// Of a phase from 1 to 3, or back; the second is longer.
 static void drive(const moray_node *at, moray_rates *out, const void *data)
 {
     const moray_num *x = at->x, *u = at->u, *s = at->s;
@@ -21,6 +21,7 @@ static void drive(const moray_node *at, moray_rates *out, const void *data)
     out->f[2] = (at->t - 4) * u[2];
     out->f[3] = 0;
     out->f[4] = 0;
+    out->f[5] = 0;
     out->c[0] = -u[0] * u[0];
     out->c[1] = 3 * x[0] - 0.125 * x[1] + s[0];
     out->c[2] = at->t * 7 - s[0] * 2;
@@ -44,7 +45,12 @@ static void goal(const moray_ends *at, moray_end_values *out, const void *data)
 
 static double state(int i, double tau)
 {
-    return i == 0 ? -4 + 3 * tau : i == 1 ? tau / 10 - 500 : i == 3 ? 6 * tau - 3 : i == 4 ? 0.2 + tau : 0;
+    return i == 0   ? -4 + 3 * tau
+           : i == 1 ? tau / 10 - 500
+           : i == 3 ? 6 * tau - 3
+           : i == 4 ? 0.2 + tau
+           : i == 5 ? 1e-9 * tau
+                    : 0;
 }
 
 static double control(int i, double tau)
@@ -56,7 +62,17 @@ struct reach { // of tau at the nodes that are collocated
     double least, most;
 };
 
-static struct reach set_iterate(moray_solution *solution)
+// Multipliers: of the last state's defects, with either sign, and of the integral that is 0.
+static void set_multipliers(const moray_solution *solution)
+{
+    const struct phase_layout *layout = &solution->transcription->layout.phase[0];
+    for (int k = 0; k < layout->mesh.intervals; k++)
+        for (int i = 0; i < layout->interval[k].scheme->points - 1; i++)
+            solution->iterate.lambda[layout->interval[k].defect + i * NX + NX - 1] = (k % 2 ? 3 : -7) * (100.0 + k);
+    solution->iterate.lambda[layout->integral_row + 1] = -1e3;
+}
+
+static struct reach set_iterate(moray_solution *solution, bool backwards)
 {
     struct transcription *t = solution->transcription;
     struct reach reach = {1, 0};
@@ -76,6 +92,9 @@ static struct reach set_iterate(moray_solution *solution)
         }
     solution->iterate.x[t->layout.s] = -2;
     solution->iterate.x[t->layout.s + 1] = 0;
+    solution->iterate.x[t->layout.phase[0].t0] = backwards ? 1 + T_SPAN : 1;
+    solution->iterate.x[t->layout.phase[0].tf] = backwards ? 1 : 1 + T_SPAN;
+    set_multipliers(solution);
     CHECK(moray_transcription_jacobians(t, solution->iterate.x), "finite");
     return reach;
 }
@@ -85,7 +104,17 @@ static double slope_of(const struct witness *w, int in, int out)
     return w->phase[0].slope[in * OUT + out];
 }
 
-static void check_inputs(const struct witness *w, struct reach reach, double near)
+static double largest_costate(const struct witness *w)
+{
+    double costate[100 * NX], largest = 0;
+    const int nodes = moray_solution_nodes(w->solution, 0, NULL, costate);
+    for (int n = 0; n < nodes; n++)
+        largest = fmax(largest, fabs(costate[n * NX + NX - 1]));
+    CHECK(largest > moray_witness_objective(w), "which is large: %g", largest);
+    return largest;
+}
+
+static void check_inputs(const struct witness *w, struct reach reach, bool backwards, double near)
 {
     const double *size = w->phase[0].size, range = reach.most - reach.least;
     CHECK_RELATIVE(size[0], 3 * range, near, "the range of the first state");
@@ -93,6 +122,8 @@ static void check_inputs(const struct witness *w, struct reach reach, double nea
     CHECK_RELATIVE(size[2], 0.1 * (3 * range) / (0.25 * T_SPAN), near, "a tenth of what moves the first state");
     CHECK_RELATIVE(size[3], 1.5, near, "no more than its bounds are apart");
     CHECK_RELATIVE(size[4], range, near, "less than its bounds are apart");
+    CHECK_RELATIVE(size[5] / 1e-3, fmin(1, moray_witness_objective(w) / largest_costate(w)), near,
+                   "a part of what matters by its costate");
     CHECK_RELATIVE(size[NX], 6 * range, near, "the range of the first control");
     CHECK_RELATIVE(size[NX + 1], 0.1 * fmin(3 * range / (2 * T_SPAN), size[1] / (10 * T_SPAN)), near,
                    "a tenth of what moves the state that is moved most easily");
@@ -104,7 +135,8 @@ static void check_inputs(const struct witness *w, struct reach reach, double nea
     CHECK_RELATIVE(slope_of(w, NX + 1, 0), 2, near, "a slope");
     CHECK_RELATIVE(slope_of(w, NX + 1, 1), 10, near, "one that is negative");
     CHECK_RELATIVE(slope_of(w, 2, 0), 0.25, near, "another");
-    CHECK_RELATIVE(slope_of(w, NX + 2, 2), 3 - T_SPAN * reach.least, near, "the largest along the phase");
+    CHECK_RELATIVE(slope_of(w, NX + 2, 2), backwards ? 1 + T_SPAN * reach.most : 3 - T_SPAN * reach.least, near,
+                   "the largest along the phase");
 }
 
 static void check_outputs(const struct witness *w, struct reach reach, double near)
@@ -120,12 +152,12 @@ static void check_outputs(const struct witness *w, struct reach reach, double ne
     CHECK(out[NX + 3] == 0, "nothing moves a constant: %g", out[NX + 3]);
     CHECK_RELATIVE(w->phase[0].integral[0], T_SPAN * (2 * 2.5 + 3) + T_SPAN * 2 * size[0], near,
                    "the integral of |g|, and of what moves it");
-    CHECK_RELATIVE(w->phase[0].integral[1], 1e-3, near, "a thousandth of 1 where there is nothing");
+    CHECK_RELATIVE(w->phase[0].integral[1] * 1e6, moray_witness_objective(w), near, "what matters by its multiplier");
     CHECK_RELATIVE(moray_witness_objective(w), 9 * size[0], near, "the state at the end moves the objective most");
     CHECK_RELATIVE(w->end_out_size[1], fmax(4 * w->phase[1].size[0], w->phase[0].integral[0] / 2), near, "an event");
 }
 
-static void test_sizes(bool differences)
+static void test_sizes(bool differences, bool backwards)
 {
     const moray_bounds none = moray_free(), narrow = moray_between(-0.5, 1), fits = moray_between(-4, 2.5);
     const moray_phase_spec phases[] = {{.nx = NX,
@@ -133,9 +165,9 @@ static void test_sizes(bool differences)
                                         .nc = NC,
                                         .nq = NQ,
                                         .continuous = drive,
-                                        .t0 = moray_fixed(1),
-                                        .tf = moray_fixed(1 + T_SPAN),
-                                        .x = MORAY_BOUNDS(none, none, none, narrow, fits),
+                                        .t0 = moray_between(0, 9),
+                                        .tf = moray_between(0, 9),
+                                        .x = MORAY_BOUNDS(none, none, none, narrow, fits, none),
                                         .c = MORAY_BOUNDS(none, none, none, none)},
                                        {.nx = 1, .continuous = wait, .t0 = moray_fixed(3), .tf = moray_fixed(8)}};
     moray_settings settings = moray_settings_default();
@@ -150,9 +182,9 @@ static void test_sizes(bool differences)
                           .phases = 2, .phase = phases, .ns = NS, .ne = 1, .e = MORAY_BOUNDS(none), .endpoint = goal}),
         "problem");
     CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "begun");
-    const struct reach reach = set_iterate(solution);
+    const struct reach reach = set_iterate(solution, backwards);
     CHECK_OK(differences ? moray_witness_new(&w, solution) : moray_witness_of_sizes(&w, solution), "sizes");
-    check_inputs(&w, reach, 1e-7);
+    check_inputs(&w, reach, backwards, 1e-7);
     check_outputs(&w, reach, 1e-7);
     moray_witness_free(&w);
     moray_solution_free(solution);
@@ -161,7 +193,7 @@ static void test_sizes(bool differences)
 
 int main(void)
 {
-    test_sizes(false);
-    test_sizes(true);
+    for (int k = 0; k < 4; k++)
+        test_sizes(k % 2, k / 2);
     return tap_done();
 }
