@@ -63,11 +63,11 @@ void moray_witness_free(struct witness *e)
 
 // ---- Derivatives ----
 
-// A slope that moves an output by no more than its last digits over all that the input does (a table that an argument
-// has no part in, say) drives nothing.
-static void note_slope(double *slope, double value, double size, double out)
+// A slope that moves an output, |output| at most `most`, by no more than its last digits over all that the input does
+// (a table that an argument has no part in, say) drives nothing.
+static void note_slope(double *slope, double value, double size, double most)
 {
-    if (size <= 0 || fabs(value) * size > 16 * DBL_EPSILON * fabs(out))
+    if (size <= 0 || fabs(value) * size > 16 * DBL_EPSILON * most)
         *slope = fmax(*slope, fabs(value));
 }
 

@@ -11,7 +11,7 @@
 
 enum { X, U0, U1, TIME, IN, F = 0, C0, C1, OUT, ENTRIES = 7, BENT = 3, BY_TIME = 6 };
 static int row[ENTRIES] = {F, F, F, C0, C0, C1, C1}, col[ENTRIES] = {X, U0, U1, U0, U1, X, TIME};
-static const double corner = 5;
+static double corner; // half the change of slope
 
 static void value(void *self, const double *in, double *out)
 {
@@ -121,17 +121,19 @@ static void test_entries(moray_bounds tf)
             test_entry(solution, off, k, 0.3 * sign, timeless && k == BY_TIME ? 0 : 0.3, timeless);
     for (int sign = -1; sign <= 1; sign += 2) { // from the nearer of both slopes
         test_entry(solution, off, BENT, sign * corner, 0, timeless);
-        test_entry(solution, off, BENT, sign * (corner + 2), 2, timeless);
-        test_entry(solution, off, BENT, sign * (corner - 1.5), 1.5, timeless);
+        test_entry(solution, off, BENT, sign * (corner + copysign(2, corner)), 2, timeless);
+        test_entry(solution, off, BENT, sign * (corner - copysign(1.5, corner)), 1.5, timeless);
     }
-    test_entry(solution, off, BENT, 0, corner, timeless);
+    test_entry(solution, off, BENT, 0, fabs(corner), timeless);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
 
 int main(void)
 {
-    test_entries(moray_fixed(2));
-    test_entries(moray_between(2, 3));
+    for (corner = -5; corner <= 5; corner += 10) {
+        test_entries(moray_fixed(2));
+        test_entries(moray_between(2, 3));
+    }
     return tap_done();
 }

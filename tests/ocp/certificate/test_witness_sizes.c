@@ -68,7 +68,7 @@ static void set_multipliers(const moray_solution *solution)
     const struct phase_layout *layout = &solution->transcription->layout.phase[0];
     for (int k = 0; k < layout->mesh.intervals; k++)
         for (int i = 0; i < layout->interval[k].scheme->points - 1; i++)
-            solution->iterate.lambda[layout->interval[k].defect + i * NX + NX - 1] = (k % 2 ? 3 : -7) * (100.0 + k);
+            solution->iterate.lambda[layout->interval[k].defect + i * NX + NX - 1] = (k % 2 ? -3 : 7) * (100.0 + k);
     solution->iterate.lambda[layout->integral_row + 1] = -1e3;
 }
 

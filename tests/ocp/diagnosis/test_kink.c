@@ -36,6 +36,13 @@ static void gate(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = at->u[0] * at->u[0] + moray_abs(at->x[0] - 0.375);
 }
 
+// The other way round.
+static void arch(const moray_node *at, moray_rates *out, const void *data)
+{
+    fuel(at, out, data);
+    out->g[0] = at->u[0] * at->u[0] - moray_abs(at->x[0] - 0.375);
+}
+
 static void faint_gate(const moray_node *at, moray_rates *out, const void *data)
 {
     fuel(at, out, data);
@@ -85,6 +92,7 @@ int main(void)
     check(effort, 3, NULL);
     check(fuel_on_the_way, 12, "control u[0]");
     check(gate, 3, "state x[0] at 0.38");
+    check(arch, 3, "state x[0] at 0.38");
     check(faint_gate, 3, NULL);
     return tap_done();
 }
