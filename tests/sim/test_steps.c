@@ -54,6 +54,7 @@ static void test_first(void)
 {
     const double x[] = {0.5, 2}, none[2] = {0}, tolerance = 1e-3 * 2 + 1e-3; // that of the state with the worst norm
     check_first(-0.5, x, 100, 0.01 / 0.5, pow(0.01 / (0.5 * 2 / tolerance), 1.0 / 8));
+    check_first(-0.5, (double[]){0.5, -2}, 100, 0.01 / 0.5, pow(0.01 / (0.5 * 2 / tolerance), 1.0 / 8));
     check_first(-3, x, 100, 0.01 / 3, pow(0.01 / (9 * 2 / tolerance), 1.0 / 8));
     check_first(3, x, 1, 0.01 / 3, pow(0.01 / (9 * 2 / tolerance), 1.0 / 8));
     check_first(-50, x, 1, 0.01 / 50, 100 * 0.01 / 50); // no more than a hundred times that of Euler
