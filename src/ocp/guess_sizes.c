@@ -230,10 +230,10 @@ static void doubt_guesses(const struct transcription *t, int p, const double *x,
         size[i] = size[i] == known_input(t, p, x, false, i) ? size[i] : 0;
 }
 
-void moray_size_inputs(const struct transcription *t, int p, const double *x, bool found, double *size)
+void moray_size_inputs(const struct transcription *t, int p, const double *x, enum sized_by point, double *size)
 {
-    know_sizes(t, p, x, found, size);
-    if (!found)
+    know_sizes(t, p, x, point == by_solution, size);
+    if (point == by_guess)
         doubt_guesses(t, p, x, size);
     derive_sizes(t, p, size);
 }

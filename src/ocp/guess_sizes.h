@@ -14,9 +14,9 @@ bool moray_is_far_below(double value, double size);
 
 double moray_largest_in_phase(const struct phase_layout *layout, const double *x, int state);
 
-// size[nx + nu] of the states and controls of phase p at the guess x, in whose caches the slopes are; of states that
-// turned out far smaller than their boxes, where x was found, what they are there.
-void moray_size_inputs(const struct transcription *t, int p, const double *x, bool found, double *size);
+// size[nx + nu] of the states and controls of phase p at x, in whose caches the slopes are; of states that turned out
+// far smaller than their boxes, where x is a solution, what they are there.
+void moray_size_inputs(const struct transcription *t, int p, const double *x, enum sized_by point, double *size);
 
 // What integral m may come to, by its integrand along the guess where its bounds and its guess tell nothing.
 // work[n_in + n_out].

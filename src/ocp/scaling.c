@@ -25,14 +25,15 @@ static double size_of_time(moray_bounds bounds, double time, double other, doubl
 }
 
 // size: scratch for states and controls, and for inputs and outputs.
-static void scale_phase(struct transcription *t, int p, const double *x, bool found, double *size, double *x_scale,
-                        double *g_scale)
+static void scale_phase(struct transcription *t, int p, const double *x, enum sized_by point, double *size,
+                        double *x_scale, double *g_scale)
 {
+    const bool found = point == by_solution;
     const struct phase *phase = &t->ocp->phase[p];
     const struct phase_layout *layout = &t->layout.phase[p];
     double t0, tf;
     moray_layout_span(&t->layout, t->ocp, x, p, &t0, &tf);
-    moray_size_inputs(t, p, x, found, size);
+    moray_size_inputs(t, p, x, point, size);
     for (int n = 0; n < layout->nodes; n++)
         for (int r = 0; r < phase->nx + (layout->node[n].collocated ? phase->nu : 0); r++)
             x_scale[layout->node[n].x + r] = 1 / size[r];
@@ -113,7 +114,7 @@ static int scratch_of(const struct transcription *t)
 
 // One scale for a state or control along its whole phase, so that the transcription's structure survives the scaling;
 // rows from the Jacobian at the guess; the objective so that its largest scaled slope is near 1.
-moray_status moray_choose_scales(struct transcription *t, const double *x, bool found)
+moray_status moray_choose_scales(struct transcription *t, const double *x, enum sized_by point)
 {
     const int n = t->nlp.n, m = t->nlp.m;
     double *work = calloc((size_t)(n + t->nlp.nnz_jac + scratch_of(t)) + 1, sizeof *work);
@@ -125,7 +126,7 @@ moray_status moray_choose_scales(struct transcription *t, const double *x, bool 
     if (!moray_failed(status)) {
         double *x_scale = t->scale, *g_scale = t->scale + n;
         for (int p = 0; p < t->ocp->phases; p++)
-            scale_phase(t, p, x, found, work + n + t->nlp.nnz_jac, x_scale, g_scale);
+            scale_phase(t, p, x, point, work + n + t->nlp.nnz_jac, x_scale, g_scale);
         for (int i = 0; i < t->ocp->ns; i++)
             x_scale[t->layout.s + i] = 1 / size_of(t->ocp->s[i], fabs(x[t->layout.s + i]));
         scale_row_groups(t, work + n, x_scale, g_scale);

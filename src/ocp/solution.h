@@ -37,9 +37,12 @@ void moray_iterations_free(struct iterations *iterations);                    //
 // MORAY_MEMORY.
 moray_status moray_fill_guess(struct transcription *t, const moray_guess *guess, double *x);
 
-// Chooses x_scale and g_scale of the programme from bounds and the guess, or durations and integrals as found. Error:
+// What a point is by which sizes are told: a guess, the solution on this mesh, that on another.
+enum sized_by { by_guess, by_solution, by_other_mesh };
+
+// Chooses x_scale and g_scale of the programme from bounds and x; durations and integrals as found on this mesh. Error:
 // MORAY_MEMORY, MORAY_NUMERIC.
-moray_status moray_choose_scales(struct transcription *t, const double *x, bool found);
+moray_status moray_choose_scales(struct transcription *t, const double *x, enum sized_by point);
 
 // How long phase p must last for its states to come from one end to the other, by the slopes at the guess x, in whose
 // caches they are, and by what is known of sizes; 0: nothing tells. size[n]: scratch for states and controls.

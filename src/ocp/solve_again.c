@@ -125,7 +125,7 @@ static moray_status solve_in_scale(moray_solution *solution)
     struct transcription *t = solution->transcription;
     const moray_nlp_settings settings = moray_solver_settings(solution, true);
     MORAY_TRY(moray_iterations_room(solution->iterations, settings.max_iterations));
-    MORAY_TRY(moray_choose_scales(t, solution->iterate.x, true));
+    MORAY_TRY(moray_choose_scales(t, solution->iterate.x, by_solution));
     return moray_ipopt_solve(&t->nlp, &settings, &solution->iterate, &solution->info);
 }
 

@@ -40,14 +40,19 @@ static bool has_rows_of_its_own(const moray_ocp *ocp)
     return false;
 }
 
+// Whether the guess is what was found of the same problem.
+static bool goes_on(const moray_solution *solution, const moray_guess *guess)
+{
+    const moray_solution *from = guess ? guess->from : NULL;
+    return from && from->transcription->ocp == solution->transcription->ocp && moray_is_solved(from);
+}
+
 // Multipliers of holds, and of what moving data see, do not go from mesh to mesh. Multipliers of a solved mesh whose
 // error is small halve the iterations or better; of a coarse one they mislead.
 static bool can_start_warm(const moray_solution *solution, const moray_guess *guess)
 {
-    const moray_solution *from = guess ? guess->from : NULL;
-    return from && from->transcription->ocp == solution->transcription->ocp && moray_is_solved(from) &&
-           !has_rows_of_its_own(solution->transcription->ocp) &&
-           from->history[from->meshes - 1].error < worst_warm_error;
+    return goes_on(solution, guess) && !has_rows_of_its_own(solution->transcription->ocp) &&
+           guess->from->history[guess->from->meshes - 1].error < worst_warm_error;
 }
 
 static moray_status run_solver(moray_solution *solution, const moray_guess *guess, bool warm)
@@ -57,9 +62,10 @@ static moray_status run_solver(moray_solution *solution, const moray_guess *gues
     MORAY_TRY(moray_iterations_room(solution->iterations, settings.max_iterations));
     if (warm && guess->along_time) // the start has moved
         settings.barrier = solution->settings.barrier;
+    const enum sized_by point = goes_on(solution, guess) && !guess->along_time ? by_other_mesh : by_guess;
     MORAY_TRY(moray_fill_guess(t, guess, solution->iterate.x));
     if (solution->settings.own_scaling)
-        MORAY_TRY(moray_choose_scales(t, solution->iterate.x, false));
+        MORAY_TRY(moray_choose_scales(t, solution->iterate.x, point));
     memcpy(solution->guess, solution->iterate.x, (size_t)t->nlp.n * sizeof *solution->guess);
     if (warm)
         MORAY_TRY(moray_carry_multipliers(guess, solution));

@@ -29,7 +29,7 @@ static void integral(const moray_ends *at, moray_end_values *out, const void *da
 }
 
 // Sizes of a problem's inputs where their guesses are constant.
-static void check_sizes(const moray_phase_spec *phase, const double guess[states + 1], bool found,
+static void check_sizes(const moray_phase_spec *phase, const double guess[states + 1], enum sized_by point,
                         const double expected[states + 1])
 {
     const moray_ocp_spec spec = {.phases = 1, .phase = phase, .endpoint = integral};
@@ -47,15 +47,15 @@ static void check_sizes(const moray_phase_spec *phase, const double guess[states
     for (int n = 0; n < layout->nodes; n++)
         for (int r = 0; r < states + layout->node[n].collocated; r++)
             solution->iterate.x[layout->node[n].x + r] = guess[r];
-    CHECK_OK(moray_choose_scales(t, solution->iterate.x, found), "the caches are of this point");
-    moray_size_inputs(t, 0, solution->iterate.x, found, size);
+    CHECK_OK(moray_choose_scales(t, solution->iterate.x, point), "the caches are of this point");
+    moray_size_inputs(t, 0, solution->iterate.x, point, size);
     for (int r = 0; r <= states; r++)
-        CHECK_NEAR(size[r] / expected[r], 1, 1e-12, found ? "as it was found" : "by causes and effects");
+        CHECK_NEAR(size[r] / expected[r], 1, 1e-12, point == by_guess ? "by causes and effects" : "as it was found");
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
 
-static void test_followers(const double guess[states + 1], bool found, const double expected[states + 1])
+static void test_followers(const double guess[states + 1], enum sized_by point, const double expected[states + 1])
 {
     const moray_phase_spec phase = {.nx = states,
                                     .nu = 1,
@@ -65,7 +65,7 @@ static void test_followers(const double guess[states + 1], bool found, const dou
                                     .tf = moray_fixed(2 + span),
                                     .x = MORAY_BOUNDS(moray_between(-most, most), moray_free(), moray_free()),
                                     .x0 = MORAY_BOUNDS(moray_free(), moray_fixed(guess[slow]), moray_free())};
-    check_sizes(&phase, guess, found, expected);
+    check_sizes(&phase, guess, point, expected);
 }
 
 // The last state drives that before it, and so on.
@@ -87,7 +87,7 @@ static void test_chain(void)
                                     .tf = moray_fixed(span),
                                     .x = MORAY_BOUNDS(moray_free(), moray_free(), moray_between(-most, most))};
     const double second = gain * most * span, first = 2 * second * span;
-    check_sizes(&phase, (double[]){1e-5, 1e-6, 1e-3, 1e-7}, false, (double[]){first, second, most, most / span});
+    check_sizes(&phase, (double[]){1e-5, 1e-6, 1e-3, 1e-7}, by_guess, (double[]){first, second, most, most / span});
 }
 
 int main(void)
@@ -95,12 +95,13 @@ int main(void)
     const double by_place = gain * most * span, by_control = most / span;
     // The fast follower could not come to more than its cause allows, 1 / (1 + decay span) of by_place.
     const double steady = by_place / (1 + decay * span), tiny[] = {1e-5, 2e-6, 3e-5, 4e-6};
-    test_followers(tiny, false, (double[]){most, by_place, by_place, by_control});
+    test_followers(tiny, by_guess, (double[]){most, by_place, by_place, by_control});
     const double fair[] = {1e-5, by_place / 999, steady / 999, by_control / 999};
-    test_followers(fair, false, (double[]){most, fair[slow], fair[fast], fair[3]});
+    test_followers(fair, by_guess, (double[]){most, fair[slow], fair[fast], fair[3]});
     const double less[] = {1e-5, by_place / 1001, steady / 999, by_control / 1001};
-    test_followers(less, false, (double[]){most, by_place, less[fast], by_control});
-    test_followers(less, true, (double[]){less[place], less[slow], less[fast], less[3]});
+    test_followers(less, by_guess, (double[]){most, by_place, less[fast], by_control});
+    test_followers(less, by_solution, (double[]){less[place], less[slow], less[fast], less[3]});
+    test_followers(less, by_other_mesh, (double[]){most, less[slow], less[fast], less[3]});
     test_chain();
     return tap_done();
 }
