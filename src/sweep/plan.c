@@ -152,13 +152,13 @@ bool moray_plan_next(struct plan *plan, struct task *next)
 moray_status moray_plan_answer(struct plan *plan, const struct record *record, bool *better)
 {
     const struct task *task = &record->task;
-    const bool solved = record->code == MORAY_OK, had = plan->store->state[task->point] == POINT_SOLVED;
+    const bool solved = record->code == MORAY_OK;
     plan->pending--;
     plan->answered++;
     plan->warm += task->start >= 0 && task->round == 0;
     plan->held += task->start >= 0 && task->round == 0 && solved;
     MORAY_TRY(moray_store_add(plan->store, record, better));
-    plan->improved += task->round > 0 && *better && (had || solved);
+    plan->improved += task->round > 0 && *better; // than what it was tried with before
     if (task->round == 0 && task->start >= 0 && !solved) {
         plan->expected++;
         add(plan, (struct task){.point = task->point, .start = -1});
