@@ -201,6 +201,18 @@ static void test_first_is_gone(void)
     CHECK(left, "and wait for nobody");
 }
 
+// A rank that hears something waits for as long again.
+static void test_first_is_heard(void)
+{
+    struct crew crew = begin(1);
+    const double begun = moray_clock();
+    crew.other[0].heard = begun - 9.5 * silence;
+    say(0, "alive");
+    CHECK(moray_crew_serve(&crew).code == MORAY_INTERRUPTED && moray_clock() - begun > 9 * silence,
+          "heard once, the first one is missed later: %g s", moray_clock() - begun);
+    moray_crew_free(&crew);
+}
+
 // What a point has found is kept as it stands, which takes it where our writer leaves it.
 static void test_records(void)
 {
@@ -239,6 +251,7 @@ int main(void)
     test_waiting();
     test_sent_home();
     test_first_is_gone();
+    test_first_is_heard();
     test_records();
     test_summary();
     return tap_done();

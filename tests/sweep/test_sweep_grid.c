@@ -155,6 +155,92 @@ static void test_draws(void)
     CHECK(moray_grid_draw(&spec, 9, 1) != before, "another seed draws others");
 }
 
+// The numbers of SplitMix64 one after another, sixteen to a draw.
+static void test_generator(void)
+{
+    static const moray_sweep_range ranges[] = {{"a", -1, 3}, {"b", 100, 200}, {"c", 0, 1}};
+    const moray_sweep_spec spec = {.ranges = 3, .range = ranges, .draws = 5, .seed = 77};
+    unsigned long long seed = 77;
+    for (long draw = 0; draw < 5; draw++)
+        for (int r = 0; r < 16; r++) {
+            const double part = tap_random(&seed, 0, 1);
+            if (r < 3)
+                CHECK(moray_grid_draw(&spec, draw, r) == ranges[r].low + part * (ranges[r].high - ranges[r].low),
+                      "draw %ld of %s", draw, ranges[r].key);
+        }
+}
+
+static void refused(const moray_sweep_spec *spec, const char *text)
+{
+    struct grid grid;
+    const moray_status status = moray_grid_new(spec, &grid);
+    CHECK(status.code == MORAY_INPUT && strcmp(status.text, text) == 0, "%s", status.text);
+}
+
+// As many keys as there may be, and one more; ranges that are none; and more points than a number of them has room for.
+static void test_bounds(void)
+{
+    static const double one[] = {5};
+    moray_sweep_axis axis[MORAY_SWEEP_AXES + 1];
+    moray_sweep_range range[MORAY_SWEEP_RANGES + 1];
+    char key[MORAY_SWEEP_AXES + MORAY_SWEEP_RANGES + 2][8];
+    struct grid grid;
+    for (int k = 0; k <= MORAY_SWEEP_AXES; k++) {
+        snprintf(key[k], sizeof key[k], "x%d", k);
+        axis[k] = (moray_sweep_axis){.key = key[k], .value = one, .n = 1};
+    }
+    for (int r = 0; r <= MORAY_SWEEP_RANGES; r++) {
+        snprintf(key[MORAY_SWEEP_AXES + 1 + r], sizeof *key, "z%d", r);
+        range[r] = (moray_sweep_range){key[MORAY_SWEEP_AXES + 1 + r], r, r};
+    }
+    moray_sweep_spec spec = {.solve = never, .axis = axis, .range = range};
+    refused(&spec, "nothing is varied");
+    spec.axes = MORAY_SWEEP_AXES, spec.ranges = MORAY_SWEEP_RANGES, spec.draws = 2;
+    CHECK_OK(moray_grid_new(&spec, &grid), "as many as there may be");
+    CHECK(grid.axes == MORAY_SWEEP_AXES + 1 && grid.points == 2, "%d axes", grid.axes);
+    spec.axes = MORAY_SWEEP_AXES + 1;
+    refused(&spec, "17 axes: at most 16");
+    spec.axes = -1;
+    refused(&spec, "-1 axes: at most 16");
+    spec.axes = 2, spec.ranges = MORAY_SWEEP_RANGES + 1;
+    refused(&spec, "17 random keys: at most 16");
+    spec.ranges = -1;
+    refused(&spec, "-1 random keys: at most 16");
+    spec.ranges = 3, spec.draws = 0;
+    refused(&spec, "0 random draws of 3 keys: either needs the other");
+    spec.ranges = 0, spec.draws = 4;
+    refused(&spec, "4 random draws of 0 keys: either needs the other");
+    spec.ranges = 3;
+    range[1].low = 1.5;
+    refused(&spec, "z1 = 1.5:1: must be finite and rising");
+    range[1].low = -INFINITY;
+    refused(&spec, "z1 = -inf:1: must be finite and rising");
+    range[1] = (moray_sweep_range){"z1", 0, NAN};
+    refused(&spec, "z1 = 0:nan: must be finite and rising");
+    range[1] = (moray_sweep_range){"", 0, 1};
+    refused(&spec, "random key 2 has no name");
+    range[1].key = NULL;
+    refused(&spec, "random key 2 has no name");
+    range[1].key = "x1";
+    refused(&spec, "x1 is varied twice");
+    range[1].key = "z2";
+    refused(&spec, "z2 is varied twice");
+    axis[1].key = "";
+    refused(&spec, "axis 2 has no key");
+    axis[1] = (moray_sweep_axis){.key = "x1", .n = 1};
+    refused(&spec, "x1 has no values");
+    axis[1] = (moray_sweep_axis){.key = "w", .word = (const char *const[]){"a", "", "c"}, .n = 3};
+    refused(&spec, "w: word 2 is empty");
+    axis[1] = (moray_sweep_axis){.key = "w", .word = (const char *const[]){"a", "b", "c", "b"}, .n = 4};
+    refused(&spec, "w: b is there twice");
+    spec.axes = spec.ranges = 1;
+    spec.draws = 2147483647;
+    CHECK_OK(moray_grid_new(&spec, &grid), "as many points as there may be");
+    CHECK(grid.points == spec.draws && grid.shape[0] == spec.draws && grid.shape[1] == 1, "%ld", grid.points);
+    spec.draws++;
+    refused(&spec, "more than 2147483647 points");
+}
+
 int main(void)
 {
     static const moray_sweep_axis axes[] = {{.key = "first", .value = five, .n = 5},
@@ -167,5 +253,7 @@ int main(void)
     test_parents(&grid);
     test_settings(&grid);
     test_draws();
+    test_generator();
+    test_bounds();
     return tap_done();
 }
