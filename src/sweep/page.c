@@ -83,7 +83,7 @@ static void draw(FILE *file, const struct store *store, const map *m)
         for (long column = 0; column < columns; column++) {
             const long point = row * m->step_row * m->columns + column * m->step_column;
             fprintf(file, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"", width * (double)column,
-                    height * (double)row, fmax(width - 1, 0.8 * width), fmax(height - 1, 0.8 * height));
+                    height * (double)row, fmax(width - 1, 0.8 * width), height - 1); // above 5
             colour(file, store, m, point);
             fputs("\"><title>", file);
             setting(file, store, point);

@@ -157,11 +157,25 @@ static void test_sizes(void)
     }
 }
 
+// Points that fill whole pages of memory, behind which there is none of theirs.
+static void test_pages(void)
+{
+    static const struct grid pages = {.spec = &spec, .points = 512};
+    const struct record record = {.task = {.point = 511, .start = -1}};
+    struct store store;
+    CHECK_OK(moray_store_new(&store, &pages), "a store");
+    CHECK(add(&store, &record, "{\"a\": 4}") && number(&store, "a", 511) == 4 && isnan(number(&store, "a", 510)),
+          "the last point");
+    moray_store_free(&store);
+    CHECK(!store.reason && !store.value && store.n == 0, "is freed");
+}
+
 int main(void)
 {
     test_rounding();
     test_failures();
     test_names();
     test_sizes();
+    test_pages();
     return tap_done();
 }

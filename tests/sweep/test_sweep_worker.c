@@ -200,6 +200,37 @@ static void test_again(void)
     CHECK(worker.pid == 0 && kill(pid, 0) != 0, "is killed, and gone");
 }
 
+static moray_status die(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    (void)point, (void)summary, (void)self;
+    FILE *file = fopen("deaths", "a");
+    fputc('x', file);
+    fclose(file);
+    raise(SIGKILL);
+    return moray_ok();
+}
+
+// What is killed each time is tried three times.
+static void test_killed(void)
+{
+    struct crew crew;
+    struct record record;
+    bool found = false;
+    char deaths[9] = "";
+    spec.solve = die, spec.jobs = 1;
+    CHECK_OK(moray_crew_new(&crew, &grid), "a crew");
+    CHECK_OK(moray_crew_begin(&crew, &(const struct task){.point = 1, .start = -1}), "a point");
+    CHECK_OK(moray_crew_wait(&crew, 50, &record, &found), "waiting");
+    FILE *file = fopen("deaths", "r");
+    CHECK(found && file && fgets(deaths, sizeof deaths, file) && strcmp(deaths, "xxx") == 0, "dies: %s", deaths);
+    CHECK(found && strstr(record.reason, "time and again"), "time and again");
+    if (file)
+        fclose(file);
+    if (found)
+        moray_record_free(&record);
+    moray_crew_free(&crew);
+}
+
 // Processes of this machine: as many as asked, busy and idle; an idle crew sleeps for its time, one whose point is late
 // no longer than that.
 static void test_crew(void)
@@ -249,6 +280,7 @@ int main(void)
     test_told();
     test_long();
     test_again();
+    test_killed();
     test_crew();
     snprintf(command, sizeof command, "rm -rf %s", folder);
     CHECK(chdir("/") == 0 && system(command) == 0, "nothing is left behind");
