@@ -78,7 +78,7 @@ static void check_equations(moray_identify *v)
     static double normal[MOST_COLUMNS][MOST_COLUMNS], gradient[MOST_COLUMNS];
     const int stride = v->spec.n + FIRST, m = v->columns;
     const double bound = v->spec.huber;
-    double cost = 0, got, alone, worst = 0;
+    double cost = 0, got = NAN, alone = NAN, worst = 0;
     int beyond = 0;
     moray_estimate at;
     moved_start(v, &at);
