@@ -136,7 +136,7 @@ static void test_idle(void)
 
 static void test_busy(void)
 {
-    const struct task one = {.point = 1, .start = -1}, two = {.point = 2, .start = 0};
+    const struct task one = {.point = 1, .start = -1}, two = {.point = 2, .start = 0, .round = 1, .start_round = 3};
     struct crew crew = begin(0);
     CHECK_OK(moray_crew_begin(&crew, &one), "a task for the first");
     be_silent();
@@ -157,7 +157,7 @@ static void test_busy(void)
     say_answer(2, &one);
     CHECK(listen(&crew), "that of the other one does");
     CHECK_OK(moray_crew_begin(&crew, &two), "the next task");
-    CHECK(has_sent(1, "task 2 0 0 0"), "is for whoever is free");
+    CHECK(has_sent(1, "task 2 0 1 3"), "is for whoever is free");
     moray_crew_free(&crew);
     CHECK(has_sent(2, "home") && !left, "at the end all are sent home");
 }
@@ -179,11 +179,15 @@ static void test_waiting(void)
 static void test_sent_home(void)
 {
     struct crew crew = begin(1);
-    say(0, "task 2 -1 0 0");
+    say(0, "task 2 1 3 4");
     say(0, "home");
     const time_t begun = time(NULL);
     CHECK_OK(moray_crew_serve(&crew), "a rank that is sent home");
     CHECK(crew.worker[0].pid > 0 && time(NULL) - begun < 30, "goes at once, whatever it has in hand");
+    const struct task *task = &crew.worker[0].task;
+    CHECK(task->point == 2 && task->start == 1 && task->round == 3 && task->start_round == 4,
+          "which is what was asked");
+    CHECK(!crew.leaves, "the others wait for it");
     moray_crew_free(&crew);
 }
 
@@ -199,6 +203,54 @@ static void test_first_is_gone(void)
     CHECK(shown > 2, "having shown that they are alive: %d times", shown);
     moray_crew_free(&crew);
     CHECK(left, "and wait for nobody");
+}
+
+static moray_status solve_at_once(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    (void)self;
+    fprintf(summary, "{\"x\": %g}", point->value[0]);
+    return moray_ok();
+}
+
+// A rank answers with the record of its task, and is free for the next.
+static void test_answers(void)
+{
+    moray_sweep_spec quick = spec;
+    struct grid own = grid;
+    struct record record;
+    quick.solve = solve_at_once, own.spec = &quick;
+    struct crew crew = begin(1);
+    crew.grid = &own;
+    say(0, "task 2 -1 1 0");
+    CHECK(moray_crew_serve(&crew).code == MORAY_INTERRUPTED, "until the first one is missed");
+    CHECK(n_sent == 1 && sent[0].rank == 0, "it has answered once");
+    CHECK_OK(moray_record_read(sent[0].text, &record), "with a record");
+    CHECK(record.task.point == 2 && record.task.start == -1 && record.task.round == 1 && record.code == MORAY_OK &&
+              record.found && strcmp(record.found, "{\"x\":3}") == 0,
+          "of what it found: %s", sent[0].text);
+    CHECK(crew.worker[0].pid == 0, "and is idle");
+    moray_record_free(&record);
+    moray_crew_free(&crew);
+}
+
+// Sent away as one of others is lost, it waits for nobody; the first of sixteen at least solves nothing itself.
+static void test_sizes(void)
+{
+    struct crew crew = begin(1);
+    say(0, "leave");
+    CHECK_OK(moray_crew_serve(&crew), "a rank that is to leave");
+    CHECK(crew.leaves, "goes");
+    moray_crew_free(&crew);
+    CHECK(left, "without the others");
+    for (int size = 16; size <= 17; size++)
+        for (int rank = 0; rank < 2; rank++) {
+            here.size = size, here.rank = rank;
+            CHECK_OK(moray_crew_new(&crew, &grid), "ranks");
+            CHECK(crew.n_workers == !(size == 17 && rank == 0), "rank %d of %d has %d processes", rank, size,
+                  crew.n_workers);
+            moray_crew_free(&crew);
+        }
+    here.size = 3;
 }
 
 // A rank that hears something waits for as long again.
@@ -252,6 +304,8 @@ int main(void)
     test_sent_home();
     test_first_is_gone();
     test_first_is_heard();
+    test_answers();
+    test_sizes();
     test_records();
     test_summary();
     return tap_done();

@@ -4,6 +4,7 @@
 #define _GNU_SOURCE // mkdtemp
 #include "tap.h"
 
+#include <malloc.h>
 #include <netcdf.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -257,6 +258,23 @@ static void check_extremes(double number[numbers][points])
     CHECK(moray_sweep_extremes("no.nc", "*", &least, &most, &n).code == MORAY_IO && !least && !most, "nor are files");
 }
 
+static size_t in_use(void)
+{
+    const struct mallinfo2 memory = mallinfo2();
+    return memory.uordblks + memory.hblkhd;
+}
+
+// Written ten times over, the file takes no memory of its size each time.
+static void check_memory(const struct store *store)
+{
+    struct stat about;
+    const size_t before = in_use();
+    for (int k = 0; k < 10; k++)
+        CHECK_OK(moray_store_write(store, true), "a file");
+    const size_t after = in_use();
+    CHECK(stat("own.nc", &about) == 0 && after < before + (size_t)about.st_size, "%zu bytes, then %zu", before, after);
+}
+
 static void test_file(void)
 {
     moray_sweep_spec spec = {.file = "own.nc",
@@ -289,6 +307,7 @@ static void test_file(void)
         nc_close(file);
     }
     check_extremes(number);
+    check_memory(&store);
     spec.draws = 0, spec.configuration = "c";
     CHECK(mkdir("folder", 0777) == 0, "a folder");
     spec.file = "folder";
