@@ -5,6 +5,7 @@
 #include "arguments.h"
 #include "tap.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -148,6 +149,36 @@ static void test_list(void)
                "130 interrupted.\n");
 }
 
+// What cannot be written is told, even where nothing is left in a buffer.
+static void test_full(void)
+{
+    const settings s = usual();
+    for (int k = 0; k < 4; k++) {
+        FILE *full = fopen("/dev/full", "w");
+        if (k / 2)
+            setvbuf(full, NULL, _IONBF, 0);
+        const moray_status status = (k % 2 ? moray_app_help : moray_app_help_list)(&program, &s, full);
+        CHECK(status.code == MORAY_IO && strcmp(status.text, k % 2 ? "the help text cannot be written"
+                                                                   : "the list of options cannot be written") == 0,
+              "%s", status.text);
+        fclose(full);
+    }
+}
+
+// Texts of 63 bytes have a distance, longer ones none.
+static void test_distance(void)
+{
+    char lengthy[65];
+    memset(lengthy, 'x', 64);
+    lengthy[64] = 0;
+    CHECK(moray_edit_distance(lengthy, "links") == INT_MAX && moray_edit_distance("links", lengthy) == INT_MAX,
+          "64 bytes are too many on either side");
+    lengthy[63] = 0;
+    CHECK(moray_edit_distance(lengthy, "x") == 62 && moray_edit_distance("x", lengthy) == 62, "63 are not");
+    CHECK(moray_is_near(2, "abcde") && !moray_is_near(3, "abcde") && moray_is_near(3, "abcdef"),
+          "one in three is near");
+}
+
 // A row of a number, with each sort of bounds.
 static void test_allowed(void)
 {
@@ -241,6 +272,8 @@ static void test_run(void)
     ini = NULL;
     CHECK_OK(PARSE(&s, &ini, "--config", "run.ini"), "the same again");
     CHECK(s.said[0] && !s.said[1] && s.said[2] && s.list[2] == -0.25 && s.common.ipopt.n == 2, "with its words");
+    CHECK_OK(PARSE(&s, &ini, "cod", "--set=turn=30:30"), "a range of one value");
+    CHECK(s.turn[0] == 30 * MORAY_DEGREE && s.turn[1] == s.turn[0], "%g:%g", s.turn[0], s.turn[1]);
     CHECK(!ini, "of which no file is made without a folder");
     CHECK_OK(PARSE(&s, &ini, "cod", "--config", "run.ini"), "with another word");
     CHECK(!s.said[0] && s.said[1] && !s.said[2], "that one stands alone");
@@ -276,6 +309,8 @@ int main(void)
         return 1;
     test_help();
     test_list();
+    test_full();
+    test_distance();
     test_allowed();
     test_shown();
     test_run();
