@@ -183,7 +183,7 @@ static void test_bounds(void)
     static const double one[] = {5};
     moray_sweep_axis axis[MORAY_SWEEP_AXES + 1];
     moray_sweep_range range[MORAY_SWEEP_RANGES + 1];
-    char key[MORAY_SWEEP_AXES + MORAY_SWEEP_RANGES + 2][8];
+    char key[MORAY_SWEEP_AXES + MORAY_SWEEP_RANGES + 2][16];
     struct grid grid;
     for (int k = 0; k <= MORAY_SWEEP_AXES; k++) {
         snprintf(key[k], sizeof key[k], "x%d", k);

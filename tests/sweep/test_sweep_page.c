@@ -32,8 +32,8 @@ static char *page_of(const struct store *store, const char *progress, bool ended
 static int count(const char *text, const char *word)
 {
     int n = 0;
-    for (; (text = strstr(text, word)); text++)
-        n++;
+    for (const size_t length = strlen(word); *text; text++) // strstr is slow under the sanitizers
+        n += *text == *word && strncmp(text, word, length) == 0;
     return n;
 }
 
