@@ -251,8 +251,6 @@ static void check_extremes(double number[numbers][points])
     status = moray_sweep_numbers("own.nc", "zz", &value, &n);
     CHECK(status.code == MORAY_INPUT && !value && strcmp(status.text, "own.nc has no number zz") == 0, "%s",
           status.text);
-    status = moray_sweep_numbers("own.nc", "sweep_reason", &value, &n);
-    CHECK(status.code == MORAY_IO && !value, "texts are no numbers: %s", status.text);
     status = moray_sweep_numbers("no.nc", "zz", &value, &n);
     CHECK(status.code == MORAY_IO && strcmp(status.text, "no.nc: No such file or directory") == 0, "%s", status.text);
     CHECK(moray_sweep_extremes("no.nc", "*", &least, &most, &n).code == MORAY_IO && !least && !most, "nor are files");
