@@ -250,7 +250,7 @@ static void test_currents(void)
     // the first of 33 points of the arc, each 90/32 deg on, from which the course is more than asin(5/8) off the
     // current
     const double turn = ceil(asin(0.625) / (90 * DEG / 32)) * 90 / 32;
-    char says[100];
+    char says[120];
     snprintf(says, sizeof says, "in the corner behind leg 1, %.4g m along the path, its course is %.4g deg, %.4g m/s",
              8 + 2 * turn * DEG, turn, 0.4 * sin(turn * DEG));
     CHECK(strstr(status.text, says), "%s: %s", says, status.text);

@@ -238,7 +238,7 @@ static moray_status take(sensitivity *run, const struct outcome *outcome)
         note(run->unreached, outcome->row.name);
     if (status->code != MORAY_NUMERIC && status->code != MORAY_INPUT)
         return *status;
-    char why[sizeof outcome->row.name + sizeof status->text];
+    char why[sizeof outcome->row.name + sizeof status->text + 3];
     snprintf(why, sizeof why, "%.39s (%s)", outcome->row.name, status->text);
     note(run->left_out, why);
     return moray_ok();
