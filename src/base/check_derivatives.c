@@ -30,7 +30,7 @@ static void extrapolate(const struct difference *d, int i, double start, double 
     for (int level = 1; level < levels; level++)
         for (int k = 1; k <= level; k++) {
             const double *at = table + level * levels + k;
-            const double spread = fmax(fabs(at[0] - at[-1]), fabs(at[0] - at[-1 - levels]));
+            const double spread = fabs(at[0] - at[-1 - levels]); // at[-1] is nearer
             if (spread <= *doubt && isfinite(spread)) {
                 *doubt = spread;
                 *derivative = at[0];

@@ -132,7 +132,7 @@ static void constant(void *self, const double *x, double *y)
 {
     (void)self, (void)x;
     y[0] = 0;
-    y[1] = 1e12;
+    y[1] = -1e12;
 }
 
 static void half(void *self, const double *x, double *values)

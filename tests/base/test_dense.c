@@ -42,6 +42,26 @@ static void test_solve(void)
     CHECK(!moray_dense_solve(2, nan, 1, right), "so is a NaN");
 }
 
+// The largest of a column in modulus is divided by, wherever it stands and of whatever sign: any other leaves of the
+// solution what is beyond the digits of a tiny one.
+static void test_pivots(void)
+{
+    static const double columns[][3] = {{1e-18, -1, -0.5}, {-1, 1e-18, 1e-18}, {1e-18, -0.5, -1}, {-1e-18, 1e-18, 1},
+                                        {1e-18, 0.5, -1},  {1, -1e-18, 1e-18}, {-0.5, 1e-18, -1}, {1e-18, 1e-18, -1}};
+    static const double rest[3][2] = {{0.3, 0.7}, {0.9, -0.4}, {-0.6, 0.8}}, want[3] = {0.7, -1.1, 0.4};
+    for (size_t k = 0; k < sizeof columns / sizeof *columns; k++) {
+        double A[9], B[3];
+        for (int i = 0; i < 3; i++) {
+            const double row[3] = {columns[k][i], rest[i][0], rest[i][1]};
+            memcpy(A + 3 * i, row, sizeof row);
+            B[i] = row[0] * want[0] + row[1] * want[1] + row[2] * want[2];
+        }
+        CHECK(moray_dense_solve(3, A, 1, B), "column %zu", k);
+        for (int i = 0; i < 3; i++)
+            CHECK_NEAR(B[i], want[i], 1e-14, "by the largest of the column");
+    }
+}
+
 static void test_symmetric(void)
 {
     double A[n * n], value[n], vector[n * n], worst = 0;
@@ -83,6 +103,7 @@ static void test_general(void)
 int main(void)
 {
     test_solve();
+    test_pivots();
     test_symmetric();
     test_general();
     return tap_done();

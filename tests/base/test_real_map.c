@@ -171,7 +171,7 @@ static void test_sides(void)
 static void shifted_sum(void *self, const double *x, double *out)
 {
     (void)self;
-    out[0] = 1 + x[0] + x[1];
+    out[0] = 1 + x[0] + x[1] + x[0] * x[1] / 4;
 }
 
 // An input moves by a part of its size and of where it is, wherever that lies.
@@ -185,6 +185,7 @@ static void test_steps(void)
         moray_map map = look(2, 1, shifted_sum, where[k], size);
         CHECK(map.jac.nnz == 2, "at (%g, %g), of sizes (%g, %g), both inputs are felt: %d", where[k][0], where[k][1],
               size[0], size[1], map.jac.nnz);
+        CHECK(map.hess.nnz == 1, "and that they bend each other: %d", map.hess.nnz);
         moray_map_release(&map);
     }
 }
