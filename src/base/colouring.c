@@ -17,7 +17,7 @@ static int order_columns(const bool *touches, int rows, int cols, int *order, in
 {
     for (int c = 0; c < cols; c++)
         start[rows - entries(touches, rows, cols, c) + 1]++;
-    for (int k = 1; k <= rows + 1; k++)
+    for (int k = 1; k <= rows; k++)
         start[k] += start[k - 1];
     const int filled = start[rows];
     for (int c = 0; c < cols; c++)

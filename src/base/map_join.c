@@ -6,11 +6,11 @@
 
 struct joined {
     moray_map base, extra;
-    int at;               // the extra outputs stand before this one of the base
-    int *place;           // of the base's inputs
-    double *in;           // the base's
-    double *out, *weight; // of the joined map, in the order base, extra
-    double *values;       // of one of the two, whichever pattern is longer
+    int at;         // the extra outputs stand before this one of the base
+    int *place;     // of the base's inputs
+    double *in;     // the base's
+    double *out;    // the base's, or their weights
+    double *values; // of one of the two, whichever pattern is longer
     triplets jac, hess;
     bool *held; // of the base's inputs
 };
@@ -56,10 +56,10 @@ static void joined_hessian(void *self, const double *in, const double *weight, d
     struct joined *j = self;
     const moray_map *base = &j->base, *extra = &j->extra;
     for (int i = 0; i < base->n_out; i++)
-        j->weight[i] = weight[base_row(j, i)];
+        j->out[i] = weight[base_row(j, i)];
     gather(j, in);
     moray_triplets_start(&j->hess, values);
-    base->hessian(base->self, j->in, j->weight, j->values);
+    base->hessian(base->self, j->in, j->out, j->values);
     for (int k = 0; k < base->hess.nnz; k++)
         triplets_put(&j->hess, 0, 0, j->values[k]);
     extra->hessian(extra->self, in, weight + j->at, j->values);
@@ -119,14 +119,13 @@ static moray_status joined_new(struct joined *j, const int *place)
 {
     const int n_in = j->base.n_in, n_out = j->base.n_out;
     j->place = malloc((size_t)n_in * sizeof *j->place);
-    j->in = calloc((size_t)(n_in + 2 * n_out + largest_pattern(&j->base, &j->extra)), sizeof *j->in);
+    j->in = calloc((size_t)(n_in + n_out + largest_pattern(&j->base, &j->extra)), sizeof *j->in);
     j->held = calloc((size_t)n_in, sizeof *j->held);
     if (!j->place || !j->in || !j->held)
         return moray_error(MORAY_MEMORY, "no memory for a map of %d inputs", j->extra.n_in);
     memcpy(j->place, place, (size_t)n_in * sizeof *place);
     j->out = j->in + n_in;
-    j->weight = j->out + n_out;
-    j->values = j->weight + n_out;
+    j->values = j->out + n_out;
     return record(j);
 }
 

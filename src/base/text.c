@@ -76,7 +76,7 @@ static moray_status cut_lines(moray_text *text, size_t size)
     if (size >= 3 && memcmp(at, "\xEF\xBB\xBF", 3) == 0)
         at += 3;
     while (at < end) {
-        char *stop = end_of_line(at, end), *next = stop + (stop + 1 < end && stop[0] == '\r' && stop[1] == '\n') + 1;
+        char *stop = end_of_line(at, end), *next = stop + (stop[0] == '\r' && stop[1] == '\n') + 1;
         MORAY_TRY(add_line(text, at, stop, &room));
         *stop = 0;
         at = next;

@@ -168,8 +168,46 @@ static void test_doubt(void)
     CHECK(report.jacobian_row == 1, "in its row");
 }
 
+// ---- Where there is no value ---------------------------------------------------------------------------------------
+
+static void none(void *self, const double *x, double *y)
+{
+    (void)self;
+    y[0] = NAN;
+    y[1] = x[0];
+}
+
+static void given(void *self, const double *x, double *values)
+{
+    (void)x;
+    values[0] = *(double *)self;
+    values[1] = 1;
+}
+
+// There is no reference for a slope of what is no number: a number is believed, no number is not.
+static void test_none(void)
+{
+    int row[] = {0, 1}, col[] = {0, 0};
+    double slope = 5;
+    const moray_map map = {.n_in = 1,
+                           .n_out = 2,
+                           .jac = {.nnz = 2, .row = row, .col = col},
+                           .self = &slope,
+                           .value = none,
+                           .jacobian = given,
+                           .hessian = nothing};
+    const double x = 2;
+    moray_derivative_report report;
+    CHECK_OK(moray_check_derivatives(&map, &x, weight, &report), "checked");
+    CHECK(report.jacobian_error < 1e-9 && report.jacobian_row == 1, "a number: %g", report.jacobian_error);
+    slope = NAN;
+    CHECK_OK(moray_check_derivatives(&map, &x, weight, &report), "checked");
+    CHECK(isnan(report.jacobian_error) && report.jacobian_row == 0, "no number: %g", report.jacobian_error);
+}
+
 int main(void)
 {
+    test_none();
     test_doubt();
     test_jacobian();
     test_hessian();

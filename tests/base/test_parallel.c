@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
+#define _GNU_SOURCE // sched_setaffinity
 #include "tap.h"
 
+#include <sched.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "moray/parallel.h"
@@ -54,8 +58,78 @@ static int processes(const struct result *r)
     return n;
 }
 
+// Each task once, and no other: counted in what the processes share.
+static void count(int task, void *result, void *self)
+{
+    atomic_int *counts = self;
+    *(int *)result = 10 * task;
+    atomic_fetch_add(&counts[task < 0 || task > tasks ? tasks + 1 : task], 1);
+}
+
+static void test_counts(void)
+{
+    atomic_int *counts = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    for (int jobs = 1; jobs <= 3; jobs += 2) {
+        int results[tasks];
+        memset(counts, 0, 4096);
+        CHECK_OK(moray_parallel(tasks, sizeof *results, results, count, counts, jobs), "counted");
+        for (int k = 0; k < tasks + 2; k++)
+            CHECK(counts[k] == (k < tasks), "%d jobs: task %d was done %d times", jobs, k, counts[k]);
+    }
+    munmap(counts, 4096);
+}
+
+static void test_processors(void)
+{
+    cpu_set_t all, one;
+    CHECK(sched_getaffinity(0, sizeof all, &all) == 0 && moray_processors() == CPU_COUNT(&all), "%d processors",
+          moray_processors());
+    int first = 0;
+    while (!CPU_ISSET(first, &all))
+        first++;
+    CPU_ZERO(&one);
+    CPU_SET(first, &one);
+    CHECK(sched_setaffinity(0, sizeof one, &one) == 0 && moray_processors() == 1, "of which one may be used: %d",
+          moray_processors());
+    sched_setaffinity(0, sizeof all, &all);
+}
+
+// Two tasks of two processes, of which the helper dies once both have begun.
+struct pair {
+    atomic_int begun, own;
+    pid_t parent;
+};
+
+static void die_beside(int task, void *result, void *self)
+{
+    struct pair *pair = self;
+    *(int *)result = task;
+    atomic_fetch_add(&pair->begun, 1);
+    if (getpid() != pair->parent)
+        _exit(1);
+    pair->own = task;
+    while (pair->begun < 2)
+        usleep(200);
+}
+
+static void test_name(void)
+{
+    struct pair *pair = mmap(NULL, sizeof *pair, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    int marks[2];
+    char said[100];
+    pair->parent = getpid();
+    const moray_status status = moray_parallel(2, sizeof *marks, marks, die_beside, pair, 2);
+    snprintf(said, sizeof said, "the process of task %d of 2 died", pair->own == 0 ? 2 : 1);
+    CHECK(status.code == MORAY_NUMERIC && strcmp(status.text, said) == 0, "%s", status.text);
+    CHECK(marks[0] == 0 && marks[1] == 1, "what it had written is there: %d, %d", marks[0], marks[1]);
+    munmap(pair, sizeof *pair);
+}
+
 int main(void)
 {
+    test_counts();
+    test_processors();
+    test_name();
     double factor = 3;
     pid_t self = getpid();
     for (int jobs = 0; jobs <= 4; jobs++) {
