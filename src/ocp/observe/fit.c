@@ -23,10 +23,10 @@ static const double regularity = 1e-14, active = 1e-6, safe = 1e-2;
 struct inverse {
     const moray_solution *solution;
     const struct transcription *t;
-    double *column, *row, *g, *jac, *info, *values, *rhs; // [n], [m], [m], [nnz_jac], ...
-    int *info_row, *info_col, entries;                    // of the information, as columns of the programme; -1: fixed
-    bool *held;                                           // [n] at a bound, then [m] not active
-    double data;                                          // weighted sum of the squares of all data
+    double *column, *row, *jac, *info, *values, *rhs; // [n], [m], [nnz_jac], ...
+    int *info_row, *info_col, entries;                // of the information, as columns of the programme
+    bool *held;                                       // [n] at a bound, then [m] not active
+    double data;                                      // weighted sum of the squares of all data
     moray_pattern pattern;
     moray_ldl *ldl;
 };
@@ -42,14 +42,13 @@ static moray_status allocate(struct inverse *v)
     const size_t n = (size_t)nlp->n, m = (size_t)nlp->m;
     v->entries = moray_fit_information(v->t->fit, v->t->end_in, NULL, NULL, NULL);
     const size_t entries = (size_t)v->entries, total = n + m + (size_t)nlp->nnz_jac + entries;
-    v->column = calloc(2 * n + 3 * m + (size_t)nlp->nnz_jac + entries + total + 1, sizeof *v->column);
+    v->column = calloc(2 * n + 2 * m + (size_t)nlp->nnz_jac + entries + total + 1, sizeof *v->column);
     v->info_row = calloc(2 * entries + 1, sizeof *v->info_row);
     v->held = calloc(n + m + 1, sizeof *v->held);
     if (!v->column || !v->info_row || !v->held)
         return no_memory();
     v->row = v->column + n;
-    v->g = v->row + m;
-    v->rhs = v->g + m;
+    v->rhs = v->row + m;
     v->jac = v->rhs + n + m;
     v->info = v->jac + nlp->nnz_jac;
     v->values = v->info + entries;
@@ -134,7 +133,7 @@ static void fill(struct inverse *v)
     }
     for (int e = 0; e < v->entries; e++, k++) {
         const int i = v->info_row[e], j = v->info_col[e];
-        const bool none = i < 0 || j < 0 || v->held[i] || v->held[j];
+        const bool none = v->held[i] || v->held[j];
         v->pattern.row[k] = none ? 0 : i, v->pattern.col[k] = none ? 0 : j;
         v->values[k] = none ? 0 : v->info[e] * v->column[i] * v->column[j] / v->data;
     }
@@ -162,7 +161,7 @@ static void name_open(const moray_fit *fit, const moray_ocp *ocp, char *text, si
     text[0] = 0;
     for (int i = 0; i < fit->ns; i++) {
         char name[120];
-        if (isfinite(fit->error[i]) || used >= size)
+        if (!isinf(fit->error[i]) || used >= size)
             continue;
         moray_function_entry_name("parameter", "s", ocp->s_names, i, name, sizeof name);
         used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", name + strlen("parameter "));
