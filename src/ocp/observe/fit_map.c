@@ -73,7 +73,7 @@ static void bend_at(const struct fit_map *fit, const struct part *part, int k, d
         part->weight[j] = times * slope + (weight && event >= 0 ? weight[event] : 0);
         memset(part->gradient, 0, (size_t)n * sizeof *part->gradient);
         for (int e = 0; e < jac->nnz; e++)
-            if (jac->row[e] == j && jac->col[e] < n)
+            if (jac->row[e] == j)
                 part->gradient[jac->col[e]] = part->jac[e];
         for (int e = 0; e < part->pairs; e++)
             part->bend[part->a[e] * n + part->b[e]] +=
@@ -83,7 +83,7 @@ static void bend_at(const struct fit_map *fit, const struct part *part, int k, d
         return;
     part->map->hessian(part->map->self, part->in, part->weight, part->hess);
     for (int e = 0; e < hess->nnz; e++)
-        if (hess->row[e] < n && hess->col[e] < n)
+        if (hess->row[e] < n)
             part->bend[hess->row[e] * n + hess->col[e]] += part->hess[e];
 }
 

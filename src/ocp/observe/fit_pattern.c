@@ -29,7 +29,7 @@ static moray_status find_pairs(struct part *part, int ns)
                 pair[map->jac.col[e] * n + map->jac.col[d]] = true;
         }
     for (int e = 0; e < map->hess.nnz; e++)
-        if (map->hess.row[e] < n && map->hess.col[e] < n)
+        if (map->hess.row[e] < n)
             pair[map->hess.row[e] * n + map->hess.col[e]] = true;
     for (int i = 0; i < n; i++)
         if (felt[i])
@@ -98,7 +98,7 @@ static void find_shared(const struct fit_map *fit, int *slope, int *pair)
         if (jac->row[k] == 0 && jac->col[k] >= fit->s)
             slope[jac->col[k] - fit->s] = k;
     for (int k = 0; k < hess->nnz; k++)
-        if (hess->row[k] >= fit->s && hess->col[k] >= fit->s)
+        if (hess->col[k] >= fit->s) // and so is the row, in the lower triangle
             pair[(hess->row[k] - fit->s) * ns + hess->col[k] - fit->s] = k;
 }
 

@@ -179,7 +179,7 @@ const struct node *moray_observed_node(const struct layout *layout, const moray_
 {
     const struct phase_layout *phase = &layout->phase[p];
     const double tau = tau_of(&ocp->phase[p], k);
-    const struct node *nearest = &phase->node[0];
+    const struct node *nearest = phase->node;
     for (int i = 0; i <= phase->mesh.intervals; i++) {
         const int n = i < phase->mesh.intervals ? phase->interval[i].first : phase->nodes - 1;
         if (fabs(phase->node[n].tau - tau) < fabs(nearest->tau - tau))
