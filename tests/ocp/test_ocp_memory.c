@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Every allocation of transcription, scales, wider patterns, carried multipliers, sensitivities and small solves fails
-// once, each by itself: house/test_memory.c has them in whole runs, which take long.
+// Every allocation of transcription, scales, wider patterns, carried multipliers, sensitivities, fits and small solves
+// fails once, each by itself: house/test_memory.c has them in whole runs, which take long.
 #include "allocations.h"
 #include "tap.h"
 
-#include "moray/ocp.h"
+#include "moray/fit.h"
 #include "moray/sensitivity.h"
 #include "ocp/samples.h"
 #include "ocp/solve_again.h"
@@ -37,6 +37,12 @@ static void pay(const moray_ends *at, moray_end_values *out, const void *data)
     out->objective += at->s[0] * at->s[0];
     if (last->u0)
         out->objective += last->u0[0] * last->u0[0] + last->uf[0] * last->uf[0];
+}
+
+static void see_first(const moray_node *at, moray_num *seen, const void *data)
+{
+    (void)data;
+    seen[0] = at->x[0];
 }
 
 // Rich: with controls at the ends and data that move over the mesh.
@@ -202,8 +208,59 @@ static moray_status solve_on(void)
     return status;
 }
 
+static void decay(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->s[0] - at->x[0];
+}
+
+static void nothing(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)at, (void)data;
+    out->objective = 0;
+}
+
+static moray_solution *fitted;
+
+static moray_status confidence(void)
+{
+    moray_fit fit;
+    const moray_status status = moray_fit_new(&fit, fitted, false);
+    moray_fit_free(&fit);
+    return status;
+}
+
+static moray_status solve_fit(moray_ocp **ocp)
+{
+    static const double time[] = {0.2, 0.5, 0.9}, value[] = {0.3, 0.6, 0.7};
+    const moray_settings settings = settings_of("radau2", 2);
+    const moray_phase_spec phase = {.nx = 1,
+                                    .continuous = decay,
+                                    .tf = moray_fixed(1),
+                                    .observed = {.n = 3, .ny = 1, .time = time, .value = value, .observe = see_first}};
+    MORAY_TRY(moray_ocp_new(ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .ns = 1, .endpoint = nothing}));
+    return moray_solve(*ocp, &settings, NULL, &fitted);
+}
+
+static moray_status read_data(void)
+{
+    static const char *const names[] = {"a", "b"};
+    moray_data data;
+    const moray_status status = moray_data_read(&data, names, 2, 0, 1, "test_ocp_memory.csv");
+    moray_data_free(&data);
+    return status;
+}
+
+static void write_data(void)
+{
+    FILE *file = fopen("test_ocp_memory.csv", "w");
+    fprintf(file, "t,a,b\n0.5,1,2\n0.7,3,4\n");
+    fclose(file);
+}
+
 int main(void)
 {
+    moray_ocp *line;
     CHECK_OK(make(&rich, true), "a problem with controls at the ends and data");
     CHECK_OK(make(&plain, false), "one without");
     const moray_settings settings[] = {settings_of("radau2", 2), settings_of("radau2", 3)};
@@ -219,6 +276,13 @@ int main(void)
     fail_each("a second solve", false, solve_again);
     fail_each("a solve", false, solve);
     fail_each("a solve on another's mesh", false, solve_on);
+    CHECK_OK(solve_fit(&line), "a fit");
+    fail_each("its confidence", true, confidence);
+    moray_solution_free(fitted);
+    moray_ocp_free(line);
+    write_data();
+    fail_each("data from a file", false, read_data);
+    remove("test_ocp_memory.csv");
     CHECK_OK(transcribe_with(rich, &shown), "transcribed");
     double there[200];
     for (int j = 0; j < shown->nlp.n && j < 200; j++)

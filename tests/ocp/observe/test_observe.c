@@ -74,8 +74,7 @@ static void test_line(const char *scheme, bool gauss_newton)
     moray_ocp_free(ocp);
 }
 
-// ---- With a duration, with a mesh of the user's
-// --------------------------------------------------------------------------
+// ---- With a duration, with a mesh of the user's ----
 
 static bool has_node(const moray_solution *solution, double t)
 {
@@ -148,8 +147,7 @@ static void test_huber(void)
     refused(problem(&ocp, &task), MORAY_INPUT, "a threshold of 0");
 }
 
-// ---- What the data do not determine
-// ----------------------------------------------------------------------------------
+// ---- What the data do not determine ----
 
 static void test_undetermined(void)
 {
@@ -171,8 +169,7 @@ static void test_undetermined(void)
     moray_ocp_free(ocp);
 }
 
-// ---- Noise
-// -----------------------------------------------------------------------------------------------------------
+// ---- Noise ----
 
 static void test_noise(void)
 {
@@ -212,8 +209,7 @@ static void test_noise(void)
           "the rate is within its interval in %d of %d repetitions", inside, repetitions);
 }
 
-// ---- Derivatives
-// -----------------------------------------------------------------------------------------------------
+// ---- Derivatives ----
 
 static void steer(const moray_node *at, moray_rates *out, const void *data)
 {
@@ -330,27 +326,7 @@ static void test_derivatives(moray_loss loss)
     moray_ocp_free(ocp);
 }
 
-// ---- Data from files, refusals
-// -----------------------------------------------------------------------------------------
-
-static void check_file(const char *text, const char *expected)
-{
-    static const char *const names[] = {"a", "b"};
-    char path[] = "/tmp/moray_data_XXXXXX";
-    const int descriptor = mkstemp(path);
-    moray_data data;
-    CHECK(write(descriptor, text, strlen(text)) == (ssize_t)strlen(text), "file");
-    close(descriptor);
-    const moray_status status = moray_data_read(&data, names, 2, 0, 10, path);
-    if (expected)
-        CHECK(status.code == MORAY_INPUT && strstr(status.text, expected), "told: %s", status.text);
-    else
-        CHECK(!moray_failed(status) && data.n == 3 && data.time[1] == 2 && data.value[0] == 5 && isnan(data.value[3]) &&
-                  isnan(data.value[4]) && data.value[5] == 8,
-              "data with units, a further column and values missing %s", status.text);
-    moray_data_free(&data);
-    unlink(path);
-}
+// ---- Refusals ----
 
 static void test_refusals(void)
 {
@@ -381,21 +357,6 @@ static void test_refusals(void)
     CHECK_OK(two_phases(&ocp, MORAY_LEAST_SQUARES, true), "two phases");
     refused(moray_solve(ocp, &settings, NULL, &solution), MORAY_INPUT, "controls observed where gauss has none");
     moray_ocp_free(ocp);
-    check_file("t [s],b,other,a [m]\n1,6,0,5\n2,nan,0,7\n3,8,0,\n", NULL);
-    check_file("t,a,b\n1,2,3\n4,5,6\n2,3,4\n", ":4: t = 2 comes before");
-    check_file("t,a,b\n1,2,3\n1,5,6\n", "twice");
-    check_file("t,a,b\n1,2,3\n11,5,6\n", ":3: t = 11 is not within");
-    check_file("t,a,b\n1,2,x\n", ":2: b = x");
-    check_file("t,a\n1,2\n", "no column b");
-}
-
-static void test_student(void)
-{
-    CHECK_NEAR(moray_student_95(1), 12.7062047, 1e-6, "Student, 1 degree of freedom");
-    CHECK_NEAR(moray_student_95(2), 4.3026527, 1e-6, "2");
-    CHECK_NEAR(moray_student_95(30), 2.0422725, 1e-6, "30");
-    CHECK_NEAR(moray_student_95(1001), 1.9623355, 1e-5, "1001");
-    CHECK_NEAR(moray_student_95(0), 1.9599640, 1e-6, "normal");
 }
 
 int main(void)
@@ -411,6 +372,5 @@ int main(void)
     test_derivatives(MORAY_LEAST_SQUARES);
     test_derivatives(MORAY_HUBER);
     test_refusals();
-    test_student();
     return tap_done();
 }
