@@ -45,10 +45,10 @@ moray_status moray_periodic_orbit_monodromy(moray_periodic_orbit *orbit, double 
     const orbit_system *system = &orbit->system;
     const int nx = system->nx, m = (system->scheme.points - 1) * nx;
     MORAY_TRY(moray_periodic_orbit_factor(orbit));
-    double *A = malloc(((size_t)m * (size_t)m + (size_t)m * (size_t)nx + (size_t)nx * (size_t)nx) * sizeof *A);
+    double *A = malloc((size_t)m * (size_t)(m + nx) * sizeof *A);
     if (!A)
         return moray_error(MORAY_MEMORY, "no memory for a monodromy matrix");
-    double *B = A + m * m, *product = B + m * nx;
+    double *B = A + m * m;
     bool regular = true;
     for (int k = 0; k < nx * nx; k++)
         M[k] = k % (nx + 1) == 0;
@@ -56,7 +56,7 @@ moray_status moray_periodic_orbit_monodromy(moray_periodic_orbit *orbit, double 
         interval_equations(system, k, A, B);
         regular = moray_dense_solve(m, A, nx, B);
         if (regular)
-            multiply(nx, B + (m - nx) * nx, M, product);
+            multiply(nx, B + (m - nx) * nx, M, A); // which the solution has done with
     }
     free(A);
     return regular ? moray_ok() : moray_error(MORAY_NUMERIC, "the linearisation of an interval is singular");

@@ -46,10 +46,10 @@ static void set_input(orbit_system *system, const double *x, double t)
 static void set_ends(orbit_system *system, const double *z)
 {
     const size_t nx = (size_t)system->nx, np = (size_t)system->ns + 1, nw = (size_t)system->nw;
-    memcpy(system->ends, z, nx * sizeof *z);
-    memcpy(system->ends + nx, z + (system->nodes - 1) * system->nx, nx * sizeof *z);
-    memcpy(system->ends + 2 * nx, system->p, np * sizeof *z);
-    memcpy(system->ends + 2 * nx + np, z + system->unknowns - system->nw, nw * sizeof *z);
+    memcpy(system->in, z, nx * sizeof *z);
+    memcpy(system->in + nx, z + (system->nodes - 1) * system->nx, nx * sizeof *z);
+    memcpy(system->in + 2 * nx, system->p, np * sizeof *z);
+    memcpy(system->in + 2 * nx + np, z + system->unknowns - system->nw, nw * sizeof *z);
 }
 
 // Calls of one interval's defects: row i of the scheme takes node j of interval k with P and h Q.
@@ -84,7 +84,7 @@ bool moray_orbit_residual(orbit_system *system, const double *z, double *F)
     }
     defects(system, z, F);
     set_ends(system, z);
-    system->closing->value(system->closing->self, system->ends, F + (system->nodes - 1) * system->nx);
+    system->closing->value(system->closing->self, system->in, F + (system->nodes - 1) * system->nx);
     return moray_all_finite(F, system->unknowns);
 }
 
@@ -162,7 +162,7 @@ void moray_orbit_slopes(orbit_system *system, const double *z)
         moray_orbit_plant_slope(system, z + node * system->nx, moray_orbit_time(system, node),
                                 orbit_slope_at(system, node));
     set_ends(system, z);
-    system->closing->jacobian(system->closing->self, system->ends, system->closes);
+    system->closing->jacobian(system->closing->self, system->in, system->closes);
     moray_triplets_start(&system->jacobian, system->values);
     walk_jacobian(system, &system->jacobian);
 }
@@ -236,13 +236,12 @@ static moray_status make_memory(orbit_system *system)
         return moray_error(MORAY_INPUT, "an orbit of %d nodes with %d outputs by %d inputs each is too large",
                            system->nodes, system->outputs, system->inputs);
     system->found = calloc(n_found + np, sizeof *system->found);
-    system->p = calloc(np + inputs + ends + outputs * (1 + inputs) + nnz + closes, sizeof *system->p);
+    system->p = calloc(np + ends + outputs * (1 + inputs) + nnz + closes, sizeof *system->p);
     if (!system->found || !system->p)
         return moray_error(MORAY_MEMORY, "no memory for an orbit of %d nodes", system->nodes);
     system->column = system->found + n_found;
     system->in = system->p + np;
-    system->ends = system->in + inputs;
-    system->out = system->ends + ends;
+    system->out = system->in + ends;
     system->slope = system->out + outputs;
     system->sparse = system->slope + outputs * inputs;
     system->closes = system->sparse + nnz;

@@ -18,8 +18,7 @@ typedef struct orbit_system {
     int *found;     // [n_found]
     int *column;    // [ns + 1] where a parameter stands in z; -1: it is given
     double *p;      // [ns + 1] of the last z that was evaluated
-    double *in;     // [inputs] scratch
-    double *ends;   // [closing inputs] scratch
+    double *in;     // [closing inputs] scratch: of the plant, which has fewer, or of the closing conditions
     double *out;    // [nodes][outputs] of the plant
     double *slope;  // [nodes][outputs][inputs], dense
     double *sparse; // [plant.jac.nnz] scratch

@@ -42,11 +42,11 @@ static double course_between(const double *from, const double *to)
     return atan2(to[1] - from[1], to[0] - from[0]);
 }
 
-// The turn at waypoint k, to the left, and what it takes of the legs on either side.
+// The turn at waypoint k > 0, to the left, and what it takes of the legs on either side.
 static double turn_at(const waypoints *through, int k, double radius, double *taken)
 {
     double turn = 0;
-    if (k > 0 && k < through->n - 1)
+    if (k < through->n - 1)
         turn = remainder(course_between(through->at[k], through->at[k + 1]) -
                              course_between(through->at[k - 1], through->at[k]),
                          2 * M_PI);

@@ -33,8 +33,8 @@ static moray_status read_list(waypoints *points, const char *text)
 {
     for (const char *at = text; *at;) {
         double x, y;
-        int used = 0;
-        if (sscanf(at, " %lf , %lf %n", &x, &y, &used) != 2 || used == 0)
+        int used;
+        if (sscanf(at, " %lf , %lf %n", &x, &y, &used) != 2)
             return moray_error(MORAY_INPUT, "path: '%.60s': must be waypoints X,Y X,Y ... in m", at);
         MORAY_TRY(add_waypoint(points, x, y));
         at += used;

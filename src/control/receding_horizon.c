@@ -16,7 +16,7 @@ static const double EARLY = 1e-9; // of an interval: rounding by which a measure
 struct moray_receding_horizon {
     moray_receding_horizon_spec spec;
     double due;    // time of the next plan
-    void *problem; // of the plan in force
+    void *problem; // of the plan in force; NULL: it is the spec's
     moray_solution *solution;
     moray_receding_horizon_record record;
     moray_replan *replan; // [room]
@@ -41,8 +41,8 @@ static moray_status check_sizes(const moray_receding_horizon *r, const moray_ocp
     return moray_ok();
 }
 
-// A plan that was seen from another state: the gap to this one closes along it, in even steps, so that no interval alone
-// has to make up for it.
+// A plan that was seen from another state: the gap to this one closes along it, in even steps, so that no interval
+// alone has to make up for it.
 static void close_gap(const double *state, int n, int nx, double *x)
 {
     for (int i = 0; i < nx; i++) {
@@ -52,7 +52,8 @@ static void close_gap(const double *state, int n, int nx, double *x)
     }
 }
 
-// The last plan, moved on to begin in the state; without one the state stays.
+// The last plan, moved on to begin in the state; without one the state stays, and controls are the zeros that they were
+// made of.
 static moray_guess guess_from(moray_receding_horizon *r, double t, const double *state, moray_samples *samples)
 {
     const moray_solution *from = r->solution ? r->solution : r->spec.first;
@@ -60,7 +61,6 @@ static moray_guess guess_from(moray_receding_horizon *r, double t, const double 
     double *time = r->guess, *x = time + r->n, *u = x + nx * (size_t)r->n;
     for (int k = 0; k < r->n; k++) {
         time[k] = t + r->spec.horizon * k / (r->n - 1);
-        memset(u + (size_t)k * nu, 0, nu * sizeof *u);
         memcpy(x + (size_t)k * nx, state, nx * sizeof *x);
         if (from)
             moray_solution_at(from, 0, time[k], x + (size_t)k * nx, u + (size_t)k * nu);
@@ -92,7 +92,7 @@ static moray_status solve(moray_receding_horizon *r, double t, const double *sta
 static void drop(const moray_receding_horizon *r, void *problem, moray_solution *solution)
 {
     moray_solution_free(solution);
-    if (problem && !r->spec.ocp)
+    if (problem)
         r->spec.replanner.free(problem);
 }
 

@@ -4,6 +4,8 @@
 // is there already.
 #include "tap.h"
 
+#include <string.h>
+
 #include "moray/control/periodic_orbit.h"
 #include "moray/num.h"
 
@@ -62,6 +64,67 @@ static void test_signs(const char *scheme)
         CHECK(info.residual <= 1e-11 && info.iterations > 2, "to %.1e in %d steps", info.residual, info.iterations);
         moray_periodic_orbit_free(orbit);
     }
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
+// atan(x) = p is where both come to rest: from far off whole steps of Newton's method go further away each time.
+static void flat(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    for (int r = 0; r < 2; r++)
+        out[r] = in[2] - catan(in[r]);
+}
+
+static void test_halves(void)
+{
+    moray_map plant, closing = returning();
+    const double from[2] = {3, -2.5}, p[2] = {0.3, 1e3};
+    const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+    moray_periodic_orbit_info info;
+    double x[2];
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, flat, NULL, NULL, probe), "plant");
+    moray_periodic_orbit *orbit = orbit_of(&plant, &closing, "radau1");
+    CHECK_OK(moray_periodic_orbit_solve(orbit, p, &guess, &info), "found by halves of steps");
+    moray_periodic_orbit_state(orbit, 0, x);
+    CHECK_NEAR(x[0], tan(0.3), 1e-10, "at rest");
+    CHECK_NEAR(x[1], tan(0.3), 1e-10, "and the other one");
+    moray_periodic_orbit_free(orbit);
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
+static void lines(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    out[0] = in[1] - 3 * in[0] + in[2];
+    out[1] = -2 * in[0] - in[1];
+}
+
+// Where nothing is left to the last bit one step says so, and needs no slopes.
+static void test_exact(void)
+{
+    moray_map plant, closing = returning();
+    const double from[2] = {0, 0};
+    const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+    moray_periodic_orbit_info info;
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, lines, NULL, NULL, probe), "plant");
+    moray_periodic_orbit *orbit = orbit_of(&plant, &closing, "gauss2");
+    const double p[2] = {0, 0.7};
+    CHECK_OK(moray_periodic_orbit_solve(orbit, p, &guess, &info), "at rest already");
+    CHECK(info.residual == 0 && info.iterations == 1 && info.slopes == 1, "by %d step", info.iterations);
+    CHECK_OK(moray_periodic_orbit_solve(orbit, p, NULL, &info), "and again");
+    CHECK(info.residual == 0 && info.iterations == 1 && info.slopes == 0, "by %d step", info.iterations);
+    for (int k = 0; k < 3; k++) {
+        static const double wrong[3] = {0, -1, INFINITY};
+        char says[60];
+        snprintf(says, sizeof says, "period = %g: must be finite and above 0", wrong[k]);
+        const moray_status status = moray_periodic_orbit_solve(orbit, (double[]){0, wrong[k]}, &guess, &info);
+        CHECK(status.code == MORAY_INPUT && strcmp(status.text, says) == 0, "%s", status.text);
+    }
+    const moray_status status = moray_periodic_orbit_solve(orbit, (double[]){NAN, 1}, &guess, &info);
+    CHECK(strcmp(status.text, "parameter 0 of the orbit = nan: must be finite") == 0, "%s", status.text);
+    moray_periodic_orbit_free(orbit);
     moray_map_release(&plant);
     moray_map_release(&closing);
 }
@@ -135,6 +198,8 @@ int main(void)
     test_mean("radau3");
     test_mean("gauss3");
     test_mean("lobatto4");
+    test_halves();
+    test_exact();
     test_signs("radau3");
     test_signs("gauss2");
     test_signs("lobatto3");

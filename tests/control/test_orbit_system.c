@@ -92,6 +92,42 @@ static double worst_by_parameters(orbit_system *system, double *z)
     return worst;
 }
 
+// Slopes are those at z, whatever was looked at before; of the plant all entries, whatever stood there.
+static void check_dense(orbit_system *system, double *z)
+{
+    static double F[UNKNOWN];
+    enum { ENTRIES = NX * (NX + NS + 1) };
+    const double at[NX] = {0.7, -0.4}, t = 0.6;
+    double slope[ENTRIES], before = 0;
+    for (int k = 0; k < ENTRIES; k++)
+        slope[k] = NAN;
+    moray_orbit_plant_slope(system, at, t, slope);
+    const double *s = system->p, cube = at[0] * at[0] * at[0];
+    const double dense[ENTRIES] = {[1] = 1,    [NX + NS + 1] = -3 * s[0] * at[0] * at[0], -0.2 * t, -cube,
+                                   sin(2 * t), 2 * s[1] * cos(2 * t) - 0.2 * at[1]};
+    for (int k = 0; k < ENTRIES; k++)
+        CHECK_NEAR(slope[k], dense[k], 1e-13, "slope of the plant");
+    for (int round = 0; round < 2; round++) {
+        double sum = 0;
+        moray_orbit_residual(system, z, F);
+        for (int k = 0; k < system->n_found && round; k++)
+            system->p[system->found[k]] = 77; // as if others had been tried since
+        moray_orbit_slopes(system, z);
+        for (int e = 0; e < system->jacobian.pattern.nnz; e++)
+            sum += system->values[e] * (1 + e % 7);
+        CHECK(round == 0 || sum == before, "the slopes at z: %g, %g", sum, before);
+        before = sum;
+    }
+    const double period = system->p[NS];
+    const int column = system->column[NS];
+    for (int k = 0; k < 2; k++) {
+        *(column < 0 ? &system->p[NS] : &z[column]) = k ? -1 : 0;
+        CHECK(!moray_orbit_residual(system, z, F), "no orbit has a period of %d", -k);
+    }
+    *(column < 0 ? &system->p[NS] : &z[column]) = period;
+    CHECK(moray_orbit_residual(system, z, F), "but of %g", period);
+}
+
 static void test_slopes(void)
 {
     static const int found[][2] = {{0, 1}, {0, NS}, {1, NS}}; // stiffness, force, period
@@ -123,6 +159,7 @@ static void test_slopes(void)
               worst);
         const double given = worst_by_parameters(&system, z);
         CHECK(given < 1e-8, "and by the one that is given: off by %.1e", given);
+        check_dense(&system, z);
         moray_orbit_system_free(&system);
         moray_map_release(&plant);
         moray_map_release(&closing);
@@ -175,6 +212,59 @@ static void test_no_parameters(void)
 
 // ---- Closing conditions --------------------------------------------------------------------------------------------
 
+// Of different kinds and states, at each place of the list; and what is refused, by whole messages.
+static void test_conditions(void)
+{
+    static const moray_closing_condition all[3] = {
+        {MORAY_CLOSE_STARTS, 2, 0.5}, {MORAY_CLOSE_RETURNS, 0, -1}, {MORAY_CLOSE_STARTS, 1, 7}};
+    const double ends[] = {2, 10, 20, 7, 14, 23, 0.1, 1}; // x(0), x(T), s, T
+    for (int first = 0; first < 3; first++) {
+        moray_closing_condition list[3];
+        double out[3], slope[4], dense[3][8] = {{0}};
+        moray_map map;
+        for (int k = 0; k < 3; k++)
+            list[k] = all[(first + k) % 3];
+        CHECK_OK(moray_closing_map(&map, 3, 1, list, 3), "conditions");
+        CHECK(map.n_in == 8 && map.n_out == 3 && map.jac.nnz == 4, "%d slopes", map.jac.nnz);
+        map.value(map.self, ends, out);
+        map.jacobian(map.self, ends, slope);
+        for (int e = 0; e < map.jac.nnz; e++)
+            dense[map.jac.row[e]][map.jac.col[e]] += slope[e];
+        for (int k = 0; k < 3; k++) {
+            const int state = list[k].state;
+            const bool returns = list[k].kind == MORAY_CLOSE_RETURNS;
+            const double at = returns ? ends[3 + state] - ends[state] : ends[state];
+            CHECK(out[k] == at - list[k].value, "condition %d: %g", k, out[k]);
+            for (int c = 0; c < 8; c++)
+                CHECK(dense[k][c] == (c == state                  ? (returns ? -1 : 1)
+                                      : returns && c == 3 + state ? 1
+                                                                  : 0),
+                      "its slope %d: %g", c, dense[k][c]);
+        }
+        moray_map_release(&map);
+        for (int k = 0; k < 3; k++)
+            for (int side = 0; side < 2; side++) {
+                char says[100];
+                const int right = list[k].state;
+                list[k].state = side ? 3 : -1;
+                const moray_status status = moray_closing_map(&map, 3, 1, list, 3);
+                snprintf(says, sizeof says, "closing condition %d is of state %d: must be 0 to 2", k, list[k].state);
+                CHECK(status.code == MORAY_INPUT && !map.self && strcmp(status.text, says) == 0, "%s", status.text);
+                list[k].state = right;
+            }
+    }
+    static const int sizes[][3] = {{0, 0, 1}, {1, -1, 1}, {1, 0, 0}};
+    for (int k = 0; k < 3; k++) {
+        char says[120];
+        moray_map map;
+        const moray_closing_condition one = {MORAY_CLOSE_STARTS, 0, 0};
+        const moray_status status = moray_closing_map(&map, sizes[k][0], sizes[k][1], &one, sizes[k][2]);
+        snprintf(says, sizeof says, "%d closing conditions of %d states and %d parameters: must be at least 1, 1, 0",
+                 sizes[k][2], sizes[k][0], sizes[k][1]);
+        CHECK(status.code == MORAY_INPUT && strcmp(status.text, says) == 0, "%s", status.text);
+    }
+}
+
 // The first of several that an array holds: those behind have no say.
 static void test_first_conditions(void)
 {
@@ -200,6 +290,7 @@ int main(void)
 {
     test_slopes();
     test_no_parameters();
+    test_conditions();
     test_first_conditions();
     return tap_done();
 }

@@ -6,6 +6,8 @@
 
 #include "tap.h"
 
+#include <string.h>
+
 enum { TOLD = 4, POLISHED = 3, STARTS = 1, SEARCHES = TOLD + STARTS, LOOKS = TOLD + 4 * STARTS, OF_EACH = 3, N = 2 };
 enum { ROUNDS = 8, CALLS = OF_EACH * N, MOST = LOOKS + CALLS * (SEARCHES + ROUNDS * POLISHED) };
 
@@ -15,6 +17,7 @@ typedef struct script {
     double level[TOLD];  // of the places told, at first
     double gain[ROUNDS]; // of each round, of all levels' first
     int visits[TOLD], calls;
+    bool falls; // what costs else, with the numbers
     double x[MOST][N];
 } script;
 
@@ -24,7 +27,7 @@ static bool scripted(void *self, const double *x, double *cost)
     for (int j = 0; j < N && s->calls < MOST; j++)
         s->x[s->calls][j] = x[j];
     s->calls++;
-    *cost = 100 + x[0] + x[1];
+    *cost = 100 + (s->falls ? -1 : 1) * (x[0] + x[1]);
     for (int i = 0; i < TOLD; i++)
         if (x[0] == told[i][0] && x[1] == told[i][1]) {
             *cost = s->level[i];
@@ -49,6 +52,18 @@ static moray_tuning_info tune(script *s)
     return info;
 }
 
+// The best of the points looked at starts a search beside the places told.
+static void test_start(void)
+{
+    script s = {.level = {20, 21, 22, 23}, .falls = true};
+    tune(&s);
+    int best = TOLD;
+    for (int k = TOLD; k < LOOKS; k++)
+        best = s.x[k][0] + s.x[k][1] > s.x[best][0] + s.x[best][1] ? k : best;
+    CHECK(best != TOLD, "which is not the first: %d", best - TOLD);
+    CHECK(s.x[LOOKS + TOLD * CALLS][0] == s.x[best][0], "from %g, the best", s.x[best][0]); // the other is near a bound
+}
+
 // In pairs, the second for certain, each further one where that before it gained more than 0.5 % of the cost.
 static void test_rounds(void)
 {
@@ -66,6 +81,8 @@ static void test_rounds(void)
         {"small gains of a cost below zero", -20, {2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3, 2e-3}, 4},
         {"gains of a cost below zero", -20, {0, 0, 3e-3, 3e-3, 3e-3, 3e-3}, 8},
         {"a gain of a cost below zero", -20, {0, 0, 6e-3}, 6},
+        {"no gain of a cost of zero", 0, {0}, 4},
+        {"a gain that counts beside the best place alone", 20, {0, 0, 5.1e-3}, 6},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         script s = {.level = {cases[k].level, cases[k].level + 1, cases[k].level + 2, cases[k].level + 3}};
@@ -94,6 +111,27 @@ static void test_agree(void)
         const moray_tuning_info info = tune(&s);
         CHECK(info.agree == close, "%d of %d within 5 %%: %d", close, TOLD, info.agree);
         CHECK(info.searches == SEARCHES, "%d searches", info.searches);
+    }
+}
+
+// Where all points are as good only those that were searched from count, and sizes of nothing are none.
+static void test_all_agree(void)
+{
+    script s = {.level = {100, 100.5, 101, 101.5}};
+    const moray_tuning_info info = tune(&s);
+    CHECK(info.agree == SEARCHES && info.searches == SEARCHES, "%d of %d agree", info.agree, info.searches);
+    static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
+    const moray_tuning_problem problem = {N, unit, scripted, &s};
+    for (int k = 0; k < 2; k++) {
+        moray_tuning_settings settings = moray_tuning_settings_default();
+        moray_tuning_info none;
+        char says[100];
+        double x[N];
+        settings.starts = k;
+        settings.evaluations = 1 - k;
+        snprintf(says, sizeof says, "starts = %d, evaluations = %d: must be at least 1", k, 1 - k);
+        const moray_status status = moray_tune(&problem, &settings, told[0], TOLD, x, &none);
+        CHECK(status.code == MORAY_INPUT && strcmp(status.text, says) == 0, "%s", status.text);
     }
 }
 
@@ -173,11 +211,45 @@ static void test_walk(void)
     }
 }
 
+// ---- A valley ------------------------------------------------------------------------------------------------------
+
+static bool valley(void *self, const double *x, double *cost)
+{
+    ++*(int *)self;
+    *cost = 3 + pow(x[0] - 0.2, 2) + 0.5 * fabs(x[1] - 0.9 * x[0]) + 0.1 * cos(9 * x[1]);
+    return true;
+}
+
+// What is remembered costs nothing and changes nothing; a coarse tolerance costs less.
+static void test_remembers(void)
+{
+    static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
+    int calls[3] = {0};
+    double x[3][N];
+    moray_tuning_info info[3];
+    for (int k = 0; k < 3; k++) {
+        const moray_tuning_problem problem = {N, unit, valley, &calls[k]};
+        moray_tuning_settings settings = moray_tuning_settings_default();
+        settings.starts = 3;
+        settings.jobs = 1;
+        settings.remembers = k != 1;
+        settings.tolerance = k == 2 ? 0.1 : 1e-12;
+        CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x[k], &info[k]), "tunes");
+        CHECK(info[k].evaluations == calls[k], "%d calls", calls[k]);
+    }
+    CHECK(memcmp(x[0], x[1], sizeof x[0]) == 0 && info[0].cost == info[1].cost, "to the same to the last bit");
+    CHECK(calls[0] < calls[1], "in %d calls instead of %d", calls[0], calls[1]);
+    CHECK(calls[2] < calls[0], "coarsely in %d", calls[2]);
+}
+
 int main(void)
 {
+    test_remembers();
     test_walk();
+    test_start();
     test_rounds();
     test_agree();
+    test_all_agree();
     test_models();
     return tap_done();
 }
