@@ -63,7 +63,7 @@ static void tie(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
     out->objective = at->s[0] * at->phase[2].xf[0] + at->s[2] * at->s[2] + at->phase[1].tf;
-    out->e[0] = at->phase[0].xf[1] * at->s[1];
+    out->e[0] = at->phase[0].xf[1] * at->s[0];
 }
 
 struct form {
@@ -171,7 +171,7 @@ static int write_out(const struct form *form, const double *in, double *out)
     const double *s = in + first_parameter;
     int at = base_out;
     out[0] = s[0] * in[10 + 2] + s[2] * s[2] + in[6 + 3];
-    out[1] = in[4] * s[1];
+    out[1] = in[4] * s[0];
     for (int p = 0; p < phases; p++) {
         double sum = 0, curvature, y[most_ny];
         for (int k = 0; k < n[p]; k++) {
@@ -256,7 +256,7 @@ static void test_gauss_newton(const struct form *form, struct transcription *t, 
         weight[i] = 1.3 * cos(i) + 0.2;
     DENSE(want, first_parameter, 12) = DENSE(want, 12, first_parameter) = weight[0];
     DENSE(want, first_parameter + 2, first_parameter + 2) = 2 * weight[0];
-    DENSE(want, first_parameter + 1, 4) = DENSE(want, 4, first_parameter + 1) = weight[1];
+    DENSE(want, first_parameter, 4) = DENSE(want, 4, first_parameter) = weight[1];
     int at = base_out;
     for (int p = 0; p < phases; p++) {
         for (int k = 0; k < n[p] * ny[p]; k++)

@@ -120,6 +120,11 @@ static void test_hold(void)
     CHECK(phase.t0.lower == -1 && phase.t0.upper == 2.5 && phase.tf.lower == 6 && phase.tf.upper == 9,
           "it begins before the first, within [%g, %g], and ends after the last, within [%g, %g]", phase.t0.lower,
           phase.t0.upper, phase.tf.lower, phase.tf.upper);
+    struct phase both = {.t0 = moray_between(-1, 4), .tf = moray_between(2, 9)};
+    moray_hold_observations(&both, &(moray_observations){.n = 5, .time = in});
+    CHECK(both.t0.upper == -7 && both.tf.lower == 6, "the first may come last");
+    moray_hold_observations(&both, &(moray_observations){.n = 6, .time = in});
+    CHECK(both.t0.upper == -7 && both.tf.lower == 20, "and so may the last");
     moray_hold_observations(&phase, &(moray_observations){.n = 1, .time = in});
     CHECK(phase.t0.upper == 2.5 && phase.tf.lower == 6, "which data in between leave");
     phase.observed.n = 1;

@@ -302,17 +302,19 @@ static void test_error(const moray_ocp *ocp)
 {
     static const double edge[] = {0, 0.4, 0.7, 1}, sizes[NX + NU] = {2, 0.5, 0, -3, 4};
     struct transcription *t = transcribe(ocp, MORAY_RADAU, 2, edge, 0.6, 2.9);
-    double *point = random_point(t, 0.7, 2.8), at[NX + NU];
+    double *point = random_point(t, 0.7, 2.8), at[NX + 1 + NU];
+    double *const place[] = {at, at + 1, at + NX + 1, at + NX + 2, at + NX + 3}; // what is between is of neither
+    at[NX] = 1e9;
     CHECK(moray_transcription_values(t, point), "values");
     const double *seen = point + t->layout.phase[0].sight[2].x;
     for (int r = 0; r < NX + NU; r++) {
         const double size = sizes[r] > 0 ? sizes[r] : 1;
         for (int i = 0; i < NX + NU; i++)
-            at[i] = seen[i] + (i % 2 ? 1e-3 : -1e-3) * (sizes[i] > 0 ? sizes[i] : 1);
-        at[r] = seen[r] + 0.25 * size;
-        CHECK_NEAR(moray_sight_error(t, 0, 2, at, at + NX, sizes), 0.25, 1e-12, "above");
-        at[r] = seen[r] - 0.75 * size;
-        CHECK_NEAR(moray_sight_error(t, 0, 2, at, at + NX, sizes), 0.75, 1e-12, "and below");
+            *place[i] = seen[i] + (i % 2 ? 1e-3 : -1e-3) * (sizes[i] > 0 ? sizes[i] : 1);
+        *place[r] = seen[r] + 0.25 * size;
+        CHECK_NEAR(moray_sight_error(t, 0, 2, at, at + NX + 1, sizes), 0.25, 1e-12, "above");
+        *place[r] = seen[r] - 0.75 * size;
+        CHECK_NEAR(moray_sight_error(t, 0, 2, at, at + NX + 1, sizes), 0.75, 1e-12, "and below");
     }
     CHECK(moray_sight_error(t, 0, 2, seen, seen + NX, sizes) == 0, "none at what is seen");
     free(point);
