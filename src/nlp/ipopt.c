@@ -20,9 +20,10 @@ struct session {
     const moray_nlp_settings *settings;
     moray_nlp_info *info;
     double (*clock)(void); // of the parts
-    double *last;          // [n] where the Jacobian was last asked for: the iterate, when an iteration is reported
-    double *best;          // [n] the iterate of the least violation, then objective
-    double *bounds;        // [2 n + 2 m] as Ipopt gets them
+    double *last;   // [n] where the Jacobian was last asked for, or without rows the gradient: the iterate, when an
+                    // iteration is reported
+    double *best;   // [n] the iterate of the least violation, then objective
+    double *bounds; // [2 n + 2 m] as Ipopt gets them
     double best_violation, best_objective;
 };
 
@@ -57,8 +58,9 @@ static Bool on_objective(Index n, Number *x, Bool fresh, Number *f, UserDataPtr 
 
 static Bool on_gradient(Index n, Number *x, Bool fresh, Number *gradient, UserDataPtr data)
 {
-    (void)n;
     struct session *session = data;
+    if (session->nlp->m == 0)
+        memcpy(session->last, x, (size_t)n * sizeof *x);
     const double start = session->clock();
     return account(session, eval_gradient, start, session->nlp->gradient(session->nlp->self, x, fresh, gradient));
 }
@@ -340,6 +342,8 @@ moray_status moray_ipopt_solve(const moray_nlp *nlp, const moray_nlp_settings *s
     *info = (moray_nlp_info){0};
     if (!(settings->tolerance > 0 && settings->tolerance < 1)) // Ipopt would print its own complaint
         return moray_error(MORAY_INPUT, "tolerance = %g: must lie between 0 and 1", settings->tolerance);
+    if (settings->max_iterations < 0)
+        return moray_error(MORAY_INPUT, "max_iterations = %d: must not be negative", settings->max_iterations);
     const double wall_start = moray_clock(), cpu_start = moray_processor_clock();
     double *block = calloc(7 * n + 3 * m + 1, sizeof *block);
     if (!block)
