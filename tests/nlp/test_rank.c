@@ -110,9 +110,55 @@ static void test_unremovable(void)
     CHECK(worst < 1e-6, "can be removed: %.1e", worst);
 }
 
+// Rows of norm 1 of which two depend on others: what comes out is what nothing removes of the row that has the most of
+// it, of a start with a part in everything.
+static void test_most_involved(void)
+{
+    int negative = 0, rows[m] = {0};
+    double worst = 0;
+    for (unsigned long long seed = 20; seed < 60; seed++) {
+        struct planted p;
+        unsigned long long random = seed;
+        double start[m], left[m], alone[m] = {0}, expected[m], weight[m], size = 0, norm;
+        int most = 0;
+        plant(&p, seed);
+        const double part[] = {tap_random(&random, -2, 2), tap_random(&random, -2, 2), tap_random(&random, -2, 2),
+                               tap_random(&random, -2, 2)};
+        for (int j = 0; j < n; j++) {
+            p.J[3][j] = part[0] * p.J[1][j] + part[1] * p.J[2][j];
+            p.J[6][j] = part[2] * p.J[2][j] + part[3] * p.J[5][j];
+        }
+        for (int i = 0; i < m; i++) {
+            double length = 0;
+            for (int j = 0; j < n; j++)
+                length = hypot(length, p.cols[j] ? p.J[i][j] : 0);
+            for (int j = 0; j < n; j++)
+                p.jac[i * n + j] = p.J[i][j] /= length;
+            start[i] = 1 + 0.5 * sin(12.9898 * i);
+        }
+        residual_of(&p, start, left);
+        for (int i = 0; i < m; i++)
+            most = fabs(left[i]) > fabs(left[most]) ? i : most;
+        alone[most] = 1;
+        residual_of(&p, alone, expected);
+        for (int i = 0; i < m; i++)
+            size = hypot(size, expected[i]);
+        CHECK_OK(moray_nlp_dependent_rows(&(struct selection){&p.nlp, p.jac, p.rows, p.cols}, weight, &norm), "rows");
+        for (int i = 0; i < m; i++)
+            worst = tap_worse(worst, fabs(weight[i] - expected[i] / size));
+        worst = tap_worse(worst, norm);
+        negative += left[most] < 0;
+        rows[most]++;
+    }
+    CHECK(worst < 1e-6, "from the row most involved: %.1e", worst);
+    CHECK(negative > 4 && negative < 36 && rows[0] == 0 && rows[4] == 0 && rows[2] > 0 && rows[6] > 0,
+          "which %d times has a negative part", negative);
+}
+
 int main(void)
 {
     test_dependence();
+    test_most_involved();
     test_unremovable();
     return tap_done();
 }
