@@ -156,7 +156,6 @@ static moray_status find_step(moray_periodic_orbit *orbit, bool old)
 static moray_status newton(moray_periodic_orbit *orbit, moray_periodic_orbit_info *info)
 {
     bool old = orbit->usable;
-    info->residual = INFINITY;
     if (!moray_orbit_residual(&orbit->system, orbit->z, orbit->F))
         return moray_error(MORAY_NOT_SOLVED, "the plant is not finite where the search for an orbit starts");
     info->residual = residual_of(orbit);

@@ -119,8 +119,31 @@ static void test_periods(void)
     }
 }
 
+static moray_status end(const moray_closed_loop_sample *sample, void *self)
+{
+    (void)sample;
+    ++*(int *)self;
+    return moray_error(MORAY_INTERRUPTED, "seen");
+}
+
+// The shortest period is one.
+static void test_shortest(void)
+{
+    int measured = 0;
+    double x = 1;
+    const moray_controller controller = {
+        .nu = 1, .control = control, .measure = end, .period = 1e-9, .self = &measured};
+    const moray_closed_loop_spec spec = {.plant = {.nx = 1, .nu = 1, .rates = rates},
+                                         .controller = &controller,
+                                         .t0 = -0.5,
+                                         .t1 = 1,
+                                         .settings = moray_sim_settings_default()};
+    CHECK(moray_closed_loop_run(&spec, &x).code == MORAY_INTERRUPTED && measured == 1, "measured %d times", measured);
+}
+
 int main(void)
 {
+    test_shortest();
     test_order();
     test_periods();
     return tap_done();

@@ -170,7 +170,7 @@ static void test_gradients(const int *found, const char *scheme)
     rig r;
     rig_new(&r, found, scheme);
     for (int kind = 0; kind < KINDS; kind++)
-        for (int k = 0; k < (kind == OF_POINT || kind == OF_OUTPUT ? 5 : 1); k++) {
+        for (int k = 0; k < (kind == OF_ENDS ? 1 : kind == OF_MEAN ? NOUT : 5); k++) {
             const int row = kind == OF_OUTPUT || kind == OF_MEAN ? (k + 2) % NOUT : 0;
             const double worst = worst_gradient(&r, kind, phases[k], row);
             CHECK(worst < 1e-6, "%s, parameters %d and %d are found: %s at phase %g, off by %.1e", scheme, found[0],

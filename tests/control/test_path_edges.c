@@ -2,9 +2,11 @@
 //
 // Paths at their edges: where pieces meet, legs that are just long enough, points next to a bend's centre, and currents
 // that just stop a vehicle.
+#define _GNU_SOURCE // uselocale
 #include "degree.h"
 #include "tap.h"
 
+#include <locale.h>
 #include <string.h>
 
 #include "moray/control/path.h"
@@ -39,13 +41,15 @@ static void test_joints(bool eased)
 // Two right angles take all of the leg between them, but for rounding.
 static void test_just(void)
 {
-    static const double excess[] = {-1e-9, 0, 1e-13, 1e-10, 1e-9};
-    for (int k = 0; k < 5; k++) {
+    static const double excess[] = {-1e-9, 0, 2.3e-16, 1e-13, 1e-10, 1e-9};
+    for (int k = 0; k < 6; k++) {
         moray_path path;
         const double waypoint[][2] = {{0, 0}, {9, 0}, {9, 4}, {0, 4}};
         const moray_status status = moray_path_through(&path, waypoint, 4, 2 * (1 + excess[k]));
         CHECK(moray_failed(status) == (excess[k] > 1e-12), "more than the leg by %g: %s", excess[k], status.text);
         CHECK(moray_failed(status) || excess[k] == 0 || path.n == (excess[k] < 0 ? 5 : 4), "%d pieces", path.n);
+        for (int i = 0; i < path.n; i++)
+            CHECK(path.piece[i].length > 0, "piece %d is %g m long", i, path.piece[i].length);
         moray_path_free(&path);
     }
 }
@@ -92,6 +96,15 @@ static void test_own_courses(void)
     moray_path_free(&path);
     CHECK_OK(moray_path_read(&path, "0,0 10,0", 2), "to the east");
     CHECK(moray_failed(moray_path_passable(&path, 0.35, current)), "against it");
+    moray_path_free(&path);
+    // Courses within asin(5/8) of the current, 38.7 deg, are made good: a bend to 38 deg ends before.
+    const double turn = 38 * DEG, waypoint[][2] = {{0, 0}, {10, 0}, {10 + 10 * cos(turn), 10 * sin(turn)}};
+    CHECK_OK(moray_path_through(&path, waypoint, 3, 4), "a bend");
+    CHECK_OK(moray_path_passable(&path, 0.25, (double[]){0.4, 0}), "as far as it turns");
+    moray_path_free(&path);
+    const locale_t before = uselocale((locale_t)0);
+    CHECK_OK(moray_path_read(&path, "0,0 10,0", 2), "a list");
+    CHECK(uselocale((locale_t)0) == before, "leaves the locale");
     moray_path_free(&path);
 }
 

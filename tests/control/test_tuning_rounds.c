@@ -242,8 +242,34 @@ static void test_remembers(void)
     CHECK(calls[2] < calls[0], "coarsely in %d", calls[2]);
 }
 
+// How often the one place of no cost is visited.
+static bool ramp(void *self, const double *x, double *cost)
+{
+    *(int *)self += x[0] == 0.5;
+    *cost = fabs(x[0] - 0.5);
+    return true;
+}
+
+// One number is searched by the same model in every round, beginning where the best place is.
+static void test_one(void)
+{
+    static const moray_tuned_number unit = {MORAY_TUNED_LINEAR, 0, 1, 0};
+    const double from = 0.5;
+    int visits = 0;
+    const moray_tuning_problem problem = {1, &unit, ramp, &visits};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    double x;
+    settings.starts = settings.jobs = 1;
+    settings.remembers = false;
+    CHECK_OK(moray_tune(&problem, &settings, &from, 1, &x, &info), "tunes");
+    CHECK(x == 0.5 && info.cost == 0, "to %g", x);
+    CHECK(visits >= 6, "looked at, searched from, and in four rounds: %d", visits);
+}
+
 int main(void)
 {
+    test_one();
     test_remembers();
     test_walk();
     test_start();
