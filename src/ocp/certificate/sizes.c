@@ -71,8 +71,8 @@ void moray_size_by_effect(struct witness *e, int p)
         double least = INFINITY;
         for (int i = 0; i < phase->nx; i++) {
             const double slope = fabs(moray_witness_span(e, p)) * e->phase[p].slope[j * n_out + i];
-            if (size[i] > 0 && slope > 0)
-                least = fmin(least, size[i] / slope);
+            if (size[i] > 0)
+                least = fmin(least, size[i] / slope); // infinite without a slope
         }
         size[j] = isfinite(least) ? fmax(size[j], driving * least) : size[j];
         const double width = moray_witness_width(e->phase[p].box[j]);
