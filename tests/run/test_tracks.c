@@ -263,7 +263,7 @@ int main(void)
 {
     rig r;
     close(mkstemp(path));
-    rig_new(&r);
+    rig_new(&r, 0);
     test_trajectory(&r);
     test_nodes(&r);
     test_residuals(&r);

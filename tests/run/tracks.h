@@ -64,7 +64,7 @@ moray_status __wrap_moray_output_figure(moray_output *output, const moray_figure
     return moray_ok();
 }
 
-static const drawn *figure_of(const char *name)
+static inline const drawn *figure_of(const char *name)
 {
     for (int k = 0; k < n_figures; k++)
         if (strcmp(figures[k].name, name) == 0)
@@ -108,7 +108,8 @@ static void see(const moray_node *at, moray_num *y, const void *data)
 static void ends(const moray_ends *at, moray_end_values *out, const void *data)
 {
     (void)data;
-    out->objective = at->phase[0].q[0] + at->phase[1].q[0] + (at->s[0] - 0.4) * (at->s[0] - 0.4);
+    out->objective = at->phase[0].q[0] + at->phase[1].q[0] + (at->s[0] - 0.4) * (at->s[0] - 0.4) +
+                     (at->s[1] + 0.7) * (at->s[1] + 0.7);
     out->e[0] = at->phase[1].x0[0] - at->phase[0].xf[1];
 }
 
@@ -128,7 +129,7 @@ typedef struct rig {
 static const moray_app_units both[] = {{.x = x_units, .u = u_units}, {.x = x_units_two, .u = u_units_two}};
 
 // The bounds are the problem's own once it is made.
-static void rig_new(rig *r)
+static void rig_new(rig *r, int refinements)
 {
     phases[0] = (moray_phase_spec){.name = "up/hill",
                                    .nx = 3,
@@ -160,7 +161,7 @@ static void rig_new(rig *r)
     r->spec = (moray_ocp_spec){.name = "hill",
                                .phases = 2,
                                .phase = phases,
-                               .ns = 1,
+                               .ns = 2,
                                .ne = 1,
                                .e = MORAY_BOUNDS(moray_fixed(0)),
                                .endpoint = ends};
@@ -168,7 +169,8 @@ static void rig_new(rig *r)
     r->run = (app_run){.app = &r->app, .name = "hill"};
     moray_settings settings = moray_settings_default();
     settings.intervals = 3;
-    settings.max_refinements = 0;
+    settings.max_refinements = refinements;
+    settings.mesh_tolerance = 1e-9;
     CHECK_OK(moray_ocp_new(&r->run.ocp, &r->spec), "a problem");
     CHECK_OK(moray_solve(r->run.ocp, &settings, NULL, &r->run.solution), "solved");
 }
