@@ -16,7 +16,7 @@ typedef struct moray_water moray_water; // constant once made: any number of thr
 
 // From comma-separated values of the columns x_m, y_m, v_x_m_s, v_y_m_s and, where the current changes, t_s: lines in
 // any order that fill a grid, which need not be even. One t_s: at all times. Free with moray_water_free. Error:
-// MORAY_IO; MORAY_INPUT naming the line, the column, or the point that is missing or stands twice; MORAY_MEMORY.
+// MORAY_IO; MORAY_INPUT naming the line, the column, or the point that stands twice; MORAY_MEMORY.
 MORAY_API moray_status moray_water_read(moray_water **water, const char *path);
 MORAY_API void moray_water_free(moray_water *water); // NULL is allowed
 

@@ -161,7 +161,8 @@ static int place_on(const axis *of, double value)
     return (int)(found - of->at);
 }
 
-// Sorts the rows [x, y, (t,) v_x, v_y] into grid[component][t][x][y].
+// Sorts the rows [x, y, (t,) v_x, v_y], no fewer than points, into grid[component][t][x][y]: where none stands twice,
+// none is missing.
 static moray_status fill_grid(const moray_water *water, const moray_csv *csv, const double *rows, int columns,
                               double *grid)
 {
@@ -176,11 +177,6 @@ static moray_status fill_grid(const moray_water *water, const moray_csv *csv, co
         for (int c = 0; c < 2; c++)
             grid[c * all + at] = row[columns - 2 + c];
     }
-    for (int at = 0; at < all; at++)
-        if (isnan(grid[at]))
-            return moray_error(MORAY_INPUT, "water %.120s: the point (%g, %g) of the grid is missing%s",
-                               moray_path_tail(csv->text.path), a[X].at[at % per_time / a[Y].n], a[Y].at[at % a[Y].n],
-                               a[T].n > 1 ? " at a time" : "");
     return moray_ok();
 }
 

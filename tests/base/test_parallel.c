@@ -3,10 +3,13 @@
 #include "tap.h"
 
 #include <sched.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/time.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "moray/parallel.h"
@@ -125,8 +128,41 @@ static void test_name(void)
     munmap(pair, sizeof *pair);
 }
 
+static void add_to(int task, void *result, void *self)
+{
+    (void)self;
+    *(int *)result += 100 * task;
+    usleep(20000);
+}
+
+static void ignore(int signal)
+{
+    (void)signal;
+}
+
+// Results begin as they are given, whether children's ends are told or not and signals come while they are waited for.
+static void test_begun(void)
+{
+    const struct itimerval often = {{0, 1000}, {0, 1000}}, never = {{0, 0}, {0, 0}};
+    for (int k = 0; k < 3; k++) {
+        int results[5];
+        for (int i = 0; i < 5; i++)
+            results[i] = i + 1;
+        sigaction(SIGCHLD, &(struct sigaction){.sa_handler = k == 1 ? SIG_IGN : SIG_DFL}, NULL);
+        sigaction(SIGALRM, &(struct sigaction){.sa_handler = ignore}, NULL);
+        setitimer(ITIMER_REAL, k == 2 ? &often : &never, NULL);
+        CHECK_OK(moray_parallel(5, sizeof *results, results, add_to, NULL, 2), "added");
+        setitimer(ITIMER_REAL, &never, NULL);
+        for (int i = 0; i < 5; i++)
+            CHECK(results[i] == i + 1 + 100 * i, "result %d is %d", i, results[i]);
+        CHECK(waitpid(-1, NULL, WNOHANG) < 0, "no process is left");
+    }
+    sigaction(SIGCHLD, &(struct sigaction){.sa_handler = SIG_DFL}, NULL);
+}
+
 int main(void)
 {
+    test_begun();
     test_counts();
     test_processors();
     test_name();
