@@ -9,6 +9,7 @@
 #include "moray/search.h"
 
 enum { n = 3, room = 4000 };
+static const double tolerance = 1e-3;
 
 struct record {
     int calls, told, shift; // the objective's and the constraints' own places
@@ -17,7 +18,8 @@ struct record {
     bool defined[room];
 };
 
-// A bowl with waves; within |x - c| >= 1 + least (never, where least is large) and x0 + x1 <= 1; not defined in
+// A bowl with waves; within |x - c| >= 1 (never, where `least` is more than 0; everywhere on the limit of what is
+// tolerated, where it is less) and x0 + x1 <= 1; not defined in
 // between.
 static bool waves(void *self, const double *x, double *f, double *c, double *gradient, double *jacobian)
 {
@@ -38,8 +40,10 @@ static bool waves(void *self, const double *x, double *f, double *c, double *gra
     c[1] = x[0] + x[1] - 1;
     if (r->least > 0)
         c[0] = r->least + away;
-    for (int j = 0; j < n && jacobian && r->least > 0; j++)
-        jacobian[j] = -jacobian[j];
+    if (r->least < 0)
+        c[0] = tolerance;
+    for (int j = 0; j < n && jacobian; j++)
+        jacobian[j] *= r->least > 0 ? -1 : r->least < 0 ? 0 : 1;
     if (r->calls < room) {
         memcpy(r->x[r->calls], x, sizeof r->x[0]);
         r->f[r->calls] = *f;
@@ -50,24 +54,22 @@ static bool waves(void *self, const double *x, double *f, double *c, double *gra
     return !(x[0] > 2 && x[0] < 3.5);
 }
 
-static bool precedes(const struct record *r, int one, int other, double tolerance)
+static bool precedes(const struct record *r, int one, int other, double within)
 {
-    const bool inside = r->violation[one] <= tolerance, other_inside = r->violation[other] <= tolerance;
+    const bool inside = r->violation[one] <= within, other_inside = r->violation[other] <= within;
     if (inside && other_inside)
         return r->f[one] < r->f[other];
     return inside || (!other_inside && r->violation[one] < r->violation[other]);
 }
 
-static int best_of(const struct record *r, int calls, double tolerance)
+static int best_of(const struct record *r, int calls, double within)
 {
     int best = -1;
     for (int k = 0; k < calls; k++)
-        if (r->defined[k] && (best < 0 || precedes(r, k, best, tolerance)))
+        if (r->defined[k] && (best < 0 || precedes(r, k, best, within)))
             best = k;
     return best;
 }
-
-static const double tolerance = 1e-3;
 
 // Every time the best so far.
 static bool listen(void *observer, const moray_search_progress *progress)
@@ -237,6 +239,7 @@ int main(void)
     for (int k = 0; k < 6; k++) {
         test_best(all[k], 0);
         test_best(all[k], 0.4);
+        test_best(all[k], -1);
     }
     test_start();
     test_chance(MORAY_SEARCH_ISRES);

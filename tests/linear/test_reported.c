@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+//
+// What is told of factors and solutions: errors of solutions that cannot be right, of several right-hand sides, and of
+// the null space to the last bit; work and memory of factorisations.
+#include "sample.h"
+
+#include "linear/kkt_factors.h"
+#include "linear/ldl.h"
+#include "linear/null_space_parts.h"
+
+// ---- Errors ----
+
+// diag(4, 0, 1) with an entry in an empty row: the residual is that entry, over the largest of solution and right-hand
+// side in the scale of the factors, in which the diagonal is 1 and they are both -3, 0 and 2.
+static void test_error(void)
+{
+    static const struct {
+        double b[3], error;
+    } cases[] = {{{-6, 0.5, 2}, 0.5 / 3},  {{6, 0.5, 2}, 0.5 / 3},  {{2, -0.5, -3}, 0.5 / 3}, {{2, -5, 3}, 1},
+                 {{0.5, 0.5, 0.25}, 1},    {{0, 0, 0}, 0},          {{1, 0, 2}, 0},           {{-4, -0.25, 1}, 0.125},
+                 {{-2, 0.25, -4}, 0.0625}, {{2, -0.125, -1}, 0.125}};
+    int row[] = {0, 2}, col[] = {0, 2};
+    moray_ldl *ldl;
+    CHECK_OK(moray_ldl_new(&ldl, 3, &(moray_pattern){2, row, col}), "made");
+    CHECK_OK(moray_ldl_factor(ldl, (double[]){4, 1}, 0.1), "factored");
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        double b[3];
+        memcpy(b, cases[k].b, sizeof b);
+        CHECK_OK(moray_ldl_solve(ldl, 1, b), "solved");
+        CHECK_NEAR(moray_ldl_statistics_of(ldl).error, cases[k].error, 1e-15, "error of what cannot be solved");
+        CHECK(b[0] == cases[k].b[0] / 4 && b[1] == 0 && b[2] == cases[k].b[2], "(%g, %g, %g)", b[0], b[1], b[2]);
+    }
+    moray_ldl_free(ldl);
+}
+
+// [1 s; s 1] beside an empty row: a solution that is larger than the right-hand side, by 1 / (1 - s), of any sign.
+static void test_large_solution(void)
+{
+    int row[] = {0, 1, 1}, col[] = {0, 0, 1};
+    const double s = 0.75;
+    moray_ldl *ldl;
+    CHECK_OK(moray_ldl_new(&ldl, 3, &(moray_pattern){3, row, col}), "made");
+    CHECK_OK(moray_ldl_factor(ldl, (double[]){1, s, 1}, 0.1), "factored");
+    for (int k = 0; k < 4; k++) {
+        const double sign = k & 1 ? -1 : 1, turned = k & 2 ? -1 : 1; // x = (1, -1) and (1, 1)
+        double b[] = {sign * (1 + turned * s), sign * turned * (1 + turned * s), 0.0625};
+        CHECK_OK(moray_ldl_solve(ldl, 1, b), "solved");
+        CHECK_NEAR(b[0], sign, 1e-15, "solution");
+        CHECK_NEAR(moray_ldl_statistics_of(ldl).error, 0.0625 / fmax(1, 1 + turned * s), 1e-15,
+                   "error in the size of the larger of both");
+    }
+    moray_ldl_free(ldl);
+}
+
+// Of several right-hand sides the worst counts, whichever is last.
+static void test_worst(void)
+{
+    int row[] = {0, 2}, col[] = {0, 2};
+    kkt_factors *kkt;
+    moray_ldl *ldl;
+    const moray_pattern pattern = {2, row, col};
+    CHECK_OK(moray_ldl_new(&ldl, 3, &pattern), "made");
+    CHECK_OK(moray_ldl_factor(ldl, (double[]){1, 1}, 0.1), "factored");
+    CHECK_OK(moray_kkt_factors_new(&kkt, 3, &pattern), "made");
+    CHECK_OK(moray_kkt_factors_factor(kkt, (double[]){1, 1}, 0.1), "factored");
+    for (int k = 0; k < 2; k++) {
+        double B[] = {1, k ? 0.5 : 0.25, 0, 1, k ? 0.25 : 0.5, 0}, same[6];
+        memcpy(same, B, sizeof B);
+        CHECK_OK(moray_ldl_solve(ldl, 2, B), "solved");
+        CHECK(moray_ldl_statistics_of(ldl).error == 0.5, "of two: %g", moray_ldl_statistics_of(ldl).error);
+        CHECK_OK(moray_kkt_factors_solve(kkt, 2, same), "solved");
+        CHECK(moray_kkt_factors_error(kkt) == 0.5 && memcmp(B, same, sizeof B) == 0, "by the form that suits: %g",
+              moray_kkt_factors_error(kkt));
+    }
+    CHECK(moray_ldl_statistics_of(ldl).solves == 4 && moray_ldl_statistics_of(ldl).factors == 1, "4 solves, 1 factor");
+    double b[] = {1, 0.125, 0};
+    CHECK_OK(moray_kkt_factors_solve(kkt, 1, b), "solved");
+    CHECK(moray_kkt_factors_error(kkt) == 0.125, "of the last call: %g", moray_kkt_factors_error(kkt));
+    moray_kkt_factors_free(kkt);
+    moray_ldl_free(ldl);
+}
+
+// ---- Null space ----
+
+// Variables, two more than constraints, in rows and columns of sizes far apart; the columns first met are nearly of one
+// direction, of either sign.
+static void make(sample *s, unsigned long long seed, double distance)
+{
+    s->seed = seed;
+    s->m = 2 + pick(s, 5);
+    const int variables = s->m + 1 + pick(s, 3);
+    start(s, variables + s->m);
+    for (int i = 0; i < variables; i++) {
+        put(s, i, i, tap_random(&s->seed, -2, 2) * pow(10, pick(s, 3)));
+        if (i > 0)
+            put(s, i, i - 1, tap_random(&s->seed, -1, 1));
+    }
+    for (int c = 0; c < s->m; c++) {
+        const double common = tap_random(&s->seed, 0.5, 1);
+        for (int j = 0; j < variables; j++)
+            put(s, variables + c, j,
+                (pick(s, 2) ? 1 : -1) * (j < 2 ? common : distance) * tap_random(&s->seed, 0.3, 1));
+    }
+}
+
+// Over what each row makes of the largest of the solution, and its right-hand side; summed up in the same order.
+static double error_of(const sample *s, const double *x, const double *b)
+{
+    double r[MOST], largest[MOST] = {0}, size = 0, worst = 0;
+    memcpy(r, b, sizeof r);
+    for (int k = 0; k < s->pattern.nnz; k++) {
+        const int i = s->row[k], j = s->col[k];
+        r[i] -= s->value[k] * x[j];
+        r[j] -= (i == j ? 0 : s->value[k]) * x[i];
+        largest[i] = fmax(largest[i], fabs(s->value[k]));
+        largest[j] = fmax(largest[j], fabs(s->value[k]));
+    }
+    for (int i = 0; i < s->n; i++)
+        size = fmax(size, fabs(x[i]));
+    for (int i = 0; i < s->n; i++)
+        worst = fmax(worst, fabs(r[i]) / (largest[i] * size + fabs(b[i])));
+    return worst;
+}
+
+// No other variable moves a basic one by more than a thousand times itself, as they weigh by their curvature; all of Z
+// is in the null space.
+static void look_at_basis(const null_space *ns, const sample *s, double *far, double *outside)
+{
+    double weight[MOST], other[MOST];
+    const int f = ns->freedom;
+    for (int i = 0; i < ns->variables; i++) {
+        weight[i] = fmax(1, sqrt(fabs(s->A[i * s->n + i])));
+        if (ns->basis.place[i] < 0)
+            other[-1 - ns->basis.place[i]] = weight[i];
+    }
+    for (int i = 0; i < ns->variables; i++)
+        for (int c = 0; c < f && ns->basis.place[i] >= 0; c++)
+            *far = tap_worse(*far, fabs(ns->Z[i * f + c]) * weight[i] / other[c]);
+    for (int k = 0; k < ns->m; k++)
+        for (int c = 0; c < f; c++) {
+            double sum = 0, size = 0;
+            for (int i = 0; i < ns->variables; i++) {
+                sum += s->A[(ns->variables + k) * s->n + i] * ns->Z[i * f + c];
+                size += fabs(s->A[(ns->variables + k) * s->n + i] * ns->Z[i * f + c]);
+            }
+            *outside = tap_worse(*outside, size > 0 ? fabs(sum) / size : 0);
+        }
+}
+
+static void test_null_space(void)
+{
+    static sample s;
+    double far = 0, outside = 0;
+    int wrong = 0, failed = 0, negative = 0;
+    for (int trial = 0; trial < 400; trial++) {
+        null_space *ns;
+        double x[MOST], b[MOST], error;
+        bool fits;
+        make(&s, 700 + (unsigned long long)trial, trial % 2 ? 1 : 1e-5);
+        failed += moray_failed(moray_null_space_new(&ns, s.n, &s.pattern)) || !ns;
+        failed += moray_failed(moray_null_space_factor(ns, s.value, &fits)) || !fits;
+        look_at_basis(ns, &s, &far, &outside);
+        for (int i = 0; i < s.n; i++)
+            x[i] = b[i] = tap_random(&s.seed, -1, trial % 3 ? 1 : 0) * pow(10, pick(&s, 5));
+        failed += moray_failed(moray_null_space_solve(ns, x, &error));
+        wrong += error != error_of(&s, x, b);
+        double low = 0, high = 0;
+        for (int i = 0; i < s.n; i++)
+            low = fmin(low, x[i]), high = fmax(high, x[i]);
+        negative += -low > high;
+        moray_null_space_free(ns);
+    }
+    CHECK(failed == 0, "%d failed", failed);
+    CHECK(wrong == 0 && negative > 50 && negative < 350, "errors are those of the solutions, but for %d of 400", wrong);
+    CHECK(far < 1e3 && far > 10, "no variable moves another by more than %g times itself", far);
+    CHECK(outside < 1e-10, "Z is in the null space: %.1e", outside);
+}
+
+// Two right-hand sides at once are solved as one by one, with the worse of both errors.
+static void test_columns(void)
+{
+    static sample s;
+    int wrong = 0, apart = 0, in_null_space = 0;
+    for (int trial = 0; trial < 100; trial++) {
+        kkt_factors *kkt;
+        double b[2 * MOST], one[2 * MOST], error[2];
+        make(&s, 4000 + (unsigned long long)trial, 1);
+        CHECK_OK(moray_kkt_factors_new(&kkt, s.n, &s.pattern), "made");
+        CHECK_OK(moray_kkt_factors_factor(kkt, s.value, 1e-4), "factored");
+        for (int i = 0; i < 2 * s.n; i++)
+            one[i] = b[i] = tap_random(&s.seed, -1, 1);
+        for (int k = 0; k < 2; k++) {
+            wrong += moray_failed(moray_kkt_factors_solve(kkt, 1, one + k * s.n));
+            error[k] = moray_kkt_factors_error(kkt);
+        }
+        wrong += moray_failed(moray_kkt_factors_solve(kkt, 2, b));
+        wrong += memcmp(b, one, 2 * (size_t)s.n * sizeof *b) != 0;
+        wrong += moray_kkt_factors_error(kkt) != fmax(error[0], error[1]);
+        apart += error[0] > error[1] ? 1 : 0;
+        in_null_space += moray_kkt_factors_inertia(kkt).negative >= s.m;
+        moray_kkt_factors_free(kkt);
+    }
+    CHECK(wrong == 0 && apart > 20 && apart < 80 && in_null_space == 100, "but for %d of 100; %d times the first",
+          wrong, apart);
+}
+
+// ---- Work ----
+
+// A tree of small blocks, strong on the diagonal or not.
+static void set_tree(sample *s, double diagonal)
+{
+    s->seed = 3;
+    start(s, MOST);
+    for (int i = 0; i < MOST; i++) {
+        put(s, i, i, diagonal);
+        if (i > 0)
+            put(s, i, (i - 1) / 2, 1);
+        if (i > 2)
+            put(s, i, (i - 3) / 4, 0.5);
+    }
+}
+
+static void test_work(void)
+{
+    static sample s;
+    moray_ldl *ldl;
+    double b[MOST] = {0};
+    set_tree(&s, 9);
+    CHECK_OK(moray_ldl_new(&ldl, s.n, &s.pattern), "made");
+    CHECK_OK(moray_ldl_factor(ldl, s.value, 0.1), "factored");
+    moray_ldl_statistics at = moray_ldl_statistics_of(ldl);
+    CHECK(at.done == at.planned && at.filled == at.entries && at.delayed == 0 && at.pivots_2x2 == 0 && at.pairs == 0,
+          "as planned: %g of %g, %g entries of %g", at.done, at.planned, at.filled, at.entries);
+    CHECK(moray_ldl_inertia_of(ldl).positive == MOST, "all positive");
+    CHECK(at.fronts > 1 && at.largest <= MOST && at.entries >= at.fronts, "%d fronts of up to %d rows", at.fronts,
+          at.largest);
+    set_tree(&s, 1e-3);
+    CHECK_OK(moray_ldl_factor(ldl, s.value, 0.4), "weak pivots");
+    at = moray_ldl_statistics_of(ldl);
+    const double most = at.filled;
+    CHECK(at.delayed > 0 && at.pivots_2x2 > 0 && at.done > at.planned && at.filled > at.entries && at.orders == 1,
+          "%d delayed: %g done of %g, %g entries of %g", at.delayed, at.done, at.planned, at.filled, at.entries);
+    set_tree(&s, 9);
+    CHECK_OK(moray_ldl_factor(ldl, s.value, 0.1), "strong ones");
+    at = moray_ldl_statistics_of(ldl);
+    CHECK(at.filled == most && at.done == at.planned && at.delayed == 0 && at.pivots_2x2 == 0 && at.factors == 3,
+          "the most so far is kept: %g", at.filled);
+    CHECK_OK(moray_ldl_solve(ldl, 1, b), "solved");
+    CHECK(moray_ldl_statistics_of(ldl).error == 0 && b[0] == 0, "nothing of nothing");
+    moray_ldl_free(ldl);
+}
+
+int main(void)
+{
+    test_error();
+    test_large_solution();
+    test_worst();
+    test_null_space();
+    test_columns();
+    test_work();
+    return tap_done();
+}
