@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // The first-principles model with free joint accelerations, as a map: rows of the Jacobian by the adjoint, the Hessian
-// by complex step through it. The position and t move nothing, and all but the power of motors is linear in ubar.
+// by how that moves. The position and t move nothing, and all but the power of motors is linear in ubar.
 #include "snake/plant/fp_free.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <tgmath.h>
 
-#include "snake/model/fp_adjoint.h"
+#include "snake/plant/fp_columns.h"
 
 typedef struct free_setting {
     moray_plant_spec spec;
@@ -19,22 +19,86 @@ typedef struct free_setting {
     int curved;           // inputs that all is not linear in: before ubar; with motors ubar, too
 } free_setting;
 
-#define REAL double
-#define TYPED(name) name##_d
-#include "snake/plant/fp_free.inc"
-#undef REAL
-#undef TYPED
+typedef struct fp_free {
+    const free_setting *of;
+    double *in, *gradient;                     // n_in each, in one block with the next
+    double *theta, *dtheta, *ddtheta, *u;      // N or N-1 each
+    double *on_theta, *on_dtheta, *on_ddtheta; // derivatives of a weighted sum
+    fp_link_d *links;
+    fp_dual_link_d *dual;
+    fp_motion_d motion;
+    double ddp[2], power;
+} fp_free;
 
-#define REAL double complex
-#define TYPED(name) name##_z
-#include "snake/plant/fp_free.inc"
-#undef REAL
-#undef TYPED
+static bool free_new(fp_free *at, const free_setting *of)
+{
+    double **parts[] = {&at->theta, &at->dtheta, &at->ddtheta, &at->u, &at->on_theta, &at->on_dtheta, &at->on_ddtheta};
+    const size_t N = (size_t)of->N, n_in = (size_t)of->n_in, n = sizeof parts / sizeof *parts;
+    at->of = of;
+    at->in = calloc(2 * n_in + n * N, sizeof *at->in);
+    at->links = calloc(N, sizeof *at->links);
+    at->dual = calloc(N, sizeof *at->dual);
+    if (!at->in || !at->links || !at->dual)
+        return false;
+    at->gradient = at->in + n_in;
+    for (size_t i = 0; i < n; i++)
+        *parts[i] = at->gradient + n_in + i * N;
+    return true;
+}
+
+static void free_free(fp_free *at)
+{
+    free(at->in);
+    free(at->links);
+    free(at->dual);
+}
+
+// Motion of the links at at->in, their accelerations, torques and power.
+static void move(fp_free *at)
+{
+    const free_setting *of = at->of;
+    const fp_robot *robot = &of->robot;
+    const int N = of->N, n = of->n;
+    const double *in = at->in, *rates = in + n + 3;
+    moray_fp_angles_d(N, in[n], in, at->theta);
+    moray_fp_angles_d(N, rates[n], rates, at->dtheta);
+    at->motion = (fp_motion_d){at->theta, at->dtheta, rates[n + 1], rates[n + 2], in + of->ubar};
+    if (!moray_fp_accelerations_d(robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->ddp))
+        at->ddp[0] = at->ddp[1] = NAN;
+    at->power = moray_fp_torques_d(robot, &at->motion, at->links, at->ddtheta, at->u);
+}
+
+static fp_weights weights_of(const free_setting *of, const double *weight)
+{
+    const double *path = weight + of->size.nx;
+    return (fp_weights){.lambda = weight + 2 * of->n + 3,
+                        .rho = of->spec.path_forces ? path : NULL,
+                        .sigma = of->spec.path_supply ? path + (of->spec.path_forces ? of->n : 0) : NULL,
+                        .pi = path[of->size.nc]};
+}
+
+// Gradient of weight . out, but for the rows that are linear, after move.
+static void find_gradient(fp_free *at, const double *weight)
+{
+    const free_setting *of = at->of;
+    const int N = of->N, n = of->n;
+    double *gradient = at->gradient;
+    const fp_weights weights = weights_of(of, weight);
+    fp_gradient_d by = {at->on_theta, at->on_dtheta, at->on_ddtheta, 0, 0};
+    moray_fp_adjoint_d(&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->u, &weights, at->dual,
+                       &by);
+    gradient[n] = moray_fp_pull_angles_d(N, by.theta, gradient);
+    gradient[2 * n + 3] = moray_fp_pull_angles_d(N, by.dtheta, gradient + n + 3);
+    gradient[2 * n + 4] = by.v_x;
+    gradient[2 * n + 5] = by.v_y;
+    moray_fp_pull_angles_d(N, by.ddtheta, gradient + of->ubar);
+}
 
 typedef struct free_plant {
     free_setting of;
-    fp_free_d real;
-    fp_free_z stepped;
+    fp_free at;
+    fp_columns columns;
+    int *column; // [columns.n]: the inputs that they are of
     fp_part *part;
     double *weight; // [n_out]
 } free_plant;
@@ -43,10 +107,10 @@ static void value(void *self, const double *in, double *out)
 {
     free_plant *plant = self;
     const free_setting *of = &plant->of;
-    fp_free_d *at = &plant->real;
+    fp_free *at = &plant->at;
     const int N = of->N, n = of->n;
     memcpy(at->in, in, (size_t)of->n_in * sizeof *in);
-    move_d(at);
+    move(at);
     memcpy(out, in + n + 3, (size_t)(n + 3) * sizeof *out);
     out += n + 3;
     memcpy(out, in + of->ubar, (size_t)n * sizeof *out);
@@ -79,11 +143,11 @@ static bool is_position(const free_plant *plant, int input)
 static double *full_row(free_plant *plant, int row, double *values)
 {
     plant->weight[row] = 1;
-    find_gradient_d(&plant->real, plant->weight);
+    find_gradient(&plant->at, plant->weight);
     plant->weight[row] = 0;
     for (int i = 0; i < plant->of.n_in - 1; i++)
         if (!is_position(plant, i))
-            *values++ = plant->real.gradient[i];
+            *values++ = plant->at.gradient[i];
     return values;
 }
 
@@ -97,8 +161,8 @@ static void jacobian(void *self, const double *in, double *values)
 {
     free_plant *plant = self;
     const int N = plant->of.N, n = plant->of.n, nx = plant->of.size.nx;
-    memcpy(plant->real.in, in, (size_t)plant->of.n_in * sizeof *in);
-    move_d(&plant->real);
+    memcpy(plant->at.in, in, (size_t)plant->of.n_in * sizeof *in);
+    move(&plant->at);
     for (int i = 0; i < nx - 3; i++)
         *values++ = 1;
     for (int row = nx - 3; row < nx + plant->of.full; row++)
@@ -144,23 +208,34 @@ static int jacobian_pattern(const free_plant *plant, moray_pattern *pattern)
 // ---- Hessian: by columns, those of all that is not linear
 // ------------------------------------------------------------
 
+// Of an input, one entry a column.
+static double *row_of(const free_plant *plant, const fp_joint_motion *motion, int input)
+{
+    const int n = plant->of.n, stride = plant->columns.stride;
+    if (input >= plant->of.ubar)
+        return motion->ubar + (input - plant->of.ubar) * stride;
+    if (input >= 2 * n + 4)
+        return motion->v + (input - 2 * n - 4) * stride;
+    if (input >= n + 3)
+        return input < 2 * n + 3 ? motion->v_phi + (input - n - 3) * stride : motion->v_mean;
+    return input < n ? motion->phi + input * stride : motion->mean;
+}
+
 static void hessian(void *self, const double *in, const double *weight, double *values)
 {
-    const free_plant *plant = self;
-    fp_free_z *at = &((free_plant *)self)->stepped;
-    const double step = 1e-50;
-    for (int col = 0; col < plant->of.curved; col++) {
-        if (is_position(plant, col))
-            continue;
-        for (int i = 0; i < plant->of.n_in; i++)
-            at->in[i] = in[i];
-        at->in[col] += step * I;
-        move_z(at);
-        find_gradient_z(at, weight);
-        for (int row = col; row < plant->of.n_in - 1; row++)
+    free_plant *plant = self;
+    const free_setting *of = &plant->of;
+    fp_free *at = &plant->at;
+    const fp_weights weights = weights_of(of, weight);
+    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->u, &weights, at->dual};
+    memcpy(at->in, in, (size_t)of->n_in * sizeof *in);
+    move(at);
+    find_gradient(at, weight);
+    moray_fp_columns_find(&plant->columns, &point);
+    for (int k = 0; k < plant->columns.n; k++)
+        for (int row = plant->column[k]; row < of->n_in - 1; row++)
             if (!is_position(plant, row))
-                *values++ = cimag(at->gradient[row]) / step;
-    }
+                *values++ = row_of(plant, &plant->columns.gradient, row)[k];
 }
 
 static int hessian_pattern(const free_plant *plant, moray_pattern *pattern)
@@ -179,8 +254,9 @@ static void plant_free(free_plant *plant)
 {
     if (!plant)
         return;
-    free_free_d(&plant->real);
-    free_free_z(&plant->stepped);
+    free_free(&plant->at);
+    moray_fp_columns_free(&plant->columns);
+    free(plant->column);
     free(plant->part);
     free(plant->weight);
     free(plant);
@@ -191,6 +267,22 @@ static void release(moray_map *map)
     moray_pattern_free(&map->jac);
     moray_pattern_free(&map->hess);
     plant_free(map->self);
+}
+
+// Along each input that not all is linear in.
+static bool columns_new(free_plant *plant)
+{
+    fp_columns *columns = &plant->columns;
+    plant->column = calloc((size_t)plant->of.curved, sizeof *plant->column);
+    if (!plant->column || moray_failed(moray_fp_columns_new(columns, plant->of.N, plant->of.curved)))
+        return false;
+    for (int input = 0; input < plant->of.curved; input++) {
+        if (is_position(plant, input))
+            continue;
+        row_of(plant, &columns->along, input)[columns->n] = 1;
+        plant->column[columns->n++] = input;
+    }
+    return true;
 }
 
 static free_plant *plant_new(const moray_plant_spec *spec)
@@ -215,7 +307,7 @@ static free_plant *plant_new(const moray_plant_spec *spec)
                                .curved = 2 * n + 6 + (spec->robot.motor.fitted ? n : 0),
                                .full = size.nc - (spec->path_angles ? N : 0)};
     plant->weight = calloc((size_t)(size.nx + size.nc + 1), sizeof *plant->weight);
-    if (free_new_d(&plant->real, &plant->of) && free_new_z(&plant->stepped, &plant->of) && plant->weight)
+    if (plant->weight && free_new(&plant->at, &plant->of) && columns_new(plant))
         return plant;
     plant_free(plant);
     return NULL;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Nanoseconds per evaluation of the control-oriented model as a map: each callback alone at ever new points, and the
+// Nanoseconds per evaluation of both models as maps: each callback alone at ever new points, and the
 // three one after the other at one point. Best of several rounds.
 #include <math.h>
 #include <stdio.h>
@@ -52,13 +52,13 @@ static double *vector(int size, double low, double high)
     return x;
 }
 
-static int run(const char *name, moray_joints joints, int links)
+static int run(const char *name, moray_model model, moray_joints joints, int links)
 {
     moray_plant_spec spec = {
         .robot = moray_robot_paper(), .joints = joints, .current = {0.1, 0.1}, .path_forces = false};
     spec.robot.links = links;
     bench b;
-    moray_status status = moray_control_plant(&b.map, &spec);
+    const moray_status status = (model == MORAY_FIRST_PRINCIPLES ? moray_fp_plant : moray_control_plant)(&b.map, &spec);
     if (moray_failed(status)) {
         fprintf(stderr, "%s\n", status.text);
         return 1;
@@ -78,12 +78,21 @@ static int run(const char *name, moray_joints joints, int links)
 
 int main(void)
 {
-    static const char *const names[] = {"on gait", "closed loop", "free"};
+    static const struct {
+        const char *name;
+        moray_model model;
+        moray_joints joints;
+    } plant[] = {{"on gait", MORAY_CONTROL_ORIENTED, MORAY_JOINTS_ON_GAIT},
+                 {"closed loop", MORAY_CONTROL_ORIENTED, MORAY_JOINTS_CLOSED_LOOP},
+                 {"free", MORAY_CONTROL_ORIENTED, MORAY_JOINTS_FREE},
+                 {"fp on gait", MORAY_FIRST_PRINCIPLES, MORAY_JOINTS_ON_GAIT},
+                 {"fp steered", MORAY_FIRST_PRINCIPLES, MORAY_JOINTS_STEERED},
+                 {"fp free", MORAY_FIRST_PRINCIPLES, MORAY_JOINTS_FREE}};
     static const int links[] = {5, 10, 20, 40};
     int failed = 0;
     printf("ns             N     value jacobian  hessian  all three   nnz: J      H\n");
-    for (int joints = 0; joints < 3; joints++)
+    for (size_t i = 0; i < sizeof plant / sizeof *plant; i++)
         for (int k = 0; k < 4; k++)
-            failed |= run(names[joints], (moray_joints)joints, links[k]);
+            failed |= run(plant[i].name, plant[i].model, plant[i].joints, links[k]);
     return failed;
 }
