@@ -1,59 +1,38 @@
 // SPDX-License-Identifier: MIT
 //
 // The first-principles model with its joints on the gait, as a map: six states, or eight with a moving offset; rows of
-// the Jacobian by the adjoint, the Hessian by complex step through it.
-#include "snake/model/fp_adjoint.h"
+// the Jacobian by the adjoint, the Hessian by how that moves.
+#include "snake/plant/fp_gait.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <tgmath.h>
 
 #include "snake/plant/fp_free.h"
 #include "snake/plant/series.h"
 #include "snake/plant/water.h"
-#include "snake/model/circle.h"
-#include "snake/model/taper.h"
 
 enum { body = MORAY_BODY_STATES, most_inputs = 13 };
-enum { anew = 16 }; // joints after which a recurrence of sines begins again
-
-typedef struct fp_setting {
-    moray_plant_spec spec;
-    fp_robot robot;
-    moray_plant_size size;
-} fp_setting;
-
-#define REAL double
-#define TYPED(name) name##_d
-#include "snake/plant/fp_gait.inc"
-#undef REAL
-#undef TYPED
-
-#define REAL double complex
-#define TYPED(name) name##_z
-#include "snake/plant/fp_gait.inc"
-#undef REAL
-#undef TYPED
 
 typedef struct fp_plant {
     fp_setting of;
-    fp_gait_d real;
-    fp_gait_z stepped;
+    fp_gait at;
     fp_part *part;
     double *rows, *weight; // of the Jacobian, n_out x n_in; n_out
     int n_in, n_out;
     moray_pattern jac, hess; // the latter by columns
     bool held[most_inputs];
+    double column[most_inputs * most_inputs]; // of the Hessian, those asked for side by side
 } fp_plant;
 
 static void value(void *self, const double *in, double *out)
 {
     fp_plant *plant = self;
-    fp_gait_d *at = &plant->real;
+    fp_gait *at = &plant->at;
     const moray_plant_spec *spec = &plant->of.spec;
     const int N = spec->robot.links;
     double mean = 0;
-    move_d(at, in);
+    moray_fp_gait_move(at, in);
     for (int i = 0; i < N; i++)
         mean += at->ddtheta[i] / N;
     memcpy(out, in + MORAY_STATE_V_THETA, 3 * sizeof *out);
@@ -74,19 +53,6 @@ static void value(void *self, const double *in, double *out)
     *out = at->power;
 }
 
-// Row i of the angles, less the heading: not to be asked for the derivative by it.
-static void angle_row(fp_plant *plant, const double *in, int i, double *row)
-{
-    const size_t bytes = (size_t)plant->of.spec.robot.links * sizeof(double);
-    fp_gait_d *at = &plant->real;
-    const fp_gradient_d by = {at->on_theta, at->on_dtheta, at->on_ddtheta, 0, 0};
-    memset(by.theta, 0, bytes);
-    memset(by.dtheta, 0, bytes);
-    memset(by.ddtheta, 0, bytes);
-    by.theta[i] = 1;
-    pull_input_d(at, in, &by, row);
-}
-
 // The input that an output of the state is; -1: none.
 static int input_of(const fp_plant *plant, int output)
 {
@@ -95,7 +61,7 @@ static int input_of(const fp_plant *plant, int output)
     return output >= body && output < plant->of.size.nx ? output + 1 : -1;
 }
 
-static void jacobian_row(fp_plant *plant, const double *in, int output, double *row)
+static void jacobian_row(fp_plant *plant, int output, double *row)
 {
     const moray_plant_spec *spec = &plant->of.spec;
     const int input = input_of(plant, output);
@@ -103,19 +69,19 @@ static void jacobian_row(fp_plant *plant, const double *in, int output, double *
     if (input >= 0) {
         row[input] = 1;
     } else if (output >= angles && output < plant->n_out - 1) {
-        angle_row(plant, in, output - angles, row);
+        moray_fp_gait_angle_gradient(&plant->at, output - angles, row);
     } else {
         plant->weight[output] = 1;
-        weighted_gradient_d(&plant->real, in, plant->weight, row);
+        moray_fp_gait_gradient(&plant->at, plant->weight, row);
         plant->weight[output] = 0;
     }
 }
 
 static void find_rows(fp_plant *plant, const double *in)
 {
-    move_d(&plant->real, in);
+    moray_fp_gait_move(&plant->at, in);
     for (int output = 0; output < plant->n_out; output++)
-        jacobian_row(plant, in, output, plant->rows + output * plant->n_in);
+        jacobian_row(plant, output, plant->rows + output * plant->n_in);
 }
 
 static void jacobian(void *self, const double *in, double *values)
@@ -128,29 +94,22 @@ static void jacobian(void *self, const double *in, double *values)
         values[k] = plant->rows[pattern->row[k] * n_in + pattern->col[k]];
 }
 
-// Column of the Hessian of weight . out, times the step.
-static const double step = 1e-50;
-static void find_column(fp_plant *plant, const double *in, const double *weight, int col, double complex *gradient)
-{
-    double complex z[most_inputs];
-    for (int i = 0; i < plant->n_in; i++)
-        z[i] = in[i];
-    z[col] += step * I;
-    move_z(&plant->stepped, z);
-    weighted_gradient_z(&plant->stepped, z, weight, gradient);
-}
-
+// The columns of the Hessian that are asked for.
 static void hessian(void *self, const double *in, const double *weight, double *values)
 {
     fp_plant *plant = self;
     const moray_pattern *pattern = &plant->hess;
-    double complex gradient[most_inputs];
-    for (int k = 0, before = -1; k < pattern->nnz; k++) {
+    int n = 0, column[most_inputs], place[most_inputs];
+    for (int k = 0, before = -1; k < pattern->nnz; k++)
+        if (pattern->col[k] != before && !plant->held[before = pattern->col[k]]) {
+            place[before] = n;
+            column[n++] = before;
+        }
+    moray_fp_gait_move(&plant->at, in);
+    moray_fp_gait_columns(&plant->at, weight, n, column, plant->column);
+    for (int k = 0; k < pattern->nnz; k++) {
         const int row = pattern->row[k], col = pattern->col[k];
-        const bool wanted = !plant->held[row] && !plant->held[col];
-        if (wanted && col != before)
-            find_column(plant, in, weight, before = col, gradient);
-        values[k] = wanted ? cimag(gradient[row]) / step : 0;
+        values[k] = plant->held[row] || plant->held[col] ? 0 : plant->column[row * n + place[col]];
     }
 }
 
@@ -182,18 +141,19 @@ static void mark(fp_plant *plant, const double *in, const double *weight, bool *
 {
     const int n_in = plant->n_in;
     const int angles = plant->n_out - 1 - (plant->of.spec.path_angles ? plant->of.spec.robot.links : 0);
-    double complex gradient[most_inputs];
+    int all[most_inputs];
     find_rows(plant, in);
     for (int e = 0; e < plant->n_out * n_in; e++) {
         const int row = e / n_in;
         const bool no_heading = row >= angles && row < plant->n_out - 1 && e % n_in == MORAY_STATE_THETA;
         slopes[e] = slopes[e] || (plant->rows[e] != 0 && !no_heading);
     }
-    for (int col = 0; col < n_in; col++) {
-        find_column(plant, in, weight, col, gradient);
+    for (int col = 0; col < n_in; col++)
+        all[col] = col;
+    moray_fp_gait_columns(&plant->at, weight, n_in, all, plant->column);
+    for (int col = 0; col < n_in; col++)
         for (int row = col; row < n_in; row++)
-            bends[col * n_in + row] = bends[col * n_in + row] || cimag(gradient[row]) != 0;
-    }
+            bends[col * n_in + row] = bends[col * n_in + row] || plant->column[row * n_in + col] != 0;
 }
 
 // Entries of marks[outer][inner]; `outer` are the columns or the rows.
@@ -246,8 +206,7 @@ static void plant_free(fp_plant *plant)
         return;
     moray_pattern_free(&plant->jac);
     moray_pattern_free(&plant->hess);
-    gait_free_d(&plant->real);
-    gait_free_z(&plant->stepped);
+    moray_fp_gait_free(&plant->at);
     free(plant->part);
     free(plant->rows);
     free(plant);
@@ -266,7 +225,7 @@ static moray_status plant_new(fp_plant **result, const moray_plant_spec *spec)
     bool made = plant && plant->part;
     if (made) {
         plant->of = (fp_setting){*spec, moray_fp_robot_of(&spec->robot, plant->part), moray_plant_sizes(spec)};
-        made = gait_new_d(&plant->real, &plant->of) && gait_new_z(&plant->stepped, &plant->of);
+        made = !moray_failed(moray_fp_gait_new(&plant->at, &plant->of, most_inputs));
         const moray_plant_size *size = &plant->of.size;
         plant->n_in = size->nx + size->nu + size->ns + 1;
         plant->n_out = size->nx + size->nc + 1;

@@ -5,6 +5,9 @@
 
 #include "snake/model/taper.h"
 
+enum { anew = 16 }; // joints after which a recurrence of sines begins again, before rounding adds up
+
+// sin and cos of the next joint's angle are those of this one turned by delta.
 void moray_reference_set(reference *at, const double p[GAIT_KINDS])
 {
     at->a = p[GAIT_A];
@@ -13,10 +16,12 @@ void moray_reference_set(reference *at, const double p[GAIT_KINDS])
     at->offset[0] = p[GAIT_PHI_0];
     at->offset[1] = p[GAIT_DPHI_0];
     at->offset[2] = p[GAIT_DDPHI_0];
+    const double sine = sin(p[GAIT_DELTA]), cosine = cos(p[GAIT_DELTA]);
     for (int i = 0; i < at->n; i++) {
-        const double argument = p[GAIT_OMEGA] * p[GAIT_T] + i * p[GAIT_DELTA];
-        at->sine[i] = sin(argument);
-        at->cosine[i] = cos(argument);
+        at->sine[i] = i % anew ? at->sine[i - 1] * cosine + at->cosine[i - 1] * sine
+                               : sin(p[GAIT_OMEGA] * p[GAIT_T] + i * p[GAIT_DELTA]);
+        at->cosine[i] = i % anew ? at->cosine[i - 1] * cosine - at->sine[i - 1] * sine
+                                 : cos(p[GAIT_OMEGA] * p[GAIT_T] + i * p[GAIT_DELTA]);
         at->place[i] = taper_place(i, at->n);
         at->growth[i] = 1 + p[GAIT_TAPER] * at->place[i];
     }
