@@ -137,15 +137,6 @@ moray_settings steer_settings(steer_job *job, bool averaged, int intervals, doub
     return settings;
 }
 
-moray_status steer_take_plan(steer_job *job, int number)
-{
-    const moray_sim_settings sim = moray_sim_settings_default();
-    const moray_integrator integrator = moray_sim_integrator(&sim);
-    if (number == STEER_AVERAGED)
-        return moray_ok();
-    return moray_certify(job->plan[number].solution, &integrator, &job->certificate[number]);
-}
-
 bool steer_solved(const moray_solution *solution)
 {
     const moray_nlp_outcome outcome = moray_solution_info(solution)->outcome;
@@ -183,6 +174,7 @@ moray_status steer_do_without(steer_job *job, moray_status reason)
     job->snake.model = MORAY_CONTROL_ORIENTED;
     moray_steering_plan_free(&job->plan[MORAY_FIRST_PRINCIPLES]);
     job->plan[MORAY_FIRST_PRINCIPLES] = (moray_steering_plan){0};
+    job->certified[MORAY_FIRST_PRINCIPLES] = NULL;
     return moray_ok();
 }
 

@@ -140,11 +140,12 @@ static moray_status run_tuned(steer_job *job, steer_trial *trial)
     return moray_ok();
 }
 
-// ---- Trials of which none depends on another -----------------------------------------------------------------------
+// ---- Certificates, and trials of which none depends on another ------------------------------------------------------
 
-// What is not tuned, on each model a task.
+// Certificates of plans, then what is not tuned, on each model a task.
 typedef struct deal {
     steer_job *job;
+    int plans, plan[2];
     int n, of[STEER_TRIALS];
     double runs; // still to come, of trials on one model
 } deal;
@@ -153,21 +154,37 @@ typedef struct outcome {
     moray_status status;
     double score[STEER_SCORES], cost;
     moray_receding_horizon_record record;
+    moray_certificate certificate;
 } outcome;
 
-// A moray_task_fn; result: an outcome.
-static void swim_one(int task, void *result, void *self)
+static void certify(const steer_job *job, int plan, outcome *of)
 {
-    const deal *d = self;
-    const moray_model model = (moray_model)(task % 2);
-    outcome *of = result;
-    steer_trial trial = d->job->trial[d->of[task / 2]];
+    const moray_sim_settings sim = moray_sim_settings_default();
+    const moray_integrator integrator = moray_sim_integrator(&sim);
+    moray_ticker_show(&job->ticker, "%s: certifying", job->name);
+    of->status = moray_certify(job->plan[plan].solution, &integrator, &of->certificate);
+}
+
+static void swim_one(const deal *d, int run, outcome *of)
+{
+    const moray_model model = (moray_model)(run % 2);
+    steer_trial trial = d->job->trial[d->of[run / 2]];
     moray_ticker_show(&d->job->ticker, "%s: %s", d->job->name, trial.name);
-    steer_clock_give(&d->job->clock, 1 / (d->runs - task));
+    steer_clock_give(&d->job->clock, 1 / (d->runs - run));
     of->status = steer_try(d->job, &trial, model, careful);
     memcpy(of->score, trial.score[model], sizeof of->score);
     of->cost = trial.cost[model];
     of->record = trial.record[model];
+}
+
+// A moray_task_fn; result: an outcome.
+static void do_one(int task, void *result, void *self)
+{
+    const deal *d = self;
+    if (task < d->plans)
+        certify(d->job, d->plan[task], result);
+    else
+        swim_one(d, task - d->plans, result);
 }
 
 static moray_status take(steer_job *job, const outcome of[2], steer_trial *trial)
@@ -188,17 +205,31 @@ static moray_status unless_late(moray_status status)
     return status.code == MORAY_NOT_SOLVED ? moray_ok() : status;
 }
 
+static moray_status take_certificates(const deal *d, const outcome *of)
+{
+    for (int k = 0; k < d->plans; k++) {
+        MORAY_TRY(of[k].status);
+        d->job->certificate[d->plan[k]] = of[k].certificate;
+        d->job->certified[d->plan[k]] = d->job->plan[d->plan[k]].solution;
+    }
+    return moray_ok();
+}
+
 static moray_status run_others(steer_job *job)
 {
     deal d = {.job = job, .runs = 2 * still_to_run(job)};
-    outcome of[2 * STEER_TRIALS] = {0};
+    outcome of[2 + 2 * STEER_TRIALS] = {0};
+    for (int plan = 0; plan < 2; plan++)
+        if (job->plan[plan].solution && job->plan[plan].solution != job->certified[plan])
+            d.plan[d.plans++] = plan;
     for (int k = 0; k < job->n_trials; k++)
         if (can_run(job, &job->trial[k]) && !job->trial[k].law->tuned)
             d.of[d.n++] = k;
-    MORAY_TRY(moray_parallel(2 * d.n, sizeof *of, of, swim_one, &d, job->jobs));
+    MORAY_TRY(moray_parallel(d.plans + 2 * d.n, sizeof *of, of, do_one, &d, job->jobs));
     MORAY_TRY(steer_interruption());
+    MORAY_TRY(take_certificates(&d, of));
     for (int k = 0; k < d.n; k++)
-        MORAY_TRY(unless_late(take(job, &of[2 * k], &job->trial[d.of[k]])));
+        MORAY_TRY(unless_late(take(job, &of[d.plans + 2 * k], &job->trial[d.of[k]])));
     return moray_ok();
 }
 

@@ -105,7 +105,6 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
     MORAY_TRY(steer_find_turn_rate(&job->steer, model, &kept));
     if (!steer_solved(plan->solution))
         return why_not(job, plan);
-    MORAY_TRY(steer_take_plan(&job->steer, (int)model));
     return steer_straight_motions(&job->steer, 1 + (int)model, &plan->straight.gait, model);
 }
 
@@ -119,7 +118,6 @@ moray_status heading_plan_first(heading_job *job)
     const moray_heading_spec averaged = heading_spec(job, MORAY_CONTROL_ORIENTED, true);
     const moray_settings coarse = heading_settings(job, true, 2 * M_PI / first.omega);
     MORAY_TRY(moray_heading_plan_make(first_plan, &averaged, &coarse, &first, NULL));
-    MORAY_TRY(steer_take_plan(steer, STEER_AVERAGED));
     return make_plan(job, MORAY_CONTROL_ORIENTED, &first_plan->straight.gait, first_plan);
 }
 

@@ -192,9 +192,7 @@ static moray_status solve(path_job *job, moray_model model, bool averaged, const
         MORAY_TRY(moray_path_plan_make(plan, &spec, &settings, gait, job->start, job->heading, NULL));
         MORAY_TRY(steer_interruption());
     }
-    if (!steer_solved(plan->solution))
-        return why_not(job, plan);
-    return steer_take_plan(&job->steer, averaged ? STEER_AVERAGED : (int)model);
+    return steer_solved(plan->solution) ? moray_ok() : why_not(job, plan);
 }
 
 static moray_status make_plan(path_job *job, moray_model model, const moray_gait *gait, const moray_steering_plan *from)

@@ -120,9 +120,7 @@ static moray_status solve(turn_job *job, moray_model model, const moray_gait *ga
         keep_better(plan, &next);
         MORAY_TRY(steer_interruption());
     }
-    if (!solved(plan))
-        return why_not(job, plan);
-    return steer_take_plan(&job->steer, from ? (int)model : STEER_AVERAGED);
+    return solved(plan) ? moray_ok() : why_not(job, plan);
 }
 
 moray_status turn_make_plans(turn_job *job)
