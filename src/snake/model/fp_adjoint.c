@@ -11,11 +11,3 @@
 #include "snake/model/fp_adjoint.inc"
 #undef REAL
 #undef TYPED
-
-#define REAL double complex
-#define TYPED(name) name##_z
-#include "snake/model/fp_motor.inc"
-#include "snake/model/fp_slopes.inc"
-#include "snake/model/fp_adjoint.inc"
-#undef REAL
-#undef TYPED

@@ -2,8 +2,8 @@
 //
 // Gradients of the first-principles model, all at once, by hand: of a weighted sum
 //     F = lambda . (mean theta'', p_x'', p_y'') + rho . u + sigma . (supply of moray_fp_supply) + pi (power)
-// of what the joints' motion brings about. In real numbers a unit weight gives a row of the Jacobian; one complex step
-// through it is a row of the Hessian.
+// of what the joints' motion brings about. A unit weight gives a row of the Jacobian; fp_tangent.h has the
+// Hessian.
 #ifndef SRC_SNAKE_MODEL_FP_ADJOINT_H
 #define SRC_SNAKE_MODEL_FP_ADJOINT_H
 
@@ -18,12 +18,6 @@ typedef struct fp_weights {
 
 #define REAL double
 #define TYPED(name) name##_d
-#include "snake/model/fp_dual.h"
-#undef REAL
-#undef TYPED
-
-#define REAL double complex
-#define TYPED(name) name##_z
 #include "snake/model/fp_dual.h"
 #undef REAL
 #undef TYPED

@@ -3,19 +3,16 @@
 
 #include <tgmath.h>
 
-#include "snake/model/circle.h"
 #include "snake/model/model.h"
+
+static inline void circle_d(double angle, double *c, double *s)
+{
+    *c = cos(angle);
+    *s = sin(angle);
+}
 
 #define REAL double
 #define TYPED(name) name##_d
-#include "snake/model/fp_motor.inc"
-#include "snake/model/fp_drag.inc"
-#include "snake/model/fp_core.inc"
-#undef REAL
-#undef TYPED
-
-#define REAL double complex
-#define TYPED(name) name##_z
 #include "snake/model/fp_motor.inc"
 #include "snake/model/fp_drag.inc"
 #include "snake/model/fp_core.inc"

@@ -173,7 +173,8 @@ typedef double lanes8 __attribute__((vector_size(64)));
 
 static fp_directions directions_from(const fp_directions *all, int first)
 {
-    return (fp_directions){all->n, all->stride, all->theta + first, all->dtheta + first, all->ubar + first, all->v + first};
+    return (fp_directions){all->n,        all->stride, all->theta + first, all->dtheta + first, all->ubar + first,
+                           all->v + first};
 }
 
 static fp_tangents tangents_from(const fp_tangents *all, int first)
@@ -195,45 +196,59 @@ static fp_tangents tangents_from(const fp_tangents *all, int first)
     }
 
 static void sweeps_2(const fp_point *point, const known *at, lane_link_2 *links, const fp_directions *along,
-                     const fp_tangents *out)
-SWEEPS(2)
+                     const fp_tangents *out) SWEEPS(2)
 
 #ifdef SEVERAL_PROCESSORS
-__attribute__((target("arch=x86-64-v3"))) static void sweeps_4(const fp_point *point, const known *at,
-                                                               lane_link_4 *links, const fp_directions *along,
-                                                               const fp_tangents *out)
-SWEEPS(4)
+    __attribute__((target("arch=x86-64-v3"))) static void sweeps_4(const fp_point *point, const known *at,
+                                                                   lane_link_4 *links, const fp_directions *along,
+                                                                   const fp_tangents *out) SWEEPS(4)
 
-__attribute__((target("arch=x86-64-v4"))) static void sweeps_8(const fp_point *point, const known *at,
-                                                               lane_link_8 *links, const fp_directions *along,
-                                                               const fp_tangents *out)
-SWEEPS(8)
+        __attribute__((target("arch=x86-64-v4"))) static void sweeps_8(const fp_point *point, const known *at,
+                                                                       lane_link_8 *links, const fp_directions *along,
+                                                                       const fp_tangents *out) SWEEPS(8)
 #endif
 
-// ---- Interface -----------------------------------------------------------------------------------------------------
+    // ---- Interface
+    // -----------------------------------------------------------------------------------------------------
 
-enum { boundary = FP_LANES * sizeof(double), per_lane = sizeof(lane_link_2) / sizeof(lanes2) * sizeof(double) };
+    enum {
+        boundary = FP_LANES * sizeof(double),
+        per_lane = sizeof(lane_link_2) / sizeof(lanes2) * sizeof(double)
+    };
 
 size_t moray_fp_tangents_bytes(int N)
 {
     return (size_t)N * (sizeof(known) + FP_LANES * per_lane) + boundary;
 }
 
-void moray_fp_tangents(const fp_point *at, const fp_directions *along, void *memory, const fp_tangents *out)
+int moray_fp_widest(void)
+{
+#ifdef SEVERAL_PROCESSORS
+    if (__builtin_cpu_supports("x86-64-v4"))
+        return 8;
+    if (__builtin_cpu_supports("x86-64-v3"))
+        return 4;
+#endif
+    return 2;
+}
+
+void moray_fp_tangents(int wide, const fp_point *at, const fp_directions *along, void *memory, const fp_tangents *out)
 {
     const size_t N = (size_t)at->robot->links, off = (uintptr_t)memory % boundary;
     char *links = (char *)memory + (off > 0 ? boundary - off : 0);
     known *point = (known *)(void *)(links + N * FP_LANES * per_lane);
     know(at, point);
 #ifdef SEVERAL_PROCESSORS
-    if (__builtin_cpu_supports("x86-64-v4")) {
+    if (wide == 8) {
         sweeps_8(at, point, (lane_link_8 *)(void *)links, along, out);
         return;
     }
-    if (__builtin_cpu_supports("x86-64-v3")) {
+    if (wide == 4) {
         sweeps_4(at, point, (lane_link_4 *)(void *)links, along, out);
         return;
     }
+#else
+    (void)wide;
 #endif
     sweeps_2(at, point, (lane_link_2 *)(void *)links, along, out);
 }

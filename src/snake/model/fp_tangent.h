@@ -43,6 +43,10 @@ static inline int fp_stride(int n)
 // Bytes of the scratch memory, aligned as malloc does, for N links.
 size_t moray_fp_tangents_bytes(int N);
 
-void moray_fp_tangents(const fp_point *at, const fp_directions *along, void *memory, const fp_tangents *out);
+// How many directions the processor takes at a time at most: 2, 4 or 8.
+int moray_fp_widest(void);
+
+// `wide` of them at a time, no more than that.
+void moray_fp_tangents(int wide, const fp_point *at, const fp_directions *along, void *memory, const fp_tangents *out);
 
 #endif

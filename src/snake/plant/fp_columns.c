@@ -12,15 +12,16 @@ moray_status moray_fp_columns_new(fp_columns *columns, int N, int most)
     const struct {
         double **at;
         size_t rows;
-    } part[] = {{&along->mean, 1},     {&along->v_mean, 1},     {&along->phi, joints},    {&along->v_phi, joints},
-                {&along->ubar, joints}, {&along->v, 2},          {&gradient->mean, 1},     {&gradient->v_mean, 1},
-                {&gradient->phi, joints}, {&gradient->v_phi, joints}, {&gradient->ubar, joints}, {&gradient->v, 2},
-                {&from->theta, links}, {&from->dtheta, links},  {&to->theta, links},      {&to->dtheta, links},
-                {&to->ddtheta, links}, {&columns->sum, 2}};
+    } part[] = {{&along->mean, 1},          {&along->v_mean, 1},       {&along->phi, joints},
+                {&along->v_phi, joints},    {&along->ubar, joints},    {&along->v, 2},
+                {&gradient->mean, 1},       {&gradient->v_mean, 1},    {&gradient->phi, joints},
+                {&gradient->v_phi, joints}, {&gradient->ubar, joints}, {&gradient->v, 2},
+                {&from->theta, links},      {&from->dtheta, links},    {&to->theta, links},
+                {&to->dtheta, links},       {&to->ddtheta, links},     {&columns->sum, 2}};
     size_t rows = 0;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++)
         rows += part[k].rows;
-    *columns = (fp_columns){.N = N, .stride = (int)stride};
+    *columns = (fp_columns){.N = N, .stride = (int)stride, .wide = moray_fp_widest()};
     double *block = calloc(rows * stride, sizeof *block);
     columns->memory = malloc(moray_fp_tangents_bytes(N));
     *part[0].at = block;
@@ -83,7 +84,7 @@ void moray_fp_columns_find(fp_columns *columns, const fp_point *at)
     columns->links.stride = columns->stride;
     find_angles(columns, along->mean, along->phi, columns->links.theta);
     find_angles(columns, along->v_mean, along->v_phi, columns->links.dtheta);
-    moray_fp_tangents(at, &columns->links, columns->memory, &columns->by_links);
+    moray_fp_tangents(columns->wide, at, &columns->links, columns->memory, &columns->by_links);
     pull(columns, columns->by_links.theta, gradient->phi, gradient->mean);
     pull(columns, columns->by_links.dtheta, gradient->v_phi, gradient->v_mean);
     pull(columns, columns->by_links.ddtheta, gradient->ubar, NULL);

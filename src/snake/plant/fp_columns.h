@@ -14,7 +14,7 @@ typedef struct fp_joint_motion {
 } fp_joint_motion;
 
 typedef struct fp_columns {
-    int N, n, stride;
+    int N, n, stride, wide;
     fp_joint_motion along, gradient; // along: zeros until they are set
     fp_directions links;
     fp_tangents by_links;

@@ -227,7 +227,8 @@ static void hessian(void *self, const double *in, const double *weight, double *
     const free_setting *of = &plant->of;
     fp_free *at = &plant->at;
     const fp_weights weights = weights_of(of, weight);
-    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->u, &weights, at->dual};
+    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta,
+                            at->u,      &weights,         at->dual};
     memcpy(at->in, in, (size_t)of->n_in * sizeof *in);
     move(at);
     find_gradient(at, weight);

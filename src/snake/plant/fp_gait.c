@@ -192,7 +192,8 @@ void moray_fp_gait_columns(fp_gait *at, const double *weight, int n, const int *
 {
     const fp_setting *of = at->of;
     const fp_weights weights = weights_of(of, weight);
-    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->u, &weights, at->dual};
+    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta,
+                            at->u,      &weights,         at->dual};
     const int n_in = of->size.nx + of->size.nu + of->size.ns + 1;
     moray_fp_gait_gradient(at, weight, out);
     for (int kind = 0; kind < GAIT_KINDS; kind++)

@@ -19,9 +19,9 @@ enum { FP_RANKS = 3 }; // angles, rates and accelerations
 
 typedef struct fp_gait {
     const fp_setting *of;
-    reference gait; // with alpha for its amplitude
-    int place[GAIT_KINDS]; // of the gait's inputs; -1: it has none
-    double *theta, *dtheta, *ddtheta, *u; // N or N-1 each, as what follows
+    reference gait;                                                      // with alpha for its amplitude
+    int place[GAIT_KINDS];                                               // of the gait's inputs; -1: it has none
+    double *theta, *dtheta, *ddtheta, *u;                                // N or N-1 each, as what follows
     double *joints[FP_RANKS], *on_links[FP_RANKS], *on_joints[FP_RANKS]; // on: derivatives of a weighted sum
     double *slope[GAIT_KINDS][FP_RANKS];                                 // of the joints by the gait's inputs
     fp_link_d *links;

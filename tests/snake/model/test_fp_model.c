@@ -2,11 +2,9 @@
 //
 // First-principles model: against maximal coordinates, the energy balance, cases worked by hand, and its two number
 // types against each other.
-#include <complex.h>
-
+#include "fp_complex.h"
 #include "maximal.h"
 #include "random_robot.h"
-#include "snake/model/fp_model.h"
 
 typedef struct {
     moray_robot robot;

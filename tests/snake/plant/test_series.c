@@ -2,13 +2,12 @@
 //
 // Free motions of the joints: the first-principles plants with free joints and with joints on a series against a
 // complex step through the swimmer's equations; series against gaits, on the plants and between the models.
-#include <complex.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "fp_complex.h"
 #include "moray/snake/plant.h"
 #include "random_robot.h"
-#include "snake/model/fp_model.h"
 
 enum { HARMONICS = 2, MOST_INPUTS = 8 + (1 + 2 * HARMONICS) * MAX_LINKS, MOST_OUTPUTS = 6 + 5 * MAX_LINKS + 1 };
 
