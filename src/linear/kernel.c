@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // The inner loops. Tiles of up to three registers by four columns stay in registers while all pivots are subtracted.
-// The registers must be the processor's own: gcc takes wider vectors apart by way of memory, which is several times
-// slower.
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
+#include "base/lanes.h"
 #include "linear/parts.h"
 
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
-#define FOR_EACH_PROCESSOR __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#define SEVERAL_PROCESSORS
-#else
-#define FOR_EACH_PROCESSOR
-#endif
 #define INLINE static inline __attribute__((always_inline))
 
 typedef double lane8 __attribute__((vector_size(64), aligned(8)));
@@ -114,7 +107,7 @@ __attribute__((target("arch=x86-64-v3"))) static void update_wide(int rows, int 
 
 static void update_plain(int rows, int columns, int depth, struct view L, struct view W, double *C, size_t step)
 {
-    update(2, rows, columns, depth, L, W, C, step);
+    update(OWN_LANES, rows, columns, depth, L, W, C, step);
 }
 
 // Four columns of L at a time: first the triangle that they make with each other, then all rows below.
@@ -191,11 +184,12 @@ void moray_ldl_kernel_update(int rows, int columns, int depth, const double *L, 
 {
     const struct view left = {L, (size_t)ldl}, kept = {W, (size_t)ldw};
 #ifdef SEVERAL_PROCESSORS
-    if (__builtin_cpu_supports("x86-64-v4")) {
+    const int lanes = processor_lanes();
+    if (lanes == 8) {
         update_widest(rows, columns, depth, left, kept, C, (size_t)ldc);
         return;
     }
-    if (__builtin_cpu_supports("x86-64-v3")) {
+    if (lanes == 4) {
         update_wide(rows, columns, depth, left, kept, C, (size_t)ldc);
         return;
     }

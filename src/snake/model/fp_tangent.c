@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// What is the same along all directions is worked out once; then as many directions at a time as the processor's own
-// registers hold, since gcc takes wider vectors apart by way of memory.
+// What is the same along all directions is worked out once; then as many directions at a time as a register holds.
 #include "snake/model/fp_tangent.h"
 
 #include <stdint.h>
 #include <string.h>
 #include <tgmath.h>
 
+#include "base/lanes.h"
 #include "snake/model/fp_bends.h"
 
 #define REAL double
@@ -147,24 +147,23 @@ static void know(const fp_point *point, known *at)
 
 // ---- Along the directions ------------------------------------------------------------------------------------------
 
-typedef double lanes2 __attribute__((vector_size(16)));
-#define LANES lanes2
-#define TYPED(name) name##_2
+typedef double lanes_own __attribute__((vector_size(OWN_LANES * sizeof(double))));
+#define LANES lanes_own
+#define TYPED(name) name##_own
 #include "snake/model/fp_tangent.inc"
 #undef LANES
 #undef TYPED
 
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
-#define SEVERAL_PROCESSORS
-typedef double lanes4 __attribute__((vector_size(32)));
-#define LANES lanes4
+#ifdef SEVERAL_PROCESSORS
+typedef double lanes_4 __attribute__((vector_size(32)));
+#define LANES lanes_4
 #define TYPED(name) name##_4
 #include "snake/model/fp_tangent.inc"
 #undef LANES
 #undef TYPED
 
-typedef double lanes8 __attribute__((vector_size(64)));
-#define LANES lanes8
+typedef double lanes_8 __attribute__((vector_size(64)));
+#define LANES lanes_8
 #define TYPED(name) name##_8
 #include "snake/model/fp_tangent.inc"
 #undef LANES
@@ -173,8 +172,12 @@ typedef double lanes8 __attribute__((vector_size(64)));
 
 static fp_directions directions_from(const fp_directions *all, int first)
 {
-    return (fp_directions){all->n,        all->stride, all->theta + first, all->dtheta + first, all->ubar + first,
-                           all->v + first};
+    fp_directions from = *all;
+    from.theta += first;
+    from.dtheta += first;
+    from.ubar += first;
+    from.v += first;
+    return from;
 }
 
 static fp_tangents tangents_from(const fp_tangents *all, int first)
@@ -182,39 +185,48 @@ static fp_tangents tangents_from(const fp_tangents *all, int first)
     return (fp_tangents){all->theta + first, all->dtheta + first, all->ddtheta + first, all->v + first};
 }
 
-#define SWEEPS(wide)                                                                                                   \
-    {                                                                                                                  \
-        const fp_part plain = fp_part_alike(point->robot);                                                             \
-        for (int first = 0; first < along->n; first += wide) {                                                         \
-            const fp_directions from = directions_from(along, first);                                                  \
-            const fp_tangents to = tangents_from(out, first);                                                          \
-            if (point->robot->alike)                                                                                   \
-                sweep_##wide(point, &plain, at, links, &from, &to);                                                    \
-            else                                                                                                       \
-                sweep_##wide(point, NULL, at, links, &from, &to);                                                      \
-        }                                                                                                              \
-    }
+typedef struct sweeps {
+    const fp_point *point;
+    const known *known;
+    void *links;
+    const fp_directions *along;
+    const fp_tangents *out;
+} sweeps;
 
-static void sweeps_2(const fp_point *point, const known *at, lane_link_2 *links, const fp_directions *along,
-                     const fp_tangents *out) SWEEPS(2)
+#define SWEEPS(lanes)                                                                                                  \
+    do {                                                                                                               \
+        enum { wide = sizeof(lanes_##lanes) / sizeof(double) };                                                        \
+        const fp_part plain = fp_part_alike(all->point->robot);                                                        \
+        for (int first = 0; first < all->along->n; first += wide) {                                                    \
+            const fp_directions from = directions_from(all->along, first);                                             \
+            const fp_tangents to = tangents_from(all->out, first);                                                     \
+            if (all->point->robot->alike)                                                                              \
+                sweep_##lanes(all->point, &plain, all->known, all->links, &from, &to);                                 \
+            else                                                                                                       \
+                sweep_##lanes(all->point, NULL, all->known, all->links, &from, &to);                                   \
+        }                                                                                                              \
+    } while (0)
+
+static void sweeps_own(const sweeps *all)
+{
+    SWEEPS(own);
+}
 
 #ifdef SEVERAL_PROCESSORS
-    __attribute__((target("arch=x86-64-v3"))) static void sweeps_4(const fp_point *point, const known *at,
-                                                                   lane_link_4 *links, const fp_directions *along,
-                                                                   const fp_tangents *out) SWEEPS(4)
+__attribute__((target("arch=x86-64-v3"))) static void sweeps_4(const sweeps *all)
+{
+    SWEEPS(4);
+}
 
-        __attribute__((target("arch=x86-64-v4"))) static void sweeps_8(const fp_point *point, const known *at,
-                                                                       lane_link_8 *links, const fp_directions *along,
-                                                                       const fp_tangents *out) SWEEPS(8)
+__attribute__((target("arch=x86-64-v4"))) static void sweeps_8(const sweeps *all)
+{
+    SWEEPS(8);
+}
 #endif
 
-    // ---- Interface
-    // -----------------------------------------------------------------------------------------------------
+// ---- Interface -----------------------------------------------------------------------------------------------------
 
-    enum {
-        boundary = FP_LANES * sizeof(double),
-        per_lane = sizeof(lane_link_2) / sizeof(lanes2) * sizeof(double)
-    };
+enum { boundary = FP_LANES * sizeof(double), per_lane = sizeof(lane_link_own) / sizeof(lanes_own) * sizeof(double) };
 
 size_t moray_fp_tangents_bytes(int N)
 {
@@ -223,13 +235,7 @@ size_t moray_fp_tangents_bytes(int N)
 
 int moray_fp_widest(void)
 {
-#ifdef SEVERAL_PROCESSORS
-    if (__builtin_cpu_supports("x86-64-v4"))
-        return 8;
-    if (__builtin_cpu_supports("x86-64-v3"))
-        return 4;
-#endif
-    return 2;
+    return processor_lanes();
 }
 
 void moray_fp_tangents(int wide, const fp_point *at, const fp_directions *along, void *memory, const fp_tangents *out)
@@ -237,18 +243,15 @@ void moray_fp_tangents(int wide, const fp_point *at, const fp_directions *along,
     const size_t N = (size_t)at->robot->links, off = (uintptr_t)memory % boundary;
     char *links = (char *)memory + (off > 0 ? boundary - off : 0);
     known *point = (known *)(void *)(links + N * FP_LANES * per_lane);
+    const sweeps all = {at, point, links, along, out};
     know(at, point);
 #ifdef SEVERAL_PROCESSORS
-    if (wide == 8) {
-        sweeps_8(at, point, (lane_link_8 *)(void *)links, along, out);
-        return;
-    }
-    if (wide == 4) {
-        sweeps_4(at, point, (lane_link_4 *)(void *)links, along, out);
+    if (wide > OWN_LANES) {
+        (wide == 8 ? sweeps_8 : sweeps_4)(&all);
         return;
     }
 #else
     (void)wide;
 #endif
-    sweeps_2(at, point, (lane_link_2 *)(void *)links, along, out);
+    sweeps_own(&all);
 }

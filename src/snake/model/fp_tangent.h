@@ -46,7 +46,7 @@ size_t moray_fp_tangents_bytes(int N);
 // How many directions the processor takes at a time at most: 2, 4 or 8.
 int moray_fp_widest(void);
 
-// `wide` of them at a time, no more than that.
+// `wide` of them at a time: moray_fp_widest(), or less to try that.
 void moray_fp_tangents(int wide, const fp_point *at, const fp_directions *along, void *memory, const fp_tangents *out);
 
 #endif
