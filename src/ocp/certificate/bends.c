@@ -75,8 +75,7 @@ static struct told extrapolate(const struct bending *b, enum side at, int level,
         power *= at == both ? 16 : 4;
         above = k < level ? row[k] : 0;
         row[k] = row[k - 1] + (row[k - 1] - old) / (power - 1);
-        const double spread =
-            fmax(fabs(row[k] - row[k - 1]), fabs(row[k] - old)) + 4 * b->map->n_out * rounding / (h * h);
+        const double spread = fabs(row[k] - old) + 4 * b->map->n_out * rounding / (h * h); // row[k - 1] is nearer
         if (spread < told.doubt)
             told = (struct told){row[k], spread};
     }

@@ -266,8 +266,8 @@ static void test_off(struct problem *b, int of, unsigned long long *seed)
         expect_phase(&b->w, &b->phase[k], k, &worst);
     expect_end(&b->w, &b->end, &worst);
     CHECK_OK(moray_difference_bends(&b->w, &found, where, sizeof where), "bends");
-    CHECK(fabs(found - worst.value) <= 1e-4 * worst.value + 1e-9, "entry %d, %d of output %d is wrong by %.9g, not %.9g",
-          p->row, p->col, p->out, found, worst.value);
+    CHECK(fabs(found - worst.value) <= 1e-4 * worst.value + 1e-9,
+          "entry %d, %d of output %d is wrong by %.9g, not %.9g", p->row, p->col, p->out, found, worst.value);
     CHECK(worst.value == 0 || !strcmp(where, worst.where), "in %s, expected %s", where, worst.where);
     double larger = 2 * worst.value + 1;
     CHECK_OK(moray_difference_bends(&b->w, &larger, where, sizeof where), "bends");

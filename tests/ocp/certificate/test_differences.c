@@ -32,8 +32,8 @@ static void value(void *self, const double *in, double *out)
 // Without what is off.
 static void slopes(const double *s, double *values)
 {
-    const double right[JAC] = {40 + 3 * s[1],  3 * s[0] - 4 * s[1], corner_in_use, 10 * s[3], 2 * s[0], 7 * s[3],
-                               7 * s[1], -4};
+    const double right[JAC] = {
+        40 + 3 * s[1], 3 * s[0] - 4 * s[1], corner_in_use, 10 * s[3], 2 * s[0], 7 * s[3], 7 * s[1], -4};
     memcpy(values, right, sizeof right);
 }
 
@@ -70,8 +70,10 @@ enum place { inside, at_lower, at_upper, fixed };
 
 static moray_bounds box_of(enum place place, double x)
 {
-    return place == at_lower ? moray_between(x, 60) : place == at_upper ? moray_between(-60, x)
-         : place == fixed  ? moray_fixed(x)          : moray_between(-60, 60);
+    return place == at_lower   ? moray_between(x, 60)
+           : place == at_upper ? moray_between(-60, x)
+           : place == fixed    ? moray_fixed(x)
+                               : moray_between(-60, 60);
 }
 
 struct scales {
@@ -94,8 +96,7 @@ static struct step step_along(const struct witness *w, const enum place *place, 
         const double entry = moray_dense_entry(column, MORAY_DENSE_COLUMNS + which);
         step.size[j] = t->nlp.x_scale ? fmin(size[column], 1 / t->nlp.x_scale[column]) : size[column];
         const double inwards = which > 0 || place[j] == fixed ? 0 : place[j] == at_lower ? 1 : -1;
-        step.direction[j] =
-            0.05 * fabs(entry) * step.size[j] * (place[j] == inside ? copysign(1, entry) : inwards);
+        step.direction[j] = 0.05 * fabs(entry) * step.size[j] * (place[j] == inside ? copysign(1, entry) : inwards);
     }
     return step;
 }
@@ -236,9 +237,8 @@ static void test_places(const enum place *place, struct scales scales)
 
 int main(void)
 {
-    static const enum place places[][NS] = {{inside, inside, inside, inside},
-                                            {inside, at_lower, inside, at_upper},
-                                            {at_upper, fixed, inside, at_lower}};
+    static const enum place places[][NS] = {
+        {inside, inside, inside, inside}, {inside, at_lower, inside, at_upper}, {at_upper, fixed, inside, at_lower}};
     static const struct scales scales[] = {{50, 7, true}, {0, 0, false}, {0.3, 3, true}};
     for (size_t k = 0; k < sizeof places / sizeof *places; k++)
         for (size_t s = 0; s < sizeof scales / sizeof *scales; s++)

@@ -17,11 +17,9 @@ struct jump {
     double tau, f, g;
 };
 static const struct jump jumps[JUMPS] = {
-    {1e-4, 9, 9}, // before the first point
-    {0.1234, 3, -2},
-    {0.2501, -1.5, 0}, // just behind an edge, before its first point
-    {0.7123, 0, 4},
-    {0.9071, -0.7, -1.3}, // in the same interval
+    {1e-4, 9, 9},                          // before the first point
+    {0.1234, 3, -2}, {0.2501, -1.5, 0},    // just behind an edge, before its first point
+    {0.7123, 0, 4},  {0.9071, -0.7, -1.3}, // in the same interval
 };
 
 struct curve {

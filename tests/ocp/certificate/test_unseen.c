@@ -282,9 +282,9 @@ static void test_effects(const struct trial *trial)
     begun = false;
     settings.max_iterations = 0;
     settings.scheme = trial->scheme;
-    CHECK_OK(moray_ocp_new(
-                 &ocp, &(moray_ocp_spec){.phases = 2, .phase = phases, .ns = 1, .endpoint = total, .data = trial}),
-             trial->scheme);
+    CHECK_OK(
+        moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 2, .phase = phases, .ns = 1, .endpoint = total, .data = trial}),
+        trial->scheme);
     CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "begun");
     begun = true;
     set_iterate(solution);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A phase whose rates are set by their values at the nodes, and err by what is 0 there, and the mesh that becomes of it.
+// A phase whose rates are set by their values at the nodes, and err by what is 0 there, and the mesh that becomes of
+// it.
 #ifndef TESTS_OCP_PIECES_H
 #define TESTS_OCP_PIECES_H
 

@@ -42,7 +42,12 @@ static void test_hidden(const char *name, double much)
             double most;
             piece[k].lean = k == 3 ? -1 : k == 4;
             largest_at(k, &most);
-            piece[k].hidden = much / most * (k == 5 ? 1e-3 : k == 1 ? 1 : k == 3 ? 20 : scheme->family == MORAY_RADAU ? -1 : -20); // by how narrow they are
+            piece[k].hidden = much / most *
+                              (k == 5                          ? 1e-3
+                               : k == 1                        ? 1
+                               : k == 3                        ? 20
+                               : scheme->family == MORAY_RADAU ? -1
+                                                               : -20); // by how narrow they are
         }
     look(&b);
     CHECK_OK(moray_unseen_new(&u, &b.e), "effects");

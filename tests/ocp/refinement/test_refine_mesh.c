@@ -116,15 +116,14 @@ static void test_calm(const double *part, const enum mesh_past *past, const stru
 static void test_merging(void)
 {
     static const enum mesh_past new[N] = {0}, mixed[N] = {mesh_merged,  mesh_settled, mesh_settled,
-                                                        mesh_settled, mesh_merged,  mesh_untouched};
+                                                          mesh_settled, mesh_merged,  mesh_untouched};
     static const double none[N] = {0}, little[N] = {3e-4, 3.2e-4, 3.2e-4, 3e-4, 0.9, 1e-5},
                         more[N] = {3.2e-4, 3.2e-4, 2e-4, 0.5, 1e-5, 1e-5};
     const enum mesh_past u = mesh_untouched, m = mesh_merged, s = mesh_settled;
     test_calm(none, new, &(struct expected){3, {mesh[2], mesh[4], 1}, {0}, {3, 3, 3}, {m, m, m}});
     test_calm(none, mixed, &(struct expected){4, {mesh[2], mesh[3], mesh[5], 1}, {0}, {3, 3, 3, 3}, {s, s, s, u}});
     // 1e-2 of the tolerance, once 2^4 times the sum, is the most
-    test_calm(little, new,
-              &(struct expected){4, {mesh[2], mesh[4], mesh[5], 1}, {0}, {3, 3, 3, 3}, {m, m, u, u}});
+    test_calm(little, new, &(struct expected){4, {mesh[2], mesh[4], mesh[5], 1}, {0}, {3, 3, 3, 3}, {m, m, u, u}});
     test_calm(more, new, &(struct expected){4, {mesh[1], mesh[3], mesh[4], 1}, {0}, {3, 3, 3, 3}, {u, m, u, m}});
 }
 

@@ -126,6 +126,12 @@ static void test_what_rings(void)
 
 // ---- Families ----
 
+// As often as tells, by a fiftieth of the range.
+static double alternating_soon(double tau, int n)
+{
+    return tau > 0.2 ? 100 * (tau > 0.6) : n % 2 ? 2 : -1;
+}
+
 struct change {
     moray_settings settings;
     moray_mesh_record history[4];
@@ -181,10 +187,11 @@ static void test_back(void)
 }
 
 // Two meshes of Hermite-Simpson on which the control went to and fro all of the time, of these errors.
-static bool leaves(const moray_ocp *ocp, moray_solution *last, double error_before, double error, const char *changed)
+static bool leaves(const moray_ocp *ocp, moray_solution *last, double error_before, double error, const char *changed,
+                   double swing)
 {
     moray_settings settings = moray_settings_default();
-    moray_mesh_record history[2] = {{.error = error_before, .seen = 1, .swing = 1, .changed_to = changed},
+    moray_mesh_record history[2] = {{.error = error_before, .seen = 1, .swing = swing, .changed_to = changed},
                                     {.error = error}};
     struct mesh mesh = {0};
     struct campaign c = {.ocp = ocp,
@@ -208,13 +215,19 @@ static void test_leaving(void)
     moray_ocp *ocp = new_problem();
     moray_solution *last = solve(ocp, "hermite-simpson", 50);
     int found;
-    set_and_find(last, alternating, &found);
-    CHECK(leaves(ocp, last, 1, 1, NULL), "a family with which a control rings on mesh after mesh is left");
-    CHECK(!leaves(ocp, last, 1, 1, "lobatto3"), "but what rang before the family changed does not count");
-    CHECK(!leaves(ocp, last, 1, 5e-6, NULL), "nor what rings where the error is nearly small enough");
-    CHECK(!leaves(ocp, last, 5e-6, 1, NULL), "or was");
+    const double swing = set_and_find(last, alternating, &found);
+    CHECK(!leaves(ocp, last, 1, 1, NULL, 2.02 * swing),
+          "a swing that is less than half of what it was is on its way out");
+    CHECK(leaves(ocp, last, 1, 1, NULL, 1.98 * swing), "one that is more is not");
+    CHECK(leaves(ocp, last, 1, 1, NULL, 1), "a family with which a control rings on mesh after mesh is left");
+    CHECK(!leaves(ocp, last, 1, 1, "lobatto3", 1), "but what rang before the family changed does not count");
+    CHECK(!leaves(ocp, last, 1, 5e-6, NULL, 1), "nor what rings where the error is nearly small enough");
+    CHECK(!leaves(ocp, last, 5e-6, 1, NULL, 1), "or was");
+    const double little = set_and_find(last, alternating_soon, &found);
+    CHECK(found == 1 && little > 0 && little < 0.01 && !leaves(ocp, last, 1, 1, NULL, little),
+          "nor for one of a hundredth of the range of a control: %g", little);
     set_and_find(last, switching, &found);
-    CHECK(!leaves(ocp, last, 1, 1, NULL), "nor is a family left that rings no more");
+    CHECK(!leaves(ocp, last, 1, 1, NULL, 1), "nor is a family left that rings no more");
     moray_solution_free(last);
     moray_ocp_free(ocp);
 }
