@@ -165,13 +165,15 @@ static void test_outside(void)
 }
 
 // A row that rises or falls is worst at the last point between nodes, half a sample before the end.
-static void test_row(double slope, double bound)
+static void test_row(double slope, double bound, bool sized)
 {
     struct rates rates = {.row = slope, .nan_after = INFINITY};
     const moray_bounds free[] = {moray_free(), moray_free()};
     struct trial of;
     begin(&of, &rates, free, (double[]){-20, 30});
     const struct phase_layout *layout = &of.solution->transcription->layout.phase[0];
+    double *size = &of.w.phase[0].out_size[NX + 1];
+    *size = sized ? *size : 0; // as of what nothing moves, which is measured by its bound and 1
     for (int k = 0; k < layout->mesh.intervals; k++) {
         const struct interval *interval = &layout->interval[k];
         const int count = moray_points_between(interval, 5 * interval->scheme->points);
@@ -179,7 +181,7 @@ static void test_row(double slope, double bound)
         const double value = fabs(slope) * SPAN * tau, far = fmax(value - bound, 0);
         double outside = 0;
         moray_examiner_interval(&of.e, interval, &outside);
-        CHECK_RELATIVE(outside, far / (of.w.phase[0].out_size[NX + 1] + bound), 1e-9, "the row outside");
+        CHECK_RELATIVE(outside, far / ((sized ? *size : 1) + bound), 1e-9, "the row outside");
     }
     end(&of);
 }
@@ -193,6 +195,25 @@ static void test_not_a_number(void)
     const struct phase_layout *layout = &of.solution->transcription->layout.phase[0];
     CHECK(moray_examiner_interval(&of.e, &layout->interval[0], NULL) < 1, "finite before");
     CHECK(isinf(moray_examiner_interval(&of.e, &layout->interval[layout->mesh.intervals - 1], NULL)), "infinite after");
+    end(&of);
+}
+
+// An integral that nothing moves is measured by itself and 1; a phase without length is at its start.
+static void test_nothing(void)
+{
+    struct rates rates = {.f = {1, 1}, .nan_after = INFINITY};
+    const moray_bounds free[] = {moray_free(), moray_free()};
+    struct trial of;
+    struct examiner again;
+    begin(&of, &rates, free, (double[]){-20, 30});
+    of.w.phase[0].integral[0] = 0;
+    CHECK_OK(moray_examiner_new(&again, &of.w, 0), "examiner");
+    CHECK(again.size[NX] == 1 + 6, "an integral of -6 has the size %g", again.size[NX]);
+    moray_examiner_free(&again);
+    struct transcription *t = of.solution->transcription;
+    t->phase[0].tf = t->phase[0].t0;
+    moray_examiner_place(&of.e, &t->layout.phase[0].interval[0], START, NULL);
+    CHECK(of.e.in[0] == -20 && of.e.in[1] == 30, "at the start: %g and %g", of.e.in[0], of.e.in[1]);
     end(&of);
 }
 
@@ -210,9 +231,12 @@ int main(void)
     test_error(&(struct rates){{0.5, -12}, 1, 0, INFINITY, false});
     test_error(&(struct rates){{1, 1}, -9, 0, INFINITY, false});
     test_outside();
-    test_row(3, 1.5);
-    test_row(-3, 2.5);
+    for (int sized = 0; sized < 2; sized++) {
+        test_row(3, 1.5, sized);
+        test_row(-3, 2.5, sized);
+    }
     test_not_a_number();
+    test_nothing();
     test_points();
     return tap_done();
 }

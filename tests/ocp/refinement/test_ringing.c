@@ -82,6 +82,19 @@ static double alternating_for_a_while(double tau, int n)
     return tau < 0.5 && n % 2 ? 3 : -1;
 }
 
+// From the first node on, a turn at each.
+static double alternating_often(double tau, int n)
+{
+    (void)tau;
+    return n > 8 ? -1 : n % 2 ? 3 : -1;
+}
+
+static double alternating_once_less(double tau, int n)
+{
+    (void)tau;
+    return n > 7 ? 3 : n % 2 ? 3 : -1;
+}
+
 static double alternating_within_digits(double tau, int n)
 {
     return tau + (n % 2 ? 0.004 : 0);
@@ -110,6 +123,8 @@ static void test_what_rings(void)
     } cases[] = {{alternating, "from bound to bound at every node", 1},
                  {alternating_by_less, "by a quarter of that after a quarter of the time", 0.25 + 0.75 / 4},
                  {alternating_for_a_while, "half of the time", 0.5},
+                 {alternating_often, "eight times, each turn but the first from the node before", 7 / 100.},
+                 {alternating_once_less, "seven times, which may be a coincidence", 0},
                  {alternating_within_digits, "by less than a hundredth", 0},
                  {oscillating, "with the time", 0},
                  {switching, "once", 0}};
