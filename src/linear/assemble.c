@@ -40,7 +40,6 @@ static void lay_out(moray_ldl *ldl, int s)
     f->columns = node->columns;
     f->width = node->columns + delayed;
     f->height = f->width + node->rows;
-    f->pivots = 0;
     f->panel = ldl->panel_used;
     f->index = ldl->index_used;
     ldl->panel_used += (size_t)f->height * (size_t)f->width;

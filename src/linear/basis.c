@@ -190,7 +190,7 @@ static moray_status make_matrix(struct basis *basis, const moray_pattern *patter
         if (basis->slot[k] >= 0)
             list[begin[basis->slot[k]]++] = k;
     moray_pattern square;
-    MORAY_TRY(moray_pattern_new(&square, begin[basis->m > 0 ? basis->m - 1 : 0]));
+    MORAY_TRY(moray_pattern_new(&square, begin[basis->m - 1]));
     for (int j = 0, t = 0; j < basis->m; j++)
         for (const int first = basis->slots; t < begin[j]; t++) {
             const int k = list[t], i = basis->row[k];

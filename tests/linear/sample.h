@@ -45,4 +45,19 @@ static inline void start(sample *s, int n)
     memset(s->A, 0, sizeof s->A);
 }
 
+// The largest residual of A x = b, each over what its row adds up.
+static inline double residual_of(const sample *s, const double *x, const double *b)
+{
+    double worst = 0;
+    for (int i = 0; i < s->n; i++) {
+        double left = b[i], size = fabs(b[i]);
+        for (int j = 0; j < s->n; j++) {
+            left -= s->A[i * s->n + j] * x[j];
+            size += fabs(s->A[i * s->n + j] * x[j]);
+        }
+        worst = tap_worse(worst, fabs(left) / size);
+    }
+    return worst;
+}
+
 #endif

@@ -164,8 +164,8 @@ static void eliminate(struct full *f, bool root)
 
 // ---- Fronts ----
 
-// Of several kinds: anything; nothing much on the diagonal; rows below that are large; few entries; columns of nothing.
-// A root has no rows below.
+// Of several kinds: anything; nothing much on the diagonal; rows below that are large; few entries; columns of
+// rounding. A root has no rows below.
 static void draw(struct full *f, unsigned long long *seed, bool root)
 {
     const int kind = (int)tap_random(seed, 0, 5);
@@ -177,7 +177,7 @@ static void draw(struct full *f, unsigned long long *seed, bool root)
             value *= i == j && kind == 1 ? 1e-3 : 1;
             value *= i >= f->width && j < f->width && kind == 2 ? 30 : 1;
             value = tap_random(seed, 0, 1) < 0.7 && kind == 3 ? 0 : value;
-            value = kind == 4 && (i % 3 == 1 || j % 3 == 1) ? 0 : value;
+            value *= kind == 4 && (i % 3 == 1 || j % 3 == 1) ? 1e-17 : 1;
             f->M[i][j] = f->M[j][i] = i >= f->width && j >= f->width ? 0 : value;
         }
     for (int k = 0; k < f->width; k++)
@@ -235,6 +235,8 @@ static void compare(const struct made *m, const struct full *f, double threshold
         for (int i = k + 1; i < h; i++) {
             const double l = m->panel[k * h + i];
             faults->L = tap_worse(faults->L, fabs(l - f->L[i][k]) / (1 + fabs(f->L[i][k])));
+            if (f->D[k][0] == 0 && f->D[k][1] == 0 && (k == 0 || f->D[k - 1][1] == 0))
+                faults->inertia += l != 0;
             if (!root)
                 faults->growth = tap_worse(faults->growth, fabs(l) * threshold);
         }

@@ -241,7 +241,7 @@ static void test_ill(void)
     static const double tiny[] = {1e-6, 1e-9, 1e-12, 1e-15};
     for (int k = 0; k < 4; k++) {
         kkt_factors *kkt;
-        double x[MOST], b[MOST];
+        double x[MOST], b[MOST], rhs[MOST];
         make(&s, 17, 0);
         CHECK_OK(moray_kkt_factors_new(&kkt, s.n, &s.pattern), "made");
         CHECK_OK(moray_kkt_factors_factor(kkt, s.value, 1e-4), "factored");
@@ -254,8 +254,10 @@ static void test_ill(void)
             s.A[s.col[e] * s.n + s.row[e]] += s.row[e] != s.col[e] ? s.value[e] : 0;
         }
         plant(&s, x, b);
+        memcpy(rhs, b, sizeof rhs);
         CHECK_OK(moray_kkt_factors_factor(kkt, s.value, 1e-4), "factored");
         CHECK_OK(moray_kkt_factors_solve(kkt, 1, b), "solved");
+        CHECK(residual_of(&s, b, rhs) < 1e-9, "of this right-hand side: %.1e", residual_of(&s, b, rhs));
         CHECK(moray_kkt_factors_error(kkt) < 1e-11, "entries of the basis times %g: %.1e", tiny[k],
               moray_kkt_factors_error(kkt));
         CHECK(moray_kkt_factors_inertia(kkt).negative == negative_eigenvalues(&s), "inertia as LAPACK's");

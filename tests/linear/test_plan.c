@@ -230,10 +230,16 @@ static bool apart(const struct node *one, const struct node *other)
     return one->update + a <= other->update || other->update + b <= one->update;
 }
 
-// While a front is made, what waits for its parent lies apart, and the front's children.
+// While a front is made, what waits for its parent lies apart, and the front's children; each of two stacks holds no
+// more than what waits.
 static void check_blocks(const struct plan *plan, struct faults *f)
 {
-    for (int now = 0; now < plan->nodes; now++)
+    size_t most = 0;
+    for (int now = 0; now < plan->nodes; now++) {
+        size_t waiting = 0;
+        for (int one = 0; one <= now; one++)
+            waiting += plan->node[one].parent >= now ? (size_t)(plan->node[one].rows * plan->node[one].rows) : 0;
+        most = waiting > most ? waiting : most;
         for (int one = 0; one <= now; one++) {
             f->blocks += plan->node[one].update + (size_t)plan->node[one].rows * (size_t)plan->node[one].rows >
                          plan->update_room;
@@ -241,6 +247,8 @@ static void check_blocks(const struct plan *plan, struct faults *f)
                 if (plan->node[one].parent >= now && plan->node[other].parent >= now)
                     f->blocks += !apart(&plan->node[one], &plan->node[other]);
         }
+    }
+    f->blocks += plan->update_room > 2 * most;
 }
 
 static void check_sizes(const struct plan *plan, struct faults *f)

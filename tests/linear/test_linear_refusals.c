@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+//
+// What factors refuse, with whole texts: entries outside of the matrix, values that are no numbers, matrices that are
+// singular, solutions before there are factors.
+#include "tap.h"
+
+#include <string.h>
+
+#include "linear/klu.h"
+#include "linear/ldl.h"
+#include "linear/null_space.h"
+
+static void check_told(moray_status status, moray_code code, const char *text)
+{
+    CHECK(status.code == code && strcmp(status.text, text) == 0, "told: %s", status.text);
+}
+
+// One entry of four outside, on each side.
+static void test_outside(void)
+{
+    static const int places[][2] = {{-1, 1}, {3, 1}, {1, -1}, {1, 3}, {3, 3}};
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++)
+        for (int at = 0; at < 4; at++) {
+            int row[] = {0, 1, 2, 2}, col[] = {0, 1, 2, 0};
+            char text[100];
+            moray_ldl *ldl;
+            sparse_lu *lu;
+            const moray_pattern pattern = {4, row, col};
+            row[at] = places[k][0], col[at] = places[k][1];
+            snprintf(text, sizeof text, "entry %d stands at (%d, %d): outside a matrix of 3 rows", at, row[at],
+                     col[at]);
+            check_told(moray_ldl_new(&ldl, 3, &pattern), MORAY_INPUT, text);
+            check_told(moray_sparse_lu_new(&lu, 3, &pattern), MORAY_INPUT, text);
+            CHECK(!ldl && !lu, "and nothing is made");
+        }
+}
+
+static void test_lu(void)
+{
+    int row[] = {0, 0, 1, 1}, col[] = {0, 1, 0, 1}, flat[] = {0, 0, 0, 0};
+    sparse_lu *lu;
+    double b[] = {1, 2};
+    check_told(moray_sparse_lu_new(&lu, 2, &(moray_pattern){2, flat, col}), MORAY_INPUT,
+               "a sparse matrix of 2 rows is singular whatever its values: it has rank 1");
+    CHECK_OK(moray_sparse_lu_new(&lu, 2, &(moray_pattern){4, row, col}), "a full one");
+    check_told(moray_sparse_lu_solve(lu, 1, b), MORAY_NUMERIC,
+               "a sparse matrix of 2 rows has no factors to solve with");
+    check_told(moray_sparse_lu_solve_transposed(lu, 1, b), MORAY_NUMERIC,
+               "a sparse matrix of 2 rows has no factors to solve with");
+    for (int k = 0; k < 4; k++) {
+        double value[] = {3, 1, 1, 2};
+        CHECK_OK(moray_sparse_lu_factor(lu, value), "factored");
+        CHECK(moray_sparse_lu_condition(lu) > 0, "of some condition");
+        value[k] = k % 2 ? NAN : -INFINITY;
+        check_told(moray_sparse_lu_factor(lu, value), MORAY_NUMERIC, "a sparse matrix of 2 rows is not finite");
+        CHECK(moray_sparse_lu_condition(lu) == 0, "and of none without factors");
+    }
+    check_told(moray_sparse_lu_factor(lu, (double[]){1, 2, 2, 4}), MORAY_NUMERIC,
+               "a sparse matrix of 2 rows is singular: it has rank 1");
+    moray_sparse_lu_free(lu);
+}
+
+static void test_ldl(void)
+{
+    int row[] = {0, 1, 1}, col[] = {0, 0, 1};
+    moray_ldl *ldl;
+    double b[] = {1, 2};
+    CHECK_OK(moray_ldl_new(&ldl, 2, &(moray_pattern){3, row, col}), "two rows");
+    check_told(moray_ldl_solve(ldl, 1, b), MORAY_NUMERIC, "a sparse matrix of 2 rows has no factors to solve with");
+    for (int k = 0; k < 3; k++) {
+        double value[] = {3, 1, 2};
+        CHECK_OK(moray_ldl_factor(ldl, value, 0.1), "factored");
+        value[k] = k % 2 ? NAN : -INFINITY;
+        check_told(moray_ldl_factor(ldl, value, 0.1), MORAY_NUMERIC, "a sparse matrix of 2 rows is not finite");
+        check_told(moray_ldl_solve(ldl, 1, b), MORAY_NUMERIC, "a sparse matrix of 2 rows has no factors to solve with");
+    }
+    CHECK(moray_ldl_has_pattern(ldl, 2, &(moray_pattern){3, row, col}), "its pattern");
+    CHECK(!moray_ldl_has_pattern(ldl, 3, &(moray_pattern){3, row, col}), "of another size");
+    CHECK(!moray_ldl_has_pattern(ldl, 2, &(moray_pattern){2, row, col}), "of fewer entries");
+    int other_row[] = {0, 1, 0}, other_col[] = {0, 0, 0};
+    CHECK(!moray_ldl_has_pattern(ldl, 2, &(moray_pattern){3, other_row, col}), "another row");
+    CHECK(!moray_ldl_has_pattern(ldl, 2, &(moray_pattern){3, row, other_col}), "another column");
+    moray_ldl_free(ldl);
+}
+
+static void test_null_space(void)
+{
+    int row[] = {0, 1, 2, 2}, col[] = {0, 1, 0, 1};
+    null_space *ns;
+    double b[] = {1, 2, 3}, error;
+    bool fits;
+    CHECK_OK(moray_null_space_new(&ns, 3, &(moray_pattern){4, row, col}), "one constraint");
+    check_told(moray_null_space_solve(ns, b, &error), MORAY_NUMERIC,
+               "a sparse matrix of 3 rows has no factors to solve with");
+    for (int k = 0; k < 4; k++) {
+        double value[] = {1, 2, 3, 4};
+        CHECK_OK(moray_null_space_factor(ns, value, &fits), "factored");
+        CHECK(fits && moray_null_space_inertia(ns).negative == 1 && moray_null_space_inertia(ns).positive == 2,
+              "and its inertia");
+        value[k] = k % 2 ? NAN : -INFINITY;
+        check_told(moray_null_space_factor(ns, value, &fits), MORAY_NUMERIC, "a sparse matrix of 3 rows is not finite");
+        CHECK(!fits && moray_null_space_inertia(ns).positive == 0, "has none");
+    }
+    moray_null_space_free(ns);
+}
+
+int main(void)
+{
+    test_outside();
+    test_lu();
+    test_ldl();
+    test_null_space();
+    return tap_done();
+}
