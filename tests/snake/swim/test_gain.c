@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+//
+// Gains in a current: by the orbit where the simulation from rest came to it, else simulated; and what holds no course.
+#include "tap.h"
+
+#include <string.h>
+
+#include "moray/snake/trial.h"
+#include "snake/swim/orbit.h"
+
+static const moray_model model = MORAY_FIRST_PRINCIPLES;
+
+static moray_gait gait_of(double theta_max, double delta)
+{
+    const moray_robot robot = moray_robot_paper();
+    return (moray_gait){
+        .amplitude = moray_amplitude_from_theta_max(&robot, model, theta_max, delta), .omega = 1.8, .delta = delta};
+}
+
+static moray_test_rig rig_of(double v_x, double v_y, double course)
+{
+    const moray_robot robot = moray_robot_paper();
+    moray_test_rig rig;
+    CHECK_OK(moray_test_rig_new(&rig, &robot, (double[]){v_x, v_y}, course), "rig");
+    return rig;
+}
+
+// Both gains, on the one orbit.
+static void on_orbit(const moray_test_rig *rig, const moray_gait *gait, const moray_steady *base, double percent[2])
+{
+    moray_orbit_spec spec = moray_orbit_spec_default(moray_swimmer_robot(rig->swimmer[model]), model);
+    moray_orbit *orbit;
+    moray_orbit_result found;
+    moray_steady steady;
+    memcpy(spec.current, rig->current, sizeof spec.current);
+    spec.course = rig->course;
+    CHECK_OK(moray_orbit_new(&orbit, &spec), "orbit");
+    CHECK_OK(moray_orbit_find(orbit, gait, &found), "found");
+    moray_gait matched = *gait;
+    CHECK_OK(moray_orbit_match(orbit, &matched, true, base->power, &steady), "power");
+    percent[0] = 100 * (steady.speed / base->speed - 1);
+    matched = *gait;
+    CHECK_OK(moray_orbit_match(orbit, &matched, false, base->speed, &steady), "speed");
+    percent[1] = 100 * (steady.power / base->power - 1);
+    moray_orbit_free(orbit);
+}
+
+static void simulated(const moray_test_rig *rig, const moray_gait *gait, const moray_steady *base, double percent[2])
+{
+    const moray_swim_setup setup = moray_test_rig_setup(rig, model);
+    moray_gait matched = *gait;
+    moray_steady steady;
+    CHECK_OK(moray_swim_match_power(&setup, &matched, rig->course, base->power, &steady), "power");
+    percent[0] = 100 * (steady.speed / base->speed - 1);
+    matched = *gait;
+    CHECK_OK(moray_swim_match_speed(&setup, &matched, rig->course, base->speed, &steady), "speed");
+    percent[1] = 100 * (steady.power / base->power - 1);
+}
+
+static void check_gain(const moray_test_rig *rig, const moray_gait_trial *trial, const moray_gait_trial *baseline,
+                       const double percent[2], const char *what)
+{
+    const moray_gait_gain gain = moray_gait_gain_over(rig, trial, baseline);
+    CHECK_NEAR(gain.speed_percent_at_equal_power, percent[0], 1e-8, what);
+    CHECK_NEAR(gain.power_percent_at_equal_speed, percent[1], 1e-8, what);
+}
+
+// The digits beyond those that are matched tell the one from the other.
+static void test_proof(void)
+{
+    moray_test_rig rig = rig_of(0.04, -0.03, 0.3);
+    moray_gait_trial trial = {.gait = {[MORAY_FIRST_PRINCIPLES] = gait_of(0.3, 0.8)}}, baseline = {0};
+    moray_steady *swum = &trial.steady[model];
+    double orbit[2], from_rest[2];
+    CHECK_OK(moray_gait_trial_swim(&rig, model, &trial), "swum");
+    CHECK(trial.held[model], "on course");
+    baseline.steady[model] = (moray_steady){.power = 1.3 * swum->power, .speed = 0.9 * swum->speed};
+    on_orbit(&rig, &trial.gait[model], &baseline.steady[model], orbit);
+    simulated(&rig, &trial.gait[model], &baseline.steady[model], from_rest);
+    CHECK(fabs(orbit[0] - from_rest[0]) > 1e-7 && fabs(orbit[1] - from_rest[1]) > 1e-7, "they differ by %g and %g %%",
+          orbit[0] - from_rest[0], orbit[1] - from_rest[1]);
+    check_gain(&rig, &trial, &baseline, orbit, "by the orbit that was swum");
+    double *const told[] = {&swum->speed, &swum->power};
+    for (int k = 0; k < 2; k++) {
+        const double kept = *told[k];
+        *told[k] *= 1 + 1e-4;
+        check_gain(&rig, &trial, &baseline, from_rest, k ? "not with another power" : "not with another speed");
+        *told[k] = kept;
+    }
+    moray_test_rig_free(&rig);
+}
+
+// Where the current is too strong across the course the gait swims straight, begun along it.
+static void test_not_held(void)
+{
+    moray_test_rig rig = rig_of(0, 0.5, 0.3);
+    moray_gait_trial trial = {.gait = {[MORAY_FIRST_PRINCIPLES] = gait_of(0.3, 0.8)}};
+    CHECK_OK(moray_gait_trial_swim(&rig, model, &trial), "swum");
+    CHECK(!trial.held[model] && trial.why[model].code == MORAY_NOT_SOLVED && trial.steady[model].start_heading == 0.3,
+          "no course: %s", trial.why[model].text);
+    CHECK(trial.steady[model].speed > 0.1 && trial.steady[model].peak_effort > 0, "but it swims");
+    moray_test_rig_free(&rig);
+}
+
+// Integrated so coarsely that headings scatter by more than what counts as on course, a course is refused or held.
+static void test_scatter(void)
+{
+    moray_test_rig rig = rig_of(0, 0, 0);
+    moray_swim_setup setup = moray_test_rig_setup(&rig, model);
+    int refused = 0;
+    setup.settings.sim = moray_sim_settings_paper();
+    setup.settings.sim.rtol = setup.settings.sim.atol = 1e-3;
+    setup.settings.agreement = 0.01;
+    for (int k = 0; k < 4; k++) { // and its mirror image
+        const double side = k % 2 ? -1 : 1, course = side * (k < 2 ? 0.2 : 0.3);
+        moray_gait gait = gait_of(0.3, 0.8);
+        moray_steady steady;
+        gait.amplitude *= side;
+        setup.current[0] = 0.04;
+        setup.current[1] = side * 0.06;
+        const moray_status status = moray_swim_hold_course(&setup, &gait, course, &steady);
+        refused += status.code == MORAY_NOT_SOLVED;
+        CHECK(moray_failed(status) || fabs(atan2(steady.v_y, steady.v_x) - course) < 2e-6,
+              "held at %.3g rad, off by %.2g: %s", course, atan2(steady.v_y, steady.v_x) - course, status.text);
+    }
+    CHECK(refused > 0, "%d of 4 refused", refused);
+    moray_test_rig_free(&rig);
+}
+
+int main(void)
+{
+    test_proof();
+    test_not_held();
+    test_scatter();
+    return tap_done();
+}
