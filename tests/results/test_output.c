@@ -28,6 +28,14 @@ static void test_commit(void)
     moray_output_free(output);
     struct stat about;
     CHECK(holds("a/b/c/first.txt", "new") && entries("a/b/c") == 3, "it is replaced");
+    output = open_in("a/b/c");
+    fprintf(start(output, "fourth.txt"), "four");
+    fprintf(start(output, "third.txt"), "newer");
+    fprintf(start(output, "fifth.txt"), "five");
+    CHECK_OK(moray_output_commit(output), "one over an earlier one, between new ones");
+    moray_output_free(output);
+    CHECK(holds("a/b/c/third.txt", "newer") && holds("a/b/c/fourth.txt", "four") && entries("a/b/c") == 5,
+          "nothing is left of what was replaced: %d", entries("a/b/c"));
     const mode_t mask = umask(0);
     umask(mask);
     CHECK(stat(in_root("a/b/c/first.txt"), &about) == 0 && (about.st_mode & 0777) == (0666 & ~mask),

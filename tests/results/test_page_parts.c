@@ -88,6 +88,20 @@ static void test_paragraphs(void)
     is(page, "<p>one</p>\n<p>two &amp; 3</p>\n", "paragraphs");
 }
 
+// What is added is cut behind a whole word where there is no room for all of it.
+static void test_added(void)
+{
+    char line[25] = "one";
+    moray_text_add(line, sizeof line, ", %s", "two");
+    CHECK(strcmp(line, "one, two") == 0, "%s", line);
+    moray_text_add(line, sizeof line, ", %d digits", 123);
+    CHECK(strcmp(line, "one, two, 123 digits") == 0, "%s", line);
+    moray_text_add(line, sizeof line, " %s", "now");
+    CHECK(strcmp(line, "one, two, 123 digits now") == 0, "as much as there is room for: %s", line);
+    moray_text_add(line, sizeof line, ".");
+    CHECK(strcmp(line, "one, two, 123 digits ...") == 0, "%s", line);
+}
+
 // ---- Pages ---------------------------------------------------------------------------------------------------------
 
 static char *page_of(const char *name, const moray_report *report, const char *const *files)
@@ -173,6 +187,7 @@ int main(void)
     test_tables();
     test_pictures();
     test_paragraphs();
+    test_added();
     test_asked();
     test_parts();
     leave();
