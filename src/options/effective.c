@@ -11,10 +11,10 @@
 
 enum { MOST = 4200 }; // bytes of a value: a path, at most
 
+// Where the quotient, rounded, is not read back as the value, no double beside it is, which is farther off.
 void moray_option_show_exactly(const moray_option *row, double value, char text[32])
 {
     const double scale = moray_option_scale(row), shown = value / scale;
-    double next = shown;
     if (!isfinite(value)) {
         strcpy(text, "none");
         return;
@@ -24,15 +24,6 @@ void moray_option_show_exactly(const moray_option *row, double value, char text[
         if (strtod(text, NULL) * scale == value)
             return;
     }
-    for (int step = 0; step < 8; step++) { // the quotient was rounded to a neighbour
-        next = nextafter(next, step % 2 ? -INFINITY : INFINITY);
-        for (int k = 0; k < step; k++)
-            next = nextafter(next, step % 2 ? -INFINITY : INFINITY);
-        snprintf(text, 32, "%.17g", next);
-        if (strtod(text, NULL) * scale == value)
-            return;
-    }
-    snprintf(text, 32, "%.17g", shown);
 }
 
 static void show_reals(const moray_option *row, const void *at, char text[MOST])

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The first names of the choices, by blanks.
+// The first names of the choices, by blanks, of what takes a value.
 static void print_values(FILE *file, const moray_option *row)
 {
-    if (row->type == MORAY_OPTION_BOOL && row->key)
+    if (row->type == MORAY_OPTION_BOOL)
         fputs("yes no", file);
     for (int i = 0; row->type == MORAY_OPTION_CHOICE && row->choices[i]; i++)
         fprintf(file, "%s%.*s", i > 0 ? " " : "", (int)strcspn(row->choices[i], "|"), row->choices[i]);
