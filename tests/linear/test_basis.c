@@ -224,6 +224,7 @@ static void test_matrix(void)
             const double now = turn < 2 ? 1 : factor;
             if (moray_failed(moray_basis_factor(&basis, s.value)))
                 break;
+            wrong += memcmp(basis.values, basis.values + basis.slots, (size_t)basis.slots * sizeof *basis.values) != 0;
             moray_basis_others(&basis, s.value, columns);
             for (int c = 0; c < m; c++)
                 x[c] = b[c] = 1 + 0.1 * c;
@@ -245,11 +246,42 @@ static void test_matrix(void)
         moray_basis_free(&basis);
     }
     CHECK(regular > 50 && worst < 1e-11, "%d times the basis is solved, to %.1e", regular, worst);
-    CHECK(wrong == 0, "and the other columns are those of the matrix, but for %d", wrong);
+    CHECK(wrong == 0, "the other columns are those of the matrix, and what is factored is kept, but for %d", wrong);
+}
+
+// Values that are wrong on purpose are so by a share of 1e-14 at most, each by another.
+static void test_nearly(void)
+{
+    static sample s;
+    double most = 0;
+    int outside = 0, alike = 0, all = 0;
+    for (int k = 0; k < 200; k++) {
+        struct basis basis;
+        bool found;
+        double before[MOST * MOST], last = 0;
+        make(&s, 9000 + (unsigned long long)k);
+        CHECK_OK(moray_basis_choose(&basis, variables_of(&s), s.m, &s.pattern, s.value, 2, &found), "chosen");
+        if (found && moray_basis_factor(&basis, s.value).code != MORAY_MEMORY) {
+            memcpy(before, basis.values, (size_t)basis.slots * sizeof *before);
+            CHECK(moray_basis_factor_nearly(&basis, s.value).code != MORAY_MEMORY, "nearly");
+            for (int e = 0; e < basis.slots; e++) {
+                const double share = before[e] != 0 ? basis.values[e] / before[e] - 1 : 0;
+                outside += !(share >= 0 && share <= 1.03e-14);
+                alike += before[e] != 0 && share == last;
+                most = fmax(most, share);
+                last = share;
+                all++;
+            }
+        }
+        moray_basis_free(&basis);
+    }
+    CHECK(outside == 0 && most > 0.9e-14, "by 1e-14 at most, %.2g, but for %d of %d", most, outside, all);
+    CHECK(alike < all / 10, "and not alike, but for %d", alike);
 }
 
 int main(void)
 {
+    test_nearly();
     test_own();
     test_just_strong();
     test_matrix();

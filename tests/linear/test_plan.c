@@ -159,7 +159,7 @@ static void test_tree(void)
 // ---- Plan ----
 
 struct faults {
-    int numbering, rows, parents, into, blocks, sizes, entries, choice;
+    int numbering, rows, merged, parents, into, blocks, sizes, entries, choice;
 };
 
 static int front_of(const struct plan *plan, int c)
@@ -200,6 +200,16 @@ static void check_rows(const sample *s, const struct plan *plan, struct faults *
         f->rows += found != node->rows;
         f->parents += node->parent != (node->rows > 0 ? front_of(plan, plan->rows[node->structure]) : -1);
         f->parents += node->rows > 0 && node->own != own;
+    }
+}
+
+// A front that its parent would take in without a zero, or that is small beside a small one, has been taken in.
+static void check_merged(const struct plan *plan, struct faults *f)
+{
+    for (int k = 0; k < plan->nodes; k++) {
+        const struct node *node = &plan->node[k], *up = &plan->node[node->parent < 0 ? 0 : node->parent];
+        if (node->parent >= 0)
+            f->merged += node->rows == up->columns + up->rows || node->columns + up->columns <= 4;
     }
 }
 
@@ -332,6 +342,7 @@ static void test_plan(void)
         eliminate(&s, plan.position);
         check_numbering(&s, &plan, &f);
         check_rows(&s, &plan, &f);
+        check_merged(&plan, &f);
         check_children(&plan, &f);
         check_blocks(&plan, &f);
         check_sizes(&plan, &f);
@@ -342,6 +353,7 @@ static void test_plan(void)
     }
     CHECK(f.numbering == 0, "fronts take all positions in turn, but for %d", f.numbering);
     CHECK(f.rows == 0, "rows of fronts are what their columns reach, but for %d", f.rows);
+    CHECK(f.merged == 0, "fronts are merged where that costs nothing, but for %d", f.merged);
     CHECK(f.parents == 0, "the parent holds the first of them, but for %d", f.parents);
     CHECK(f.into == 0, "each finds itself in the parent, but for %d", f.into);
     CHECK(f.blocks == 0, "what waits lies apart, but for %d", f.blocks);

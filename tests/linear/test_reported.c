@@ -7,6 +7,7 @@
 #include "linear/kkt_factors.h"
 #include "linear/ldl.h"
 #include "linear/null_space_parts.h"
+#include "linear/parts.h"
 
 // ---- Errors ----
 
@@ -147,6 +148,23 @@ static void look_at_basis(const null_space *ns, const sample *s, double *far, do
         }
 }
 
+// A basis of before is kept while it will do, though another would be chosen now.
+static void test_kept_basis(void)
+{
+    int row[] = {0, 1, 2, 2}, col[] = {0, 1, 0, 1};
+    null_space *ns;
+    bool fits;
+    CHECK_OK(moray_null_space_new(&ns, 3, &(moray_pattern){4, row, col}), "made");
+    CHECK_OK(moray_null_space_factor(ns, (double[]){1, 1, 1, 1e-3}, &fits), "the first variable is the stronger");
+    CHECK(fits && ns->basis.place[0] == 0 && ns->basis.place[1] == -1, "and taken");
+    CHECK_OK(moray_null_space_factor(ns, (double[]){1, 1, 1e-4, 1}, &fits), "now the second is");
+    CHECK(fits && ns->basis.place[0] == 0 && ns->Z[0] == -1e4, "but the first stays: it moves by %g", ns->Z[0]);
+    moray_null_space_forget(ns);
+    CHECK_OK(moray_null_space_factor(ns, (double[]){1, 1, 1e-4, 1}, &fits), "forgotten");
+    CHECK(fits && ns->basis.place[0] == -1 && ns->basis.place[1] == 0, "the second is taken");
+    moray_null_space_free(ns);
+}
+
 // Where constraints leave no choice of a basis, it is taken unless it is singular to the last digits.
 static void test_no_choice(void)
 {
@@ -271,6 +289,36 @@ static void test_work(void)
     moray_ldl_free(ldl);
 }
 
+// What is told of an order is what its plan says; each constraint has its partner.
+static void test_order(void)
+{
+    static sample s;
+    moray_ldl *ldl;
+    enum { constraints = 12, variables = 20 };
+    s.seed = 5;
+    start(&s, variables + constraints);
+    for (int j = 0; j < variables; j++)
+        put(&s, j, j, 1);
+    for (int c = 0; c < constraints; c++)
+        put(&s, variables + c, c, 1), put(&s, variables + c, c + 1, 0.3), put(&s, variables + c, variables - 1, 0.2);
+    CHECK_OK(moray_ldl_new(&ldl, s.n, &s.pattern), "made");
+    CHECK_OK(moray_ldl_factor(ldl, s.value, 0.01), "factored");
+    const moray_ldl_statistics at = moray_ldl_statistics_of(ldl);
+    const struct plan *plan = &ldl->plan;
+    int largest = 0;
+    double entries = 0;
+    for (int k = 0; k < plan->nodes; k++) {
+        const int height = plan->node[k].columns + plan->node[k].rows;
+        largest = height > largest ? height : largest;
+        entries += plan->node[k].columns * height;
+    }
+    CHECK(at.fronts == plan->nodes && at.largest == largest && at.entries == entries && at.planned == plan->flops,
+          "%d fronts of up to %d rows, %g entries", at.fronts, at.largest, at.entries);
+    CHECK(at.pairs == constraints && at.orders == 1, "%d pairs", at.pairs);
+    CHECK(moray_ldl_inertia_of(ldl).negative == constraints, "and their inertia");
+    moray_ldl_free(ldl);
+}
+
 // An arrow whose shaft is too weak for pivots of its own: few entries may be many times those planned. Work that comes
 // with the last front does not make the order worn, but counts for the time after.
 static void test_small_fill(void)
@@ -308,11 +356,13 @@ static void test_small_fill(void)
 
 int main(void)
 {
+    test_order();
     test_small_fill();
     test_error();
     test_large_solution();
     test_worst();
     test_null_space();
+    test_kept_basis();
     test_no_choice();
     test_columns();
     test_work();
