@@ -101,6 +101,31 @@ static void test_groups(void)
     refused(PARSE(&s, "--set", "head_kg=400"), "a mass of 400 kg");
 }
 
+static moray_status derive(void *place)
+{
+    part *p = place;
+    p->length = 2 * p->mass;
+    return moray_ok();
+}
+
+// With --out the settings are told as they were asked for, and behind them what has followed from these.
+static void test_told(void)
+{
+    static const moray_option_table table = {tail_rows, 2, derive};
+    static const moray_option_group one = {&table, offsetof(settings, tail)};
+    static const moray_program deriving = {
+        .name = "d", .summary = "s", .groups = &one, .n_groups = 1, .without = without};
+    settings s = {.common = moray_common_default(), .tail = {.mass = NAN, .length = NAN}};
+    char *argv[] = {"d", "--out", "x", "--set", "tail_kg=4"}, *ini = NULL;
+    moray_request request;
+    CHECK_OK(moray_options_parse(&deriving, 5, argv, &s, &request, &ini), "read");
+    CHECK(s.common.argc == 5 && s.common.argv == argv && s.tail.length == 8, "with the command line");
+    CHECK(ini && strstr(ini, "\n[tail]\ntail_kg = 4\n; tail_m: not given\n") &&
+              strstr(ini, "\n; What follows from these:\n;   tail_m = 8\n"),
+          "%s", ini);
+    free(ini);
+}
+
 // Of a flag alone, which has no key, and of a key.
 static void test_idle(void)
 {
@@ -257,6 +282,7 @@ int main(void)
         return 1;
     test_defaults();
     test_groups();
+    test_told();
     test_idle();
     test_unused();
     test_sections();
