@@ -197,6 +197,26 @@ static void test_room(void)
         CHECK(!memcmp(told[0][which], told[1][which], BLOCK * sizeof(double)), "the same in used room");
 }
 
+// How exact an output is does not hang on how large another is.
+static void grow(void *self, const double *in, double *out)
+{
+    const int *large = self;
+    out[*large] = 1e8;
+    out[!*large] = exp(9 * in[0]);
+}
+
+static void test_beside_large(void)
+{
+    for (int large = 0; large < 2; large++) {
+        const double in = 0.1, size = 1;
+        const moray_map map = {.n_in = 1, .n_out = 2, .value = grow, .self = &large};
+        double jac[2], doubt[2], kink[2];
+        CHECK_OK(moray_difference_columns(&map, &in, &size, NULL, jac, doubt, kink), "columns");
+        CHECK(fabs(jac[!large] - 9 * exp(0.9)) < 1e-9 && doubt[!large] < 1e-8, "of an exponential: off by %.1e",
+              jac[!large] - 9 * exp(0.9));
+    }
+}
+
 int main(void)
 {
     test_lengths();
@@ -205,5 +225,6 @@ int main(void)
     test_coarse(&(struct fall){"trapezoid", 1, 20, false});
     test_seen();
     test_room();
+    test_beside_large();
     return tap_done();
 }
