@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "moray/snake/gait_over.h"
+#include "snake/gait/over.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "snake/gait/problem.h"
-
-// Events of a gait problem, at most; names of parameters and events.
-enum { most_events = MORAY_BODY_STATES + GAIT_OPTIONAL_EVENTS, name_size = 64 };
-typedef char over_name[name_size];
-
-struct moray_gait_over {
-    int n, ns, ne;
-    moray_over_goal goal;
-    double speed[MORAY_SCENARIOS]; // the baseline's
-    moray_gait_problem *problem[MORAY_SCENARIOS];
-    moray_map plant[MORAY_SCENARIOS]; // theirs, with the parameters of all
-    moray_phase_spec phase[MORAY_SCENARIOS];
-    moray_bounds *bounds; // of s, then of e
-    over_name *text;      // likewise
-    const char **name;    // likewise
-    moray_ocp *ocp;
-};
+// Events of a gait problem, at most.
+enum { most_events = MORAY_BODY_STATES + GAIT_OPTIONAL_EVENTS };
 
 // ---- Parameters (amplitude, omega of each, delta, offset of each, taper, t) ----------------------------------------
 
@@ -130,12 +114,12 @@ static void fill_parameters(moray_gait_over *over, const moray_gait_scenario *sc
         for (int i = 0; i < MORAY_GAIT_PARAMETERS; i++) {
             const bool own = i == 1 || i == 3;
             over->bounds[place[i]] = over->problem[k]->s.at[i];
-            snprintf(over->text[place[i]], name_size, own ? "%s on %s" : "%s", names[i], scenario[k].name);
+            snprintf(over->text[place[i]], OVER_NAME, own ? "%s on %s" : "%s", names[i], scenario[k].name);
         }
     }
     if (over->goal == MORAY_OVER_WORST) {
         over->bounds[place_of_t(over)] = moray_at_least(-1);
-        snprintf(over->text[place_of_t(over)], name_size, "least gain");
+        snprintf(over->text[place_of_t(over)], OVER_NAME, "least gain");
     }
 }
 
@@ -151,11 +135,11 @@ static void fill_events(moray_gait_over *over, const moray_gait_scenario *scenar
                 continue;
             const bool power = problem->endpoint.power && i == moray_gait_power_event(&problem->endpoint);
             over->bounds[at] = power ? moray_fixed(problem->e.at[i].upper) : problem->e.at[i];
-            snprintf(over->text[at++], name_size, "%s on %.24s", problem->names[i], scenario[k].name);
+            snprintf(over->text[at++], OVER_NAME, "%s on %.24s", problem->names[i], scenario[k].name);
         }
         if (over->goal == MORAY_OVER_WORST) {
             over->bounds[at] = moray_at_least(0);
-            snprintf(over->text[at++], name_size, "gain on %.24s", scenario[k].name);
+            snprintf(over->text[at++], OVER_NAME, "gain on %.24s", scenario[k].name);
         }
     }
 }
