@@ -156,6 +156,8 @@ static void test_again(void)
         CHECK(info.slopes >= 1, "by %d slopes", info.slopes);
         CHECK_OK(moray_periodic_orbit_solve(orbit, p, NULL, &info), "again");
         by_old += info.slopes == 0 && info.iterations == 1;
+        double by[2];
+        CHECK_OK(moray_periodic_orbit_output_gradient(orbit, 2, 0.3, by), "asked for slopes of its own");
         p[0] *= 1 + 1e-4;
         CHECK_OK(moray_periodic_orbit_solve(orbit, p, NULL, &info), "a little further");
         CHECK(info.residual <= 1e-11 && info.iterations >= 1 && info.iterations <= 12, "in %d steps", info.iterations);

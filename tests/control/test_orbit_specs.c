@@ -78,6 +78,29 @@ static void driven(void *self, const moray_num *in, moray_num *out)
     out[1] = -in[0] - 0.5 * in[0] * in[0] * in[0] - 0.3 * in[1] + in[2] * ccos(in[3]);
 }
 
+// Sizes of the states, each of which is above 0.
+static void test_scales(void)
+{
+    static const double wrong[] = {0, -1, NAN, INFINITY};
+    const moray_closing_condition starts[] = {{MORAY_CLOSE_STARTS, 0, 1}, {MORAY_CLOSE_STARTS, 1, 2}};
+    moray_map plant, closing;
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, driven, NULL, NULL, probe), "plant");
+    CHECK_OK(moray_closing_map(&closing, 2, 1, starts, 2), "start");
+    for (int k = 0; k < 8; k++) {
+        double scale[2] = {3, 4};
+        char says[60];
+        scale[k % 2] = wrong[k / 2];
+        moray_periodic_orbit *orbit;
+        const moray_periodic_orbit_spec spec = {
+            .nx = 2, .ns = 1, .plant = &plant, .closing = &closing, .scale = scale, .scheme = "radau2", .intervals = 3};
+        const moray_status status = moray_periodic_orbit_new(&orbit, &spec);
+        snprintf(says, sizeof says, "scale[%d] = %g: must be above 0", k % 2, wrong[k / 2]);
+        CHECK(status.code == MORAY_INPUT && !orbit && strcmp(status.text, says) == 0, "%s", status.text);
+    }
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
 static void start_at(double t, double *x, const void *self)
 {
     (void)t;
@@ -133,6 +156,7 @@ int main(void)
     static const char *const schemes[] = {"lobatto2", "gauss1", "radau1", "radau3", "lobatto4", "gauss2"};
     test_sizes();
     test_found();
+    test_scales();
     for (int k = 0; k < 6; k++)
         for (int intervals = 1; intervals < 8; intervals += 3)
             test_monodromy(schemes[k], intervals);
