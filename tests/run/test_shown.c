@@ -320,6 +320,23 @@ static void test_lines(const rig *r)
     CHECK(strncmp(text, want, strlen(want)) == 0, "%s, not %s", text, want);
 }
 
+// A name that is none of a file becomes one; without a folder it stands in the working directory.
+static void test_kept(const rig *r)
+{
+    const moray_common common = moray_common_default();
+    char kept[MORAY_PATH_SIZE];
+    CHECK_OK(moray_iterate_keep(&common, "/tmp/moray a/b_c-d.9%", r->run.solution, kept), "kept");
+    CHECK(strcmp(kept, "-tmp-moray-a-b_c-d.9-.iterate") == 0 && access(kept, R_OK) == 0, "%s", kept);
+    unlink(kept);
+    const moray_status status = moray_interruption(r->run.solution, kept);
+    char says[5000];
+    snprintf(says, sizeof says, "interrupted after %d iterations; to go on: --continue %s",
+             moray_solution_info(r->run.solution)->iterations, kept);
+    CHECK(status.code == MORAY_INTERRUPTED && strcmp(status.text, says) == 0, "%s", status.text);
+    for (int k = 0; k < 4; k++)
+        CHECK(moray_failed(moray_check_starts(k & 1 ? "a" : "", k & 2 ? "b" : "")) == (k == 3), "only one of both");
+}
+
 int main(void)
 {
     rig r;
@@ -330,6 +347,7 @@ int main(void)
     test_summary(&r);
     test_printed(&r);
     test_lines(&r);
+    test_kept(&r);
     rig_free(&r);
     unlink(path);
     return tap_done();

@@ -59,7 +59,7 @@ static void forget(void)
 
 // ---- What is solved ------------------------------------------------------------------------------------------------
 
-// A mass from rest to rest by way of a point, with a force that hinders it; the later phase comes first.
+// A mass from rest to rest by way of a point, with a force that hinders it; either phase comes first.
 static void move(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
@@ -68,32 +68,34 @@ static void move(const moray_node *at, moray_rates *out, const void *data)
     out->g[0] = at->u[0] * at->u[0];
 }
 
+// data: which phase is the later one.
 static void join(const moray_ends *at, moray_end_values *out, const void *data)
 {
-    (void)data;
+    const int late = *(const int *)data;
     out->objective = at->phase[0].q[0] + at->phase[1].q[0];
-    out->e[0] = at->phase[1].xf[0] - at->phase[0].x0[0];
-    out->e[1] = at->phase[1].xf[1] - at->phase[0].x0[1];
+    for (int i = 0; i < 2; i++)
+        out->e[i] = at->phase[1 - late].xf[i] - at->phase[late].x0[i];
 }
 
-static moray_solution *solve(moray_ocp **ocp, int refinements)
+static moray_solution *solve(moray_ocp **ocp, int refinements, const int *late)
 {
-    const moray_phase_spec phase[2] = {{.name = "late",
-                                        .nx = 2,
-                                        .nu = 1,
-                                        .nq = 1,
-                                        .continuous = move,
-                                        .t0 = moray_fixed(1.5),
-                                        .tf = moray_fixed(4),
-                                        .xf = MORAY_BOUNDS(moray_fixed(2), moray_fixed(0))},
-                                       {.name = "early",
-                                        .nx = 2,
-                                        .nu = 1,
-                                        .nq = 1,
-                                        .continuous = move,
-                                        .t0 = moray_fixed(0.5),
-                                        .tf = moray_fixed(1.5),
-                                        .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0))}};
+    const moray_phase_spec phases[2] = {{.name = "late",
+                                         .nx = 2,
+                                         .nu = 1,
+                                         .nq = 1,
+                                         .continuous = move,
+                                         .t0 = moray_fixed(1.5),
+                                         .tf = moray_fixed(4),
+                                         .xf = MORAY_BOUNDS(moray_fixed(2), moray_fixed(0))},
+                                        {.name = "early",
+                                         .nx = 2,
+                                         .nu = 1,
+                                         .nq = 1,
+                                         .continuous = move,
+                                         .t0 = moray_fixed(0.5),
+                                         .tf = moray_fixed(1.5),
+                                         .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0))}};
+    const moray_phase_spec phase[2] = {phases[*late], phases[1 - *late]};
     moray_settings settings = moray_settings_default();
     moray_solution *solution = NULL;
     settings.intervals = 5;
@@ -103,7 +105,8 @@ static moray_solution *solve(moray_ocp **ocp, int refinements)
                                                   .phase = phase,
                                                   .ne = 2,
                                                   .e = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
-                                                  .endpoint = join}),
+                                                  .endpoint = join,
+                                                  .data = late}),
              "a problem");
     CHECK_OK(moray_solve(*ocp, &settings, NULL, &solution), "solved");
     return solution;
@@ -111,7 +114,7 @@ static moray_solution *solve(moray_ocp **ocp, int refinements)
 
 // ---- What must be drawn --------------------------------------------------------------------------------------------
 
-static void check_mesh(const moray_solution *solution, const drawn *d)
+static void check_mesh(const moray_solution *solution, const drawn *d, int late)
 {
     int all = 0, wrong = 0;
     for (int p = 0; p < 2; p++) {
@@ -130,7 +133,8 @@ static void check_mesh(const moray_solution *solution, const drawn *d)
     snprintf(title, sizeof title, "The mesh: %d intervals and the error of each", all);
     CHECK(wrong == 0 && d->n == 3, "steps from edge to edge, as high as the error");
     CHECK(strcmp(d->title, title) == 0 && strcmp(d->x_label, "time [s]") == 0 && d->log_y, "%s", d->title);
-    CHECK(strcmp(d->label[0], "late") == 0 && strcmp(d->label[1], "early") == 0, "by the names of the phases");
+    CHECK(strcmp(d->label[late], "late") == 0 && strcmp(d->label[1 - late], "early") == 0,
+          "by the names of the phases");
     CHECK(d->points[2] == 2 && d->x[2][0] == 0.5 && d->x[2][1] == 4 && d->y[2][0] == 1e-4 && d->y[2][1] == 1e-4,
           "what is accepted, from the first to the last: %g to %g", d->x[2][0], d->x[2][1]);
 }
@@ -153,15 +157,67 @@ static void check_convergence(const moray_solution *solution, const drawn *d, in
     CHECK(curves == (begun > 1 ? 3 : 2), "starts are marked where there are several");
 }
 
+// Without a force a step of Newton's method is enough.
+static void push(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->x[1];
+    out->f[1] = at->u[0];
+    out->g[0] = at->u[0] * at->u[0];
+}
+
+static void whole(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    (void)data;
+    out->objective = at->phase[0].q[0];
+}
+
+// One phase needs no name; two points are a curve; of a solve that has not begun there is nothing to be seen.
+static void test_one_phase(void)
+{
+    static const int most[] = {100, 100, 0}, points[] = {0, 2, 1};
+    for (int k = 0; k < 3; k++) {
+        const moray_phase_spec phase = {.name = "alone",
+                                        .nx = 2,
+                                        .nu = 1,
+                                        .nq = 1,
+                                        .continuous = k == 1 ? push : move,
+                                        .tf = moray_fixed(2),
+                                        .x0 = MORAY_BOUNDS(moray_fixed(0), moray_fixed(0)),
+                                        .xf = MORAY_BOUNDS(moray_fixed(2), moray_fixed(0))};
+        moray_settings settings = moray_settings_default();
+        moray_solution *solution = NULL;
+        moray_ocp *ocp;
+        int n;
+        settings.max_iterations = most[k];
+        CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = whole}), "a problem");
+        CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "solved");
+        moray_solution_iterations(solution, &n);
+        CHECK(k == 0 ? n > 2 : n == points[k], "%d points", n);
+        CHECK_OK(moray_solution_draw(solution, 1e-4, "s", NULL), "drawn");
+        CHECK(n_figures == (k < 2 ? 2 : 0), "%d figures", n_figures);
+        if (k == 0)
+            CHECK(figures[0].n == 2 && strcmp(figures[0].label[0], "error of an interval") == 0, "%s",
+                  figures[0].label[0]);
+        if (k < 2)
+            check_convergence(solution, &figures[n_figures - 1], 2);
+        forget();
+        moray_solution_free(solution);
+        moray_ocp_free(ocp);
+    }
+}
+
 int main(void)
 {
-    for (int refinements = 0; refinements < 4; refinements += 3) {
+    test_one_phase();
+    for (int k = 0; k < 4; k++) {
+        const int refinements = k % 2 ? 3 : 0, late = k / 2;
         moray_ocp *ocp;
-        moray_solution *solution = solve(&ocp, refinements);
+        moray_solution *solution = solve(&ocp, refinements, &late);
         CHECK_OK(moray_solution_draw(solution, 1e-4, "s", NULL), "drawn");
         CHECK(n_figures == 2 && strcmp(figures[0].name, "mesh") == 0 && strcmp(figures[1].name, "convergence") == 0,
               "%d figures", n_figures);
-        check_mesh(solution, &figures[0]);
+        check_mesh(solution, &figures[0], late);
         check_convergence(solution, &figures[1], refinements ? 3 : 2);
         forget();
         CHECK_OK(moray_solution_draw(solution, 1e-4, NULL, NULL), "without a unit of time");

@@ -123,8 +123,8 @@ static double seen_by(const rig *r, double time, int j)
 {
     double x[2], u[1];
     moray_solution_at(r->run.solution, 1, time, x, u);
-    const double s = moray_solution_parameters(r->run.solution)[0];
-    return j == 0 ? x[0] + 0.1 * time : x[1] - u[0] + 0.05 * s;
+    const double *s = moray_solution_parameters(r->run.solution);
+    return j == 0 ? x[0] + 0.1 * time : x[1] - u[0] + 0.05 * s[0] - 0.3 * s[1];
 }
 
 static void test_residuals(rig *r)
@@ -167,6 +167,25 @@ static void test_residuals(rig *r)
         CHECK(off < 1e-12, "what is predicted all along and what was seen: %.1e", off);
     }
     table_free(&t);
+}
+
+// By a map in place of the function.
+static void see_inputs(void *self, const moray_num *in, moray_num *y)
+{
+    see(&(moray_node){in, in + 2, in + 3, in[5]}, y, self);
+}
+
+static void test_mapped(rig *r)
+{
+    const double probe[6] = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+    moray_map map;
+    CHECK_OK(moray_map_from_complex(&map, 6, CHANNELS, see_inputs, NULL, NULL, probe), "a map");
+    phases[1].observed.map = &map;
+    phases[1].observed.observe = NULL;
+    test_residuals(r);
+    phases[1].observed.map = NULL;
+    phases[1].observed.observe = see;
+    moray_map_release(&map);
 }
 
 // ---- Figures -------------------------------------------------------------------------------------------------------
@@ -267,6 +286,7 @@ int main(void)
     test_trajectory(&r);
     test_nodes(&r);
     test_residuals(&r);
+    test_mapped(&r);
     test_figures(&r);
     test_plain(&r);
     rig_free(&r);

@@ -102,7 +102,7 @@ static void see(const moray_node *at, moray_num *y, const void *data)
 {
     (void)data;
     y[0] = at->x[0] + 0.1 * at->t;
-    y[1] = at->x[1] - at->u[0] + 0.05 * at->s[0];
+    y[1] = at->x[1] - at->u[0] + 0.05 * at->s[0] - 0.3 * at->s[1];
 }
 
 static void ends(const moray_ends *at, moray_end_values *out, const void *data)
