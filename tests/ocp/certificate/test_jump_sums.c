@@ -46,7 +46,7 @@ static void stairs(const moray_node *at, moray_rates *out, const void *data)
         }
     out->f[0] = 5 / T + (curve->undefined && begun && creal(u) > 0.01 ? NAN : 0);
     out->f[1] = u * f;
-    out->c[0] = creal(x) > 0 ? 1e6 * u : 0;
+    out->c[0] = begun && creal(x) > 0 && fabs(creal(u)) > 1e-9 ? NAN : 0; // which has no price
     out->g[0] = u * g;
 }
 

@@ -41,8 +41,21 @@ static bool same(const double *found, const double *wanted)
     return equal;
 }
 
+// Of nothing nothing is kept.
+static void test_nothing(void)
+{
+    const moray_map map = {.n_in = n_in, .n_out = n_out};
+    struct kept k;
+    CHECK_OK(moray_kept_new(&k, &map, 3), "kept");
+    for (int n = 0; n < 3; n++)
+        CHECK_OK(moray_kept_add(&k), "a node without a derivative");
+    CHECK(k.nodes == 3 && k.start[3] == 0 && k.room == 0, "%zu entries", k.start[3]);
+    moray_kept_free(&k);
+}
+
 int main(void)
 {
+    test_nothing();
     int row[] = {0, 2, 1, 0}, col[] = {0, 1, 3, 3};
     const moray_map map = {.n_in = n_in, .n_out = n_out, .jac = {.nnz = 4, .row = row, .col = col}};
     struct kept k;

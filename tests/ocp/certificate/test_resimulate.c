@@ -15,11 +15,12 @@ static const int steps = 4; // of polynomials that they integrate exactly
 static const moray_integrator rk4 = {rk4_run, &steps};
 static const double START = 7, SPAN = 3;
 static bool defined = true;
+static double farthest = INFINITY; // first state, beyond which functions end
 
 static void glide(const moray_node *at, moray_rates *out, const void *data)
 {
     (void)data;
-    out->f[0] = defined || creal(at->t) < START + SPAN / 2 ? 2 : NAN;
+    out->f[0] = (defined || creal(at->t) < START + SPAN / 2) && creal(at->x[0]) < farthest ? 2 : NAN;
     out->f[1] = at->t;
     out->c[0] = 777 + at->x[1];
     out->g[0] = at->x[0];
@@ -109,6 +110,26 @@ static void test_off(const moray_solution *solution, const struct off *off)
     moray_witness_free(&w);
 }
 
+// In one go the states lead out of where functions are defined, from their starts they do not.
+static void test_out(const moray_solution *solution)
+{
+    const struct off off = {.x = {{5, 0}}};
+    struct witness w;
+    struct examiner e;
+    struct finding shooting = {0};
+    double composed = 0;
+    set_iterate(solution, &off);
+    CHECK_OK(moray_witness_of_sizes(&w, solution), "sizes");
+    CHECK_OK(moray_examiner_new(&e, &w, 1), "examiner");
+    farthest = 9; // of 1 to 7, and of 6 to 12
+    CHECK_OK(moray_resimulate(&e, &rk4, &shooting, &composed), "which is no error");
+    CHECK(isfinite(shooting.value) && shooting.value > 0 && isinf(composed), "%g, in one go %g", shooting.value,
+          composed);
+    farthest = INFINITY;
+    moray_examiner_free(&e);
+    moray_witness_free(&w);
+}
+
 int main(void)
 {
     const moray_phase_spec phase = {.name = "glide",
@@ -136,6 +157,7 @@ int main(void)
                 off.x[k][i] = tap_random(&seed, -1, 1) * (trial % 4 == 2 - i ? 9 : 0.1);
         test_off(solution, &off);
     }
+    test_out(solution);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
     return tap_done();

@@ -44,7 +44,7 @@ static void ride(const moray_node *at, moray_rates *out, const struct trial *tri
     out->f[0] = 2 + (2 + sin(9 * t)) * off[0];
     out->f[1] = (u[0] - steered(0, t)) * cos(7 * t);
     out->f[2] = undefined ? NAN : -0.4 * off[2];
-    out->c[0] = 1e3 * u[0] + 1e4 * off[0] * sin(30 * t);
+    out->c[0] = begun && fabs(off[0]) + fabs(u[0] - steered(0, t)) > 1e-9 ? NAN : 1e3; // which has no price
     out->g[0] = u[1] * sin(8 * t) - 3 * off[1] * cos(5 * t) + trial->kink * moray_abs(off[0]);
     out->g[1] = 4 * (at->s[0] - 1) * cos(6 * t) + off[2];
 }

@@ -67,6 +67,24 @@ static void test_hidden(const char *name, double much)
     end(&b);
 }
 
+// Where there is nothing at all it is in the middle.
+static void test_nothing(void)
+{
+    struct problem b;
+    struct unseen u;
+    begin(&b, "radau3");
+    look(&b);
+    CHECK_OK(moray_unseen_new(&u, &b.e), "effects");
+    for (int k = 0; k < N; k++) {
+        double where = -1, jumps = -1;
+        const double found = moray_unseen_interval(&u, &b.layout->interval[k], 1, &jumps, &where);
+        CHECK(found == 0 && jumps == 0 && where == 0.5, "nothing, %g and %g, at %g", found, jumps, where);
+    }
+    moray_unseen_free(&u);
+    look_away(&b);
+    end(&b);
+}
+
 // Next to nothing is not cut further.
 static void test_narrow(double width)
 {
@@ -92,6 +110,7 @@ static void test_narrow(double width)
 
 int main(void)
 {
+    test_nothing();
     test_hidden("gauss3", 1e4);
     test_hidden("radau4", 1e4);
     test_hidden("radau3", 1e-4);
