@@ -279,8 +279,28 @@ static void test_fronts(double threshold, bool root)
           "%d pairs, %d empty columns, %d delayed", faults.pairs, faults.empty, faults.delayed);
 }
 
+// Of two rows in which a column is as large its partner is the first; a column that is just good needs none.
+static void test_ties(void)
+{
+    static struct made made;
+    static const double cases[][6] = {{0, 1, 0, 1, 0.5, 0}, {0.1, 1, 0, 0, 0, 5}, {0.25, -1, 0.25, 1, 0.5, 0.25}};
+    static const int pairs[] = {1, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        struct full full = {.width = 3, .height = 3, .index = {100, 101, 102}};
+        for (int i = 0, e = 0; i < 3; i++)
+            for (int j = 0; j <= i; j++)
+                full.M[i][j] = full.M[j][i] = cases[k][e++];
+        make(&made, &full, 0.01, true);
+        moray_ldl_front_eliminate(&made.ldl, 0);
+        CHECK(made.index[0] == 100 && made.index[1] == 101 && made.index[2] == 102, "case %d: %d, %d, %d", k,
+              made.index[0], made.index[1], made.index[2]);
+        CHECK(made.ldl.statistics.pivots_2x2 == pairs[k], "case %d: %d pairs", k, made.ldl.statistics.pivots_2x2);
+    }
+}
+
 int main(void)
 {
+    test_ties();
     static const double thresholds[] = {0.01, 0.1, 0.25, 0.45};
     for (int k = 0; k < 4; k++)
         for (int root = 0; root < 2; root++)

@@ -104,8 +104,47 @@ static void test_null_space(void)
     moray_null_space_free(ns);
 }
 
+// Up to 24 degrees of freedom, and constraints that have nothing on the diagonal, the first of them and the last.
+static void test_form(void)
+{
+    enum { most = 40 };
+    for (int m = 1; m < 4; m++)
+        for (int freedom = -1; freedom < 27; freedom++) {
+            const int variables = m + freedom, n = variables + m;
+            int row[4 * most], col[4 * most], k = 0;
+            double value[4 * most];
+            null_space *ns;
+            bool fits;
+            for (int j = 0; j < variables; j++)
+                row[k] = col[k] = j, value[k++] = 1;
+            for (int j = 1; j < variables; j++)
+                row[k] = j, col[k] = j - 1, value[k++] = 0.1;
+            for (int c = 0; c < m && variables > 0; c++) {
+                row[k] = variables + c, col[k] = variables - 1 - c % variables, value[k++] = 1;
+                row[k] = col[k] = variables + c, value[k++] = 0;
+            }
+            if (variables < 1)
+                continue;
+            CHECK_OK(moray_null_space_new(&ns, n, &(moray_pattern){k, row, col}), "looked at");
+            CHECK(!ns == (freedom < 0 || freedom > 24), "%d constraints, %d degrees of freedom", m, freedom);
+            if (ns) {
+                CHECK_OK(moray_null_space_factor(ns, value, &fits), "factored");
+                CHECK(fits, "with nothing on the diagonal");
+                for (int c = 0; c<m; c += m> 1 ? m - 1 : 1) {
+                    const int at = 2 * variables - 1 + 2 * c + 1;
+                    value[at] = 1e-9;
+                    CHECK_OK(moray_null_space_factor(ns, value, &fits), "looked at");
+                    CHECK(!fits, "something on that of constraint %d", c);
+                    value[at] = 0;
+                }
+            }
+            moray_null_space_free(ns);
+        }
+}
+
 int main(void)
 {
+    test_form();
     test_outside();
     test_lu();
     test_ldl();
