@@ -63,27 +63,42 @@ double moray_largest_in_phase(const struct phase_layout *layout, const double *x
     return largest;
 }
 
-// How far an input of size 1 moves a state over the phase, by the largest slope among the nodes at the guess.
-static double reach(const struct transcription *t, int p, int state, int input)
+// The largest slopes among the nodes at the guess.
+static void find_slopes(const struct transcription *t, int p)
 {
     const struct phase_cache *cache = &t->phase[p];
-    const moray_map *map = cache->map;
-    double largest = 0;
-    for (int k = 0; k < map->jac.nnz; k++)
-        if (map->jac.row[k] == state && map->jac.col[k] == input)
-            for (int n = 0; n < t->layout.phase[p].nodes; n++)
-                largest = fmax(largest, fabs(cache->jac[n * map->jac.nnz + k]));
-    return largest * fabs(cache->tf - cache->t0);
+    const int nnz = cache->map->jac.nnz;
+    memset(cache->slope, 0, (size_t)nnz * sizeof *cache->slope);
+    for (int n = 0; n < t->layout.phase[p].nodes; n++)
+        for (int k = 0; k < nnz; k++)
+            cache->slope[k] = fmax(cache->slope[k], fabs(cache->jac[n * nnz + k]));
+}
+
+// How far the input of an entry of the Jacobian, of size 1, moves the entry's state over the phase.
+static double reach(const struct phase_cache *cache, int entry)
+{
+    return cache->slope[entry] * fabs(cache->tf - cache->t0);
 }
 
 // How far what is known moves a state over the phase, one cause alone.
 static double known_reach(const struct transcription *t, int p, const double *size, int state)
 {
-    const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_cache *cache = &t->phase[p];
+    const int n = t->ocp->phase[p].nx + t->ocp->phase[p].nu, *col = cache->map->jac.col;
     double furthest = 0;
-    for (int j = 0; j < phase->nx + phase->nu; j++)
-        furthest = fmax(furthest, reach(t, p, state, j) * size[j]);
+    for (int k = cache->row_start[state]; k < cache->row_start[state + 1]; k++)
+        if (col[cache->entry[k]] < n)
+            furthest = fmax(furthest, reach(cache, cache->entry[k]) * size[col[cache->entry[k]]]);
     return furthest;
+}
+
+// How fast a state moves with itself, over the phase.
+static double own_reach(const struct phase_cache *cache, int state)
+{
+    for (int k = cache->row_start[state]; k < cache->row_start[state + 1]; k++)
+        if (cache->map->jac.col[cache->entry[k]] == state)
+            return reach(cache, cache->entry[k]);
+    return 0;
 }
 
 // The size of an input that nothing else tells: for a state what those of known size move it by, else what it takes to
@@ -92,12 +107,14 @@ static double known_reach(const struct transcription *t, int p, const double *si
 static double derived_size(const struct transcription *t, int p, const double *size, int i)
 {
     const struct phase *phase = &t->ocp->phase[p];
+    const struct phase_cache *cache = &t->phase[p];
+    const moray_pattern *jac = &cache->map->jac;
     const double by_causes = i < phase->nx ? known_reach(t, p, size, i) : 0;
     double by_effects = INFINITY;
-    for (int r = 0; r < phase->nx; r++) {
-        const double moved = size[r] > 0 ? reach(t, p, r, i) : 0;
-        if (moved > 0) // and few are: to ask of all would cost the cube of their number
-            by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / moved);
+    for (int k = 0; k < jac->nnz && !(by_causes > 0); k++) {
+        const int r = jac->row[k];
+        if (jac->col[k] == i && r < phase->nx && size[r] > 0 && reach(cache, k) > 0)
+            by_effects = fmin(by_effects, fmax(size[r], known_reach(t, p, size, r)) / reach(cache, k));
     }
     return by_causes > 0 ? by_causes : isfinite(by_effects) ? by_effects : 0;
 }
@@ -219,7 +236,8 @@ static void doubt_guesses(const struct transcription *t, int p, const double *x,
     while (found) {
         found = false;
         for (int i = 0; i < n; i++) {
-            const double own = i < phase->nx ? reach(t, p, i, i) : 0, needed = derived_size(t, p, size, i) / (1 + own);
+            const double own = i < phase->nx ? own_reach(&t->phase[p], i) : 0;
+            const double needed = derived_size(t, p, size, i) / (1 + own);
             if (is_guessed(phase, i) && size[i] * wide < needed && is_size(needed, largest_known)) {
                 size[i] = needed; // for what it causes in its turn
                 found = true;
@@ -232,6 +250,7 @@ static void doubt_guesses(const struct transcription *t, int p, const double *x,
 
 void moray_size_inputs(const struct transcription *t, int p, const double *x, enum sized_by point, double *size)
 {
+    find_slopes(t, p);
     know_sizes(t, p, x, point == by_solution, size);
     if (point == by_guess)
         doubt_guesses(t, p, x, size);
@@ -287,6 +306,7 @@ double moray_needed_duration(struct transcription *t, int p, const double *x, do
     const double tf = cache->tf;
     double needed = 0;
     bool none = false;
+    find_slopes(t, p);
     for (int k = -4 * magnitudes; k <= 4 * magnitudes && needed <= 0 && !none; k++) {
         cache->tf = cache->t0 + pow(10, k / 4.0);
         size_by_causes(t, p, x, size);

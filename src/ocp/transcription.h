@@ -21,6 +21,10 @@ struct phase_cache {
     double *by_time;  // [nodes][2][nx] scratch of sights, see sight.h; NULL without
     int *column;      // [n_in - 1] scratch: columns of the node at hand
     bool *held;       // [n_in] scratch: inputs that keep their values while a solver works
+    // Entries of the Jacobian by rows: entry[row_start[r]] to entry[row_start[r + 1]] are those of row r. slope[nnz] is
+    // scratch of sizes, the largest of each among the nodes.
+    int *row_start, *entry;
+    double *slope;
 };
 
 struct transcription {

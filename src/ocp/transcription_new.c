@@ -124,6 +124,21 @@ static void set_end_columns(struct transcription *t)
         set_observed_columns(t, column);
 }
 
+static void sort_by_rows(struct phase_cache *cache)
+{
+    const moray_pattern *jac = &cache->map->jac;
+    int *next = cache->row_start + 1; // filled up to where each row's own ends
+    for (int k = 0; k < jac->nnz; k++)
+        next[jac->row[k]]++;
+    for (int r = 0, sum = 0; r < cache->map->n_out; r++) {
+        const int own = next[r];
+        next[r] = sum;
+        sum += own;
+    }
+    for (int k = 0; k < jac->nnz; k++)
+        cache->entry[next[jac->row[k]]++] = k;
+}
+
 static moray_status allocate_phase_cache(struct transcription *t, int p)
 {
     const moray_map *map = t->ocp->phase[p].map;
@@ -136,10 +151,15 @@ static moray_status allocate_phase_cache(struct transcription *t, int p)
     cache->lambda = calloc(nodes * t->ocp->phase[p].nx, sizeof(double));
     cache->column = calloc((size_t)map->n_in, sizeof(int));
     cache->held = calloc((size_t)map->n_in, sizeof(bool));
+    cache->row_start = calloc((size_t)map->n_out + 1, sizeof(int));
+    cache->entry = calloc((size_t)map->jac.nnz + 1, sizeof(int));
+    cache->slope = calloc((size_t)map->jac.nnz + 1, sizeof(double));
+    if (cache->row_start && cache->entry)
+        sort_by_rows(cache);
     const bool sights = t->layout.phase[p].sight != NULL;
     cache->by_time = sights ? calloc(2 * nodes * (size_t)t->ocp->phase[p].nx, sizeof(double)) : NULL;
-    if (cache->in && cache->out && cache->jac && cache->lambda && cache->column && cache->held &&
-        (cache->by_time || !sights))
+    if (cache->in && cache->out && cache->jac && cache->lambda && cache->column && cache->held && cache->row_start &&
+        cache->entry && cache->slope && (cache->by_time || !sights))
         return moray_ok();
     return moray_error(MORAY_MEMORY, "no memory for the %d nodes of phase %s", t->layout.phase[p].nodes,
                        t->ocp->phase[p].name);
@@ -241,6 +261,9 @@ void moray_transcription_free(struct transcription *t)
         free(t->phase[p].held);
         free(t->phase[p].by_time);
         free(t->phase[p].column);
+        free(t->phase[p].row_start);
+        free(t->phase[p].entry);
+        free(t->phase[p].slope);
     }
     free(t->phase);
     free(t->bounds);
