@@ -35,14 +35,19 @@ typedef struct TYPED(fp_motion) {
 // angles, rates and accelerations alike.
 void TYPED(moray_fp_angles)(int N, REAL mean, const REAL *joints, REAL *angles);
 
-// Accelerations of the links ddtheta[N] and of (p_x, p_y) ddp[2] in the current V, by the three balances of the whole
-// chain; leaves the state of every link in links[N]. False where the balances are singular.
-bool TYPED(moray_fp_accelerations)(const fp_robot *robot, const double V[2], const TYPED(fp_motion) * motion,
-                                   TYPED(fp_link) * links, REAL *ddtheta, REAL *ddp);
+// The symmetric positive definite matrix of the three balances of the whole chain, moment about (p_x, p_y) and forces,
+// by mean theta'' and p_x'', p_y'': D L^T of its L D L^T in the upper triangle.
+typedef struct TYPED(fp_balance) {
+    REAL S[3][3];
+} TYPED(fp_balance);
 
-// Solves the three balances of the chain for other loads h: moment about (p_x, p_y) and forces, overwritten with the
-// mean theta'' and p_x'', p_y''. Needs c, s, r of the links. False where they are singular.
-bool TYPED(moray_fp_balances)(const fp_robot *robot, const TYPED(fp_link) * links, REAL h[3]);
+// Accelerations of the links ddtheta[N] and of (p_x, p_y) ddp[2] in the current V, by these balances, which it leaves
+// factored; leaves the state of every link in links[N]. False where the balances are singular.
+bool TYPED(moray_fp_accelerations)(const fp_robot *robot, const double V[2], const TYPED(fp_motion) * motion,
+                                   TYPED(fp_link) * links, TYPED(fp_balance) * balance, REAL *ddtheta, REAL *ddp);
+
+// Solves the balances for other loads h, which are overwritten.
+void TYPED(moray_fp_solve_balance)(const TYPED(fp_balance) * balance, REAL h[3]);
 
 // Joint torques u[N-1] of (5a) by inverse dynamics, after fp_accelerations; returns the power at the motors' terminals,
 // or sum u_i phi_i' without motors.

@@ -17,10 +17,12 @@ typedef struct TYPED(fp_gradient) {
     REAL v_x, v_y;
 } TYPED(fp_gradient);
 
-// After moray_fp_accelerations and moray_fp_torques with the same motion and links; ddtheta[N] and u[N-1] from there.
+// After moray_fp_accelerations and moray_fp_torques with the same motion and links; balances, ddtheta[N] and u[N-1]
+// from there.
 void TYPED(moray_fp_adjoint)(const fp_robot *robot, const double V[2], const TYPED(fp_motion) * motion,
-                             const TYPED(fp_link) * links, const REAL *ddtheta, const REAL *u, const fp_weights *weight,
-                             TYPED(fp_dual_link) * dual, TYPED(fp_gradient) * out);
+                             const TYPED(fp_link) * links, const TYPED(fp_balance) * factored, const REAL *ddtheta,
+                             const REAL *u, const fp_weights *weight, TYPED(fp_dual_link) * dual,
+                             TYPED(fp_gradient) * out);
 
 // Derivatives by the joints where those by the angles, of given mean, are on_angles[N]; returns that by the mean.
 REAL TYPED(moray_fp_pull_angles)(int N, const REAL *on_angles, REAL *on_joints);

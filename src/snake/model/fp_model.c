@@ -84,10 +84,11 @@ static bool rates(const moray_robot *robot, const double current[2], const doubl
     fp_scratch *scratch = memory;
     const fp_motion_d motion = {
         .theta = x, .dtheta = x + half, .v_x = x[half + N], .v_y = x[half + N + 1], .ubar = ubar};
+    fp_balance_d balance;
     for (int i = 0; i < half; i++)
         dx[i] = x[half + i];
     const bool regular =
-        moray_fp_accelerations_d(&scratch->robot, current, &motion, scratch->link, dx + half, dx + half + N);
+        moray_fp_accelerations_d(&scratch->robot, current, &motion, scratch->link, &balance, dx + half, dx + half + N);
     if (u != NULL)
         moray_fp_torques_d(&scratch->robot, &motion, scratch->link, dx + half, u);
     return regular;
@@ -100,11 +101,12 @@ static bool water(const moray_robot *robot, const double current[2], const doubl
     const int N = robot->links, half = N + 2;
     fp_scratch *scratch = memory;
     double *ddtheta = across, ddp[2];
+    fp_balance_d balance;
     for (int i = 0; i < N - 1; i++)
         along[i] = ubar ? ubar[i] : 0;
     const fp_motion_d motion = {
         .theta = x, .dtheta = x + half, .v_x = x[half + N], .v_y = x[half + N + 1], .ubar = along};
-    if (!moray_fp_accelerations_d(&scratch->robot, current, &motion, scratch->link, ddtheta, ddp))
+    if (!moray_fp_accelerations_d(&scratch->robot, current, &motion, scratch->link, &balance, ddtheta, ddp))
         return false;
     const fp_part alike = fp_part_alike(&scratch->robot);
     for (int i = 0; i < N; i++) {

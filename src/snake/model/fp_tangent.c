@@ -141,7 +141,7 @@ static void know(const fp_point *point, known *at)
         double *column = at->inverse[i]; // symmetric
         column[0] = column[1] = column[2] = 0;
         column[i] = 1;
-        moray_fp_balances_d(point->robot, point->links, column);
+        moray_fp_solve_balance_d(point->balance, column);
     }
 }
 

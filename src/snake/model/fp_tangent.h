@@ -30,6 +30,7 @@ typedef struct fp_point {
     const double *V; // [2]
     const fp_motion_d *motion;
     const fp_link_d *links;
+    const fp_balance_d *balance;
     const double *ddtheta, *u;
     const fp_weights *weight;
     const fp_dual_link_d *dual;

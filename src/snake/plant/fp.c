@@ -22,7 +22,7 @@ typedef struct fp_plant {
     int n_in, n_out;
     moray_pattern jac, hess; // the latter by columns
     bool held[most_inputs];
-    double column[most_inputs * most_inputs]; // of the Hessian, those asked for side by side
+    double bends[most_inputs * most_inputs]; // of the Hessian, what is asked for
 } fp_plant;
 
 static void value(void *self, const double *in, double *out)
@@ -94,22 +94,33 @@ static void jacobian(void *self, const double *in, double *values)
         values[k] = plant->rows[pattern->row[k] * n_in + pattern->col[k]];
 }
 
-// The columns of the Hessian that are asked for.
+// Inputs that entries of the Hessian belong to that are asked for, into input; their places there.
+static int bent_inputs(const fp_plant *plant, int *input, int *place)
+{
+    int n = 0;
+    for (int i = 0; i < plant->n_in; i++)
+        place[i] = -1;
+    for (int k = 0; k < plant->hess.nnz; k++)
+        place[plant->hess.row[k]] = place[plant->hess.col[k]] = 0;
+    for (int i = 0; i < plant->n_in; i++)
+        if (place[i] == 0 && !plant->held[i]) {
+            place[i] = n;
+            input[n++] = i;
+        }
+    return n;
+}
+
 static void hessian(void *self, const double *in, const double *weight, double *values)
 {
     fp_plant *plant = self;
     const moray_pattern *pattern = &plant->hess;
-    int n = 0, column[most_inputs], place[most_inputs];
-    for (int k = 0, before = -1; k < pattern->nnz; k++)
-        if (pattern->col[k] != before && !plant->held[before = pattern->col[k]]) {
-            place[before] = n;
-            column[n++] = before;
-        }
+    int input[most_inputs], place[most_inputs];
+    const int n = bent_inputs(plant, input, place);
     moray_fp_gait_move(&plant->at, in);
-    moray_fp_gait_columns(&plant->at, weight, n, column, plant->column);
+    moray_fp_gait_hessian(&plant->at, weight, n, input, plant->bends);
     for (int k = 0; k < pattern->nnz; k++) {
         const int row = pattern->row[k], col = pattern->col[k];
-        values[k] = plant->held[row] || plant->held[col] ? 0 : plant->column[row * n + place[col]];
+        values[k] = plant->held[row] || plant->held[col] ? 0 : plant->bends[place[row] * n + place[col]];
     }
 }
 
@@ -150,10 +161,10 @@ static void mark(fp_plant *plant, const double *in, const double *weight, bool *
     }
     for (int col = 0; col < n_in; col++)
         all[col] = col;
-    moray_fp_gait_columns(&plant->at, weight, n_in, all, plant->column);
+    moray_fp_gait_hessian(&plant->at, weight, n_in, all, plant->bends);
     for (int col = 0; col < n_in; col++)
         for (int row = col; row < n_in; row++)
-            bends[col * n_in + row] = bends[col * n_in + row] || plant->column[row * n_in + col] != 0;
+            bends[col * n_in + row] = bends[col * n_in + row] || plant->bends[row * n_in + col] != 0;
 }
 
 // Entries of marks[outer][inner]; `outer` are the columns or the rows.

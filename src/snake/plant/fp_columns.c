@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "base/lanes.h"
+
 moray_status moray_fp_columns_new(fp_columns *columns, int N, int most)
 {
     const size_t joints = (size_t)N - 1, links = (size_t)N, stride = (size_t)fp_stride(most);
@@ -17,7 +19,7 @@ moray_status moray_fp_columns_new(fp_columns *columns, int N, int most)
                 {&gradient->mean, 1},       {&gradient->v_mean, 1},    {&gradient->phi, joints},
                 {&gradient->v_phi, joints}, {&gradient->ubar, joints}, {&gradient->v, 2},
                 {&from->theta, links},      {&from->dtheta, links},    {&to->theta, links},
-                {&to->dtheta, links},       {&to->ddtheta, links},     {&columns->sum, 2}};
+                {&to->dtheta, links},       {&to->ddtheta, links},     {&columns->sum, 1}};
     size_t rows = 0;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++)
         rows += part[k].rows;
@@ -41,51 +43,53 @@ void moray_fp_columns_free(fp_columns *columns)
     free(columns->memory);
 }
 
-// moray_fp_angles of every column.
-static void find_angles(const fp_columns *columns, const double *mean, const double *joints, double *angles)
+// moray_fp_angles of FP_LANES columns.
+FOR_EACH_PROCESSOR
+static void find_angles(int N, int stride, const double *mean, const double *joints, double *angles)
 {
-    const int N = columns->N, stride = columns->stride;
-    double *sum = columns->sum;
-    for (int j = 0; j < stride; j++)
-        angles[j] = sum[j] = 0;
-    for (int i = 1; i < N; i++)
-        for (int j = 0; j < stride; j++) {
-            angles[i * stride + j] = angles[(i - 1) * stride + j] - joints[(i - 1) * stride + j];
-            sum[j] += angles[i * stride + j];
+    double at[FP_LANES] = {0}, sum[FP_LANES] = {0};
+    for (int i = 0; i < N; i++, joints += stride)
+        for (int j = 0; j < FP_LANES; j++) {
+            angles[i * stride + j] = at[j];
+            sum[j] += at[j];
+            at[j] -= i < N - 1 ? joints[j] : 0;
         }
     for (int i = 0; i < N; i++)
-        for (int j = 0; j < stride; j++)
+        for (int j = 0; j < FP_LANES; j++)
             angles[i * stride + j] += mean[j] - sum[j] / N;
 }
 
-// moray_fp_pull_angles of every column.
-static void pull(const fp_columns *columns, const double *on_angles, double *on_joints, double *on_mean)
+// moray_fp_pull_angles of FP_LANES columns.
+FOR_EACH_PROCESSOR
+static void pull(int N, int stride, const double *on_angles, double *on_joints, double *on_mean)
 {
-    const int N = columns->N, stride = columns->stride;
-    double *mean = columns->sum, *behind = columns->sum + stride;
-    for (int j = 0; j < stride; j++)
-        mean[j] = behind[j] = 0;
+    double mean[FP_LANES] = {0}, behind[FP_LANES] = {0};
     for (int i = 0; i < N; i++)
-        for (int j = 0; j < stride; j++)
+        for (int j = 0; j < FP_LANES; j++)
             mean[j] += on_angles[i * stride + j] / N;
     for (int i = N - 1; i > 0; i--)
-        for (int j = 0; j < stride; j++) {
+        for (int j = 0; j < FP_LANES; j++) {
             behind[j] += on_angles[i * stride + j] - mean[j];
             on_joints[(i - 1) * stride + j] = -behind[j];
         }
-    for (int j = 0; j < stride && on_mean; j++)
+    for (int j = 0; j < FP_LANES; j++)
         on_mean[j] = N * mean[j];
 }
 
 void moray_fp_columns_find(fp_columns *columns, const fp_point *at)
 {
     const fp_joint_motion *along = &columns->along, *gradient = &columns->gradient;
+    const int N = columns->N, stride = columns->stride;
     columns->links.n = columns->n;
     columns->links.stride = columns->stride;
-    find_angles(columns, along->mean, along->phi, columns->links.theta);
-    find_angles(columns, along->v_mean, along->v_phi, columns->links.dtheta);
+    for (int j = 0; j < columns->n; j += FP_LANES) {
+        find_angles(N, stride, along->mean + j, along->phi + j, columns->links.theta + j);
+        find_angles(N, stride, along->v_mean + j, along->v_phi + j, columns->links.dtheta + j);
+    }
     moray_fp_tangents(columns->wide, at, &columns->links, columns->memory, &columns->by_links);
-    pull(columns, columns->by_links.theta, gradient->phi, gradient->mean);
-    pull(columns, columns->by_links.dtheta, gradient->v_phi, gradient->v_mean);
-    pull(columns, columns->by_links.ddtheta, gradient->ubar, NULL);
+    for (int j = 0; j < columns->n; j += FP_LANES) {
+        pull(N, stride, columns->by_links.theta + j, gradient->phi + j, gradient->mean + j);
+        pull(N, stride, columns->by_links.dtheta + j, gradient->v_phi + j, gradient->v_mean + j);
+        pull(N, stride, columns->by_links.ddtheta + j, gradient->ubar + j, columns->sum + j);
+    }
 }

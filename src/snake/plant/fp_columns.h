@@ -18,7 +18,7 @@ typedef struct fp_columns {
     fp_joint_motion along, gradient; // along: zeros until they are set
     fp_directions links;
     fp_tangents by_links;
-    double *sum;
+    double *sum; // scratch, one row
     void *memory;
 } fp_columns;
 

@@ -27,6 +27,7 @@ typedef struct fp_free {
     fp_link_d *links;
     fp_dual_link_d *dual;
     fp_motion_d motion;
+    fp_balance_d balance;
     double ddp[2], power;
 } fp_free;
 
@@ -63,7 +64,7 @@ static void move(fp_free *at)
     moray_fp_angles_d(N, in[n], in, at->theta);
     moray_fp_angles_d(N, rates[n], rates, at->dtheta);
     at->motion = (fp_motion_d){at->theta, at->dtheta, rates[n + 1], rates[n + 2], in + of->ubar};
-    if (!moray_fp_accelerations_d(robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->ddp))
+    if (!moray_fp_accelerations_d(robot, of->spec.current, &at->motion, at->links, &at->balance, at->ddtheta, at->ddp))
         at->ddp[0] = at->ddp[1] = NAN;
     at->power = moray_fp_torques_d(robot, &at->motion, at->links, at->ddtheta, at->u);
 }
@@ -85,8 +86,8 @@ static void find_gradient(fp_free *at, const double *weight)
     double *gradient = at->gradient;
     const fp_weights weights = weights_of(of, weight);
     fp_gradient_d by = {at->on_theta, at->on_dtheta, at->on_ddtheta, 0, 0};
-    moray_fp_adjoint_d(&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->u, &weights, at->dual,
-                       &by);
+    moray_fp_adjoint_d(&of->robot, of->spec.current, &at->motion, at->links, &at->balance, at->ddtheta, at->u, &weights,
+                       at->dual, &by);
     gradient[n] = moray_fp_pull_angles_d(N, by.theta, gradient);
     gradient[2 * n + 3] = moray_fp_pull_angles_d(N, by.dtheta, gradient + n + 3);
     gradient[2 * n + 4] = by.v_x;
@@ -227,7 +228,7 @@ static void hessian(void *self, const double *in, const double *weight, double *
     const free_setting *of = &plant->of;
     fp_free *at = &plant->at;
     const fp_weights weights = weights_of(of, weight);
-    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta,
+    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, &at->balance, at->ddtheta,
                             at->u,      &weights,         at->dual};
     memcpy(at->in, in, (size_t)of->n_in * sizeof *in);
     move(at);

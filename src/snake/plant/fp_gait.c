@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/lanes.h"
+
 enum { body = MORAY_BODY_STATES };
 
 static void find_places(fp_gait *at)
@@ -60,29 +62,28 @@ void moray_fp_gait_move(fp_gait *at, const double *in)
     moray_fp_angles_d(robot->links, in[MORAY_STATE_THETA], at->joints[0], at->theta);
     moray_fp_angles_d(robot->links, in[MORAY_STATE_V_THETA], at->joints[1], at->dtheta);
     at->motion = (fp_motion_d){at->theta, at->dtheta, in[MORAY_STATE_V_1], in[MORAY_STATE_V_2], at->joints[2]};
-    if (!moray_fp_accelerations_d(robot, at->of->spec.current, &at->motion, at->links, at->ddtheta, at->ddp))
+    if (!moray_fp_accelerations_d(robot, at->of->spec.current, &at->motion, at->links, &at->balance, at->ddtheta,
+                                  at->ddp))
         at->ddp[0] = at->ddp[1] = NAN;
     at->power = moray_fp_torques_d(robot, &at->motion, at->links, at->ddtheta, at->u);
 }
 
 // ---- Gradient ------------------------------------------------------------------------------------------------------
 
-// From that by the links' motion.
-static void pull_input(fp_gait *at, double v_x, double v_y, double *gradient)
+// From that by the joints' motion.
+static void pull_input(fp_gait *at, fp_vector_d by_velocity, double *gradient)
 {
     const moray_plant_size *size = &at->of->size;
-    double mean[FP_RANKS], by[GAIT_KINDS];
-    for (int rank = 0; rank < FP_RANKS; rank++)
-        mean[rank] = moray_fp_pull_angles_d(at->of->spec.robot.links, at->on_links[rank], at->on_joints[rank]);
+    double by[GAIT_KINDS];
     moray_reference_gradient(&at->gait, at->on_joints[0], at->on_joints[1], at->on_joints[2], by);
     memset(gradient, 0, (size_t)(size->nx + size->nu + size->ns + 1) * sizeof *gradient);
     for (int kind = 0; kind < GAIT_KINDS; kind++)
         if (at->place[kind] >= 0)
             gradient[at->place[kind]] = by[kind];
-    gradient[MORAY_STATE_THETA] = mean[0];
-    gradient[MORAY_STATE_V_THETA] = mean[1];
-    gradient[MORAY_STATE_V_1] = v_x;
-    gradient[MORAY_STATE_V_2] = v_y;
+    gradient[MORAY_STATE_THETA] = at->on_mean[0];
+    gradient[MORAY_STATE_V_THETA] = at->on_mean[1];
+    gradient[MORAY_STATE_V_1] = by_velocity.x;
+    gradient[MORAY_STATE_V_2] = by_velocity.y;
 }
 
 static fp_weights weights_of(const fp_setting *of, const double *weight)
@@ -95,26 +96,39 @@ static fp_weights weights_of(const fp_setting *of, const double *weight)
                         .pi = weight[of->size.nx + of->size.nc]};
 }
 
-void moray_fp_gait_gradient(fp_gait *at, const double *weight, double *gradient)
+// By the links' motion; returns that by the velocity.
+static fp_vector_d find_gradient(fp_gait *at, const double *weight)
 {
     const fp_setting *of = at->of;
     const int N = of->spec.robot.links;
     const double *on_angles = weight + of->size.nx + of->size.nc - N;
     const fp_weights weights = weights_of(of, weight);
     fp_gradient_d by = {at->on_links[0], at->on_links[1], at->on_links[2], 0, 0};
-    moray_fp_adjoint_d(&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta, at->u, &weights, at->dual,
-                       &by);
+    moray_fp_adjoint_d(&of->robot, of->spec.current, &at->motion, at->links, &at->balance, at->ddtheta, at->u, &weights,
+                       at->dual, &by);
     for (int i = 0; i < N && of->spec.path_angles; i++)
         by.theta[i] += on_angles[i];
-    pull_input(at, by.v_x, by.v_y, gradient);
+    for (int rank = 0; rank < FP_RANKS; rank++)
+        at->on_mean[rank] = moray_fp_pull_angles_d(N, at->on_links[rank], at->on_joints[rank]);
+    return (fp_vector_d){by.v_x, by.v_y};
+}
+
+void moray_fp_gait_gradient(fp_gait *at, const double *weight, double *gradient)
+{
+    pull_input(at, find_gradient(at, weight), gradient);
 }
 
 void moray_fp_gait_angle_gradient(fp_gait *at, int i, double *gradient)
 {
-    for (int rank = 0; rank < FP_RANKS; rank++)
-        memset(at->on_links[rank], 0, (size_t)at->of->spec.robot.links * sizeof(double));
+    const int N = at->of->spec.robot.links;
+    for (int rank = 1; rank < FP_RANKS; rank++) {
+        memset(at->on_joints[rank], 0, (size_t)N * sizeof(double));
+        at->on_mean[rank] = 0;
+    }
+    memset(at->on_links[0], 0, (size_t)N * sizeof(double));
     at->on_links[0][i] = 1;
-    pull_input(at, 0, 0, gradient);
+    at->on_mean[0] = moray_fp_pull_angles_d(N, at->on_links[0], at->on_joints[0]);
+    pull_input(at, (fp_vector_d){0, 0}, gradient);
 }
 
 // ---- Hessian -------------------------------------------------------------------------------------------------------
@@ -143,12 +157,11 @@ static int kind_of(const fp_gait *at, int input)
     return -1;
 }
 
-static void set_direction(fp_gait *at, int input, int k)
+static void set_direction(fp_gait *at, int input, int kind, int k)
 {
     fp_columns *columns = &at->columns;
     double *const rows[] = {columns->along.mean, columns->along.v_mean, columns->along.v,
                             columns->along.v + columns->stride};
-    const int kind = kind_of(at, input);
     for (int i = 0; i < 4; i++)
         rows[i][k] = rows[i] == body_row(columns, &columns->along, input);
     for (int rank = 0; rank < FP_RANKS; rank++) {
@@ -158,51 +171,62 @@ static void set_direction(fp_gait *at, int input, int k)
     }
 }
 
-// Entries of all columns by an input, but for the bends of the gait.
-static void find_row(const fp_gait *at, int input, double *row)
+// Adds the products of slopes with FP_LANES columns.
+FOR_EACH_PROCESSOR
+static void add_products(int n, int stride, const double *slope, const double *on, double *sum)
+{
+    double own[FP_LANES] = {0};
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < FP_LANES; j++)
+            own[j] += slope[i] * on[i * stride + j];
+    for (int j = 0; j < FP_LANES; j++)
+        sum[j] += own[j];
+}
+
+// Entries of all columns by an input, of that kind, but for the bends of the gait.
+static void find_row(const fp_gait *at, int input, int kind, double *row)
 {
     const fp_columns *columns = &at->columns;
     const double *of_body = body_row(columns, &columns->gradient, input);
-    const int kind = kind_of(at, input);
-    for (int k = 0; k < columns->n; k++)
-        row[k] = of_body ? of_body[k] : 0;
-    for (int rank = 0; rank < FP_RANKS && kind >= 0; rank++) {
-        const double *slope = at->slope[kind][rank], *on = joint_rows(&columns->gradient, rank);
-        for (int i = 0; i < columns->N - 1; i++)
-            for (int k = 0; k < columns->n; k++)
-                row[k] += slope[i] * on[i * columns->stride + k];
+    for (int first = 0; first < columns->n; first += FP_LANES) {
+        double sum[FP_LANES] = {0};
+        for (int rank = 0; rank < FP_RANKS && kind >= 0; rank++)
+            add_products(columns->N - 1, columns->stride, at->slope[kind][rank],
+                         joint_rows(&columns->gradient, rank) + first, sum);
+        for (int j = 0; j < FP_LANES && first + j < columns->n; j++)
+            row[first + j] = of_body ? of_body[first + j] : sum[j];
     }
 }
 
-static void add_gait_bends(const fp_gait *at, int n, const int *column, double *out)
+static void add_gait_bends(const fp_gait *at, int n, const int *kind, double *out)
 {
     double second[GAIT_PAIRS];
     moray_reference_hessian(&at->gait, at->on_joints[0], at->on_joints[1], at->on_joints[2], second);
-    for (int k = 0; k < n; k++) {
-        const int kind = kind_of(at, column[k]);
-        for (int other = 0; other < GAIT_INPUTS && kind >= 0 && kind < GAIT_INPUTS; other++) {
-            const int large = kind > other ? kind : other, small = kind > other ? other : kind;
-            if (at->place[other] >= 0)
-                out[at->place[other] * n + k] += second[large * (large + 1) / 2 + small];
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            const int large = kind[i] > kind[j] ? kind[i] : kind[j], small = kind[i] > kind[j] ? kind[j] : kind[i];
+            if (small >= 0 && large < GAIT_INPUTS)
+                out[i * n + j] += second[large * (large + 1) / 2 + small];
         }
-    }
 }
 
-void moray_fp_gait_columns(fp_gait *at, const double *weight, int n, const int *column, double *out)
+void moray_fp_gait_hessian(fp_gait *at, const double *weight, int n, const int *input, double *out)
 {
     const fp_setting *of = at->of;
     const fp_weights weights = weights_of(of, weight);
-    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, at->ddtheta,
+    const fp_point point = {&of->robot, of->spec.current, &at->motion, at->links, &at->balance, at->ddtheta,
                             at->u,      &weights,         at->dual};
-    const int n_in = of->size.nx + of->size.nu + of->size.ns + 1;
-    moray_fp_gait_gradient(at, weight, out);
-    for (int kind = 0; kind < GAIT_KINDS; kind++)
-        moray_reference_tangent(&at->gait, kind, at->slope[kind][0], at->slope[kind][1], at->slope[kind][2]);
+    int kind[MORAY_BODY_STATES + GAIT_KINDS];
     at->columns.n = n;
-    for (int k = 0; k < n; k++)
-        set_direction(at, column[k], k);
+    for (int k = 0; k < n; k++) {
+        const int own = kind[k] = kind_of(at, input[k]);
+        if (own >= 0)
+            moray_reference_tangent(&at->gait, own, at->slope[own][0], at->slope[own][1], at->slope[own][2]);
+        set_direction(at, input[k], own, k);
+    }
+    find_gradient(at, weight);
     moray_fp_columns_find(&at->columns, &point);
-    for (int input = 0; input < n_in; input++)
-        find_row(at, input, out + input * n);
-    add_gait_bends(at, n, column, out);
+    for (int k = 0; k < n; k++)
+        find_row(at, input[k], kind[k], out + k * n);
+    add_gait_bends(at, n, kind, out);
 }

@@ -24,9 +24,11 @@ typedef struct fp_gait {
     double *theta, *dtheta, *ddtheta, *u;                                // N or N-1 each, as what follows
     double *joints[FP_RANKS], *on_links[FP_RANKS], *on_joints[FP_RANKS]; // on: derivatives of a weighted sum
     double *slope[GAIT_KINDS][FP_RANKS];                                 // of the joints by the gait's inputs
+    double on_mean[FP_RANKS];
     fp_link_d *links;
     fp_dual_link_d *dual;
     fp_motion_d motion;
+    fp_balance_d balance;
     double ddp[2], power;
     fp_columns columns;
     double *memory;
@@ -45,7 +47,7 @@ void moray_fp_gait_gradient(fp_gait *at, const double *weight, double *gradient)
 // That of theta_i, less what it has by the heading.
 void moray_fp_gait_angle_gradient(fp_gait *at, int i, double *gradient);
 
-// Columns of the Hessian of weight . out, n of them, by their inputs: out[input x n].
-void moray_fp_gait_columns(fp_gait *at, const double *weight, int n, const int *column, double *out);
+// The part of the Hessian of weight . out by n of the inputs: out[n x n].
+void moray_fp_gait_hessian(fp_gait *at, const double *weight, int n, const int *input, double *out);
 
 #endif

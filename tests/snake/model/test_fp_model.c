@@ -224,7 +224,8 @@ static void outputs_d(const scene *s, const double *x, const double *ubar, doubl
     const fp_robot robot = moray_fp_robot_of(&s->robot, part);
     fp_link_d links[MAX_LINKS];
     const fp_motion_d motion = {x, x + N + 2, x[2 * N + 2], x[2 * N + 3], ubar};
-    moray_fp_accelerations_d(&robot, s->V, &motion, links, out, out + N);
+    fp_balance_d balance;
+    moray_fp_accelerations_d(&robot, s->V, &motion, links, &balance, out, out + N);
     out[2 * N + 1] = moray_fp_torques_d(&robot, &motion, links, out, out + N + 2);
 }
 
@@ -235,7 +236,8 @@ static void outputs_z(const scene *s, const double complex *x, const double comp
     const fp_robot robot = moray_fp_robot_of(&s->robot, part);
     fp_link_z links[MAX_LINKS];
     const fp_motion_z motion = {x, x + N + 2, x[2 * N + 2], x[2 * N + 3], ubar};
-    moray_fp_accelerations_z(&robot, s->V, &motion, links, out, out + N);
+    fp_balance_z balance;
+    moray_fp_accelerations_z(&robot, s->V, &motion, links, &balance, out, out + N);
     out[2 * N + 1] = moray_fp_torques_z(&robot, &motion, links, out, out + N + 2);
 }
 

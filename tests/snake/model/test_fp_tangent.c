@@ -66,6 +66,7 @@ static void by_complex_step(const scene *s, const fp_directions *along, int j, d
     double complex theta[MAX_LINKS], dtheta[MAX_LINKS], ubar[MAX_LINKS], ddtheta[MAX_LINKS], ddp[2], u[MAX_LINKS];
     double complex by_theta[MAX_LINKS], by_dtheta[MAX_LINKS], by_ddtheta[MAX_LINKS];
     fp_link_z links[MAX_LINKS];
+    fp_balance_z balance;
     fp_dual_link_z dual[MAX_LINKS];
     for (int i = 0; i < N; i++) {
         theta[i] = s->theta[i] + I * tiny * along->theta[i * STRIDE + j];
@@ -76,9 +77,9 @@ static void by_complex_step(const scene *s, const fp_directions *along, int j, d
     const fp_motion_z motion = {theta, dtheta, s->v[0] + I * tiny * along->v[j],
                                 s->v[1] + I * tiny * along->v[STRIDE + j], ubar};
     fp_gradient_z by = {by_theta, by_dtheta, by_ddtheta, 0, 0};
-    moray_fp_accelerations_z(&s->fp, s->V, &motion, links, ddtheta, ddp);
+    moray_fp_accelerations_z(&s->fp, s->V, &motion, links, &balance, ddtheta, ddp);
     moray_fp_torques_z(&s->fp, &motion, links, ddtheta, u);
-    moray_fp_adjoint_z(&s->fp, s->V, &motion, links, ddtheta, u, &weights, dual, &by);
+    moray_fp_adjoint_z(&s->fp, s->V, &motion, links, &balance, ddtheta, u, &weights, dual, &by);
     for (int i = 0; i < N; i++) {
         out[i] = cimag(by_theta[i]) / tiny;
         out[N + i] = cimag(by_dtheta[i]) / tiny;
@@ -96,12 +97,13 @@ static void by_tangents(const scene *s, int wide, const fp_directions *along, do
     const fp_motion_d motion = {s->theta, s->dtheta, s->v[0], s->v[1], s->ubar};
     double ddtheta[MAX_LINKS], ddp[2], u[MAX_LINKS], by[3][MAX_LINKS];
     fp_link_d links[MAX_LINKS];
+    fp_balance_d balance;
     fp_dual_link_d dual[MAX_LINKS];
     fp_gradient_d gradient = {by[0], by[1], by[2], 0, 0};
-    moray_fp_accelerations_d(&s->fp, s->V, &motion, links, ddtheta, ddp);
+    moray_fp_accelerations_d(&s->fp, s->V, &motion, links, &balance, ddtheta, ddp);
     moray_fp_torques_d(&s->fp, &motion, links, ddtheta, u);
-    moray_fp_adjoint_d(&s->fp, s->V, &motion, links, ddtheta, u, &weights, dual, &gradient);
-    const fp_point point = {&s->fp, s->V, &motion, links, ddtheta, u, &weights, dual};
+    moray_fp_adjoint_d(&s->fp, s->V, &motion, links, &balance, ddtheta, u, &weights, dual, &gradient);
+    const fp_point point = {&s->fp, s->V, &motion, links, &balance, ddtheta, u, &weights, dual};
     const fp_tangents to = {out, out + N * STRIDE, out + 2 * N * STRIDE, out + 3 * N * STRIDE};
     void *memory = malloc(moray_fp_tangents_bytes(N));
     moray_fp_tangents(wide, &point, along, memory, &to);

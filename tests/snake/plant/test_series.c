@@ -61,7 +61,8 @@ static void reference(void *self, const num *in, num *out)
     fp_part part[MAX_LINKS];
     const fp_robot robot = moray_fp_robot_of(&spec->robot, part);
     const fp_motion_z motion = {theta, dtheta, in[j.rate + 1], in[j.rate + 2], j.phi[2]};
-    moray_fp_accelerations_z(&robot, spec->current, &motion, links, ddtheta, ddp);
+    fp_balance_z balance;
+    moray_fp_accelerations_z(&robot, spec->current, &motion, links, &balance, ddtheta, ddp);
     const num power = moray_fp_torques_z(&robot, &motion, links, ddtheta, u);
     for (int i = 0; i < N; i++)
         mean += ddtheta[i] / N;
