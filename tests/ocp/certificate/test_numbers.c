@@ -11,6 +11,7 @@
 #include "ocp/certificate/bends.h"
 #include "ocp/certificate/optimality.h"
 #include "ocp/certificate/unseen.h"
+#include "ocp/names.h"
 #include "rk4.h"
 
 static const int rk4_steps = 20;
@@ -92,6 +93,57 @@ static moray_certificate check_numbers(const moray_solution *solution, struct fi
     return c;
 }
 
+static void check_words(const moray_solution *solution, const char *what, double value, double limit, const char *where)
+{
+    char text[500];
+    moray_certificate c;
+    CHECK_OK(moray_certify(solution, &rk4, &c), "certificate");
+    snprintf(text, sizeof text, "%s: %.2g, where %.2g is allowed%s%s", what, value, limit, *where ? "; " : "", where);
+    CHECK(!c.pass && !strcmp(c.why, text), "%s; expected %s", c.why, text);
+}
+
+// First what is told of the objective; where that is right the constraint that is violated most.
+static void check_violation(moray_solution *solution)
+{
+    const struct transcription *t = solution->transcription;
+    const struct phase_layout *layout = &t->layout.phase[1];
+    struct witness w;
+    struct optimality o;
+    char name[200];
+    for (int told = 0; told < 2; told++) {
+        CHECK(moray_transcription_jacobians(solution->transcription, solution->iterate.x), "finite");
+        CHECK_OK(moray_witness_new(&w, solution), "witness");
+        CHECK_OK(moray_measure_optimality(&w, &o), "optimality");
+        moray_witness_free(&w);
+        if (!told)
+            check_words(solution,
+                        "the objective that is told differs from that of the trajectory, relative to its size", o.told,
+                        MORAY_LIMIT_KKT, "");
+        for (int k = 0; k < DATA && !told; k++) { // as seen from the trajectory
+            double *seen = solution->iterate.x + layout->sight[k].x;
+            moray_solution_at(solution, 1, t->ocp->phase[1].observed.time[k], seen, seen + NX1);
+        }
+        CHECK(moray_transcription_jacobians(solution->transcription, solution->iterate.x), "finite");
+        solution->iterate.objective = t->end_out[0];
+    }
+    CHECK(o.row >= 0 && o.row < t->nlp.m, "a constraint, %d", o.row);
+    moray_layout_row_name(&t->layout, t->ocp, solution->iterate.x, o.row, name, sizeof name);
+    check_words(solution, "constraints are violated, relative to their size", o.feasibility, MORAY_LIMIT_KKT, name);
+}
+
+static void test_violations(void)
+{
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = begin(&ocp, "radau3");
+    unsigned long long seed = 77;
+    for (int trial = 0; trial < 2; trial++) {
+        scatter(solution, &seed);
+        check_violation(solution);
+    }
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 static void test_anywhere(const char *scheme)
 {
     moray_ocp *ocp = NULL;
@@ -142,6 +194,43 @@ static void joined(const moray_ends *at, moray_end_values *out, const void *data
     out->e[0] = at->phase[1].x0[0] - at->phase[0].xf[0];
 }
 
+// With multipliers that are no longer those of the optimum.
+static void check_gain(moray_solution *solution)
+{
+    const struct transcription *t = solution->transcription;
+    struct witness w;
+    struct optimality o;
+    char name[200], where[300];
+    for (int i = 0; i < t->nlp.m; i++)
+        solution->iterate.lambda[i] *= 1 + 1e-2 * (i % 5 - 1);
+    CHECK_OK(moray_witness_new(&w, solution), "witness");
+    CHECK_OK(moray_measure_optimality(&w, &o), "optimality");
+    moray_witness_free(&w);
+    moray_layout_column_name(&t->layout, t->ocp, solution->iterate.x, o.column, name, sizeof name);
+    snprintf(where, sizeof where, "most by %s", name);
+    check_words(solution, "the objective could still improve, relative to its size", o.improvement, MORAY_LIMIT_KKT,
+                where);
+}
+
+// A control beyond its bound at the end of an interval, where it costs little.
+static void check_bound(moray_solution *solution, int phase)
+{
+    const struct transcription *t = solution->transcription;
+    const struct phase_layout *layout = &t->layout.phase[phase];
+    const int column = layout->node[layout->interval[1].first + 3].x + 3;
+    struct witness w;
+    struct optimality o;
+    char name[200];
+    solution->iterate.x[column] = 1.5;
+    CHECK(moray_transcription_jacobians(solution->transcription, solution->iterate.x), "finite");
+    CHECK_OK(moray_witness_new(&w, solution), "witness");
+    CHECK_OK(moray_measure_optimality(&w, &o), "optimality");
+    moray_witness_free(&w);
+    CHECK(o.row == t->nlp.m + column, "which is violated most: %d, expected %d", o.row, t->nlp.m + column);
+    moray_layout_column_name(&t->layout, t->ocp, solution->iterate.x, column, name, sizeof name);
+    check_words(solution, "constraints are violated, relative to their size", o.feasibility, MORAY_LIMIT_KKT, name);
+}
+
 static void test_words(const struct wave wave[2], double tolerance, enum told told, int phase)
 {
     static const char *const what[] = {
@@ -188,12 +277,15 @@ static void test_words(const struct wave wave[2], double tolerance, enum told to
              limit[told], phases[most[told].p].name, most[told].time);
     CHECK(!c.pass && !strcmp(c.why, text), "%s; expected %s", c.why, text);
     CHECK(most[told].p == phase, "of phase %s", phases[phase].name);
+    check_gain(solution);
+    check_bound(solution, phase);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
 }
 
 int main(void)
 {
+    test_violations();
     test_anywhere("radau3");
     test_anywhere("gauss2");
     for (int p = 0; p < 2; p++) {
