@@ -197,18 +197,18 @@ static void test_continued(void)
 // ---- What is said --------------------------------------------------------------------------------------------------
 
 static const double over = 1 + 1e-9;
+static const moray_settings coarse = {.scheme = "trapezoid",
+                                      .intervals = 3,
+                                      .tolerance = 1e-8,
+                                      .mesh_tolerance = 1e-4,
+                                      .max_iterations = 100,
+                                      .barrier = 0.1};
 
 static void check_advice(const char *what, const char *advice)
 {
     char want[300];
-    const moray_settings settings = {.scheme = "trapezoid",
-                                     .intervals = 3,
-                                     .tolerance = 1e-8,
-                                     .mesh_tolerance = 1e-4,
-                                     .max_iterations = 100,
-                                     .barrier = 0.1};
     verdict = moray_ok();
-    CHECK(RUN(&settings, NULL, "--quiet") == MORAY_EXIT_CERTIFICATE, "%s", what);
+    CHECK(RUN(&coarse, NULL, "--quiet") == MORAY_EXIT_CERTIFICATE, "%s", what);
     snprintf(want, sizeof want, "slide: certificate failed: of this. %s\n", advice);
     CHECK(strcmp(said, want) == 0, "%s: %s, not %s", what, said, want);
     certificate = (moray_certificate){.why = "of this"};
@@ -254,19 +254,13 @@ static void test_advice(void)
 // A certificate that cannot be made of numbers fails; one for which there is no memory ends the run.
 static void test_certified(void)
 {
-    const moray_settings settings = {.scheme = "trapezoid",
-                                     .intervals = 3,
-                                     .tolerance = 1e-8,
-                                     .mesh_tolerance = 1e-4,
-                                     .max_iterations = 100,
-                                     .barrier = 0.1};
     certificate = (moray_certificate){.pass = true};
     verdict = moray_ok();
-    CHECK(RUN(&settings, NULL, "--quiet") == MORAY_EXIT_SOLVED && !*said, "%s", said);
+    CHECK(RUN(&coarse, NULL, "--quiet") == MORAY_EXIT_SOLVED && !*said, "%s", said);
     verdict = moray_error(MORAY_NUMERIC, "left its domain");
-    CHECK(RUN(&settings, NULL, "--quiet") == MORAY_EXIT_CERTIFICATE && strstr(said, "certificate failed"), "%s", said);
+    CHECK(RUN(&coarse, NULL, "--quiet") == MORAY_EXIT_CERTIFICATE && strstr(said, "certificate failed"), "%s", said);
     verdict = moray_error(MORAY_MEMORY, "no memory");
-    CHECK(RUN(&settings, NULL, "--quiet") == MORAY_EXIT_NOT_SOLVED && strcmp(said, "slide: no memory\n") == 0, "%s",
+    CHECK(RUN(&coarse, NULL, "--quiet") == MORAY_EXIT_NOT_SOLVED && strcmp(said, "slide: no memory\n") == 0, "%s",
           said);
 }
 
