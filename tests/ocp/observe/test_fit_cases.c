@@ -220,7 +220,50 @@ static void test_active(void)
     moray_ocp_free(ocp);
 }
 
+// Data of nothing, met by nothing, have no size; a slope is known as well as if they had.
+static void test_zeros(void)
+{
+    static const double zeros[] = {0, 0, 0, 0};
+    const struct task task = {
+        grow, {.n = 4, .ny = 1, .time = times, .value = zeros, .observe = see_state}, 1, 3, moray_free()};
+    const moray_settings settings = moray_settings_default();
+    double mean = 0, squares = 0;
+    moray_ocp *ocp;
+    moray_fit fit;
+    for (int k = 0; k < 4; k++)
+        mean += times[k] / 4;
+    for (int k = 0; k < 4; k++)
+        squares += (times[k] - mean) * (times[k] - mean);
+    CHECK_OK(problem(&ocp, &task), "a line");
+    moray_solution *solution = solve(ocp, &settings, NULL);
+    CHECK_OK(moray_fit_new(&fit, solution, true), "fit");
+    CHECK(fit.sum == 0 && fit.value[0] == 0 && fit.undetermined == 0, "nothing is left: %g", fit.sum);
+    CHECK_NEAR(fit.error[0], 1 / sqrt(squares), 1e-6, "standard error of its slope");
+    moray_fit_free(&fit);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // ---- What is none ----
+
+static void test_no_data(void)
+{
+    const moray_phase_spec phase = {.nx = 1, .continuous = grow, .tf = moray_fixed(1)};
+    const moray_settings settings = moray_settings_default();
+    moray_ocp *ocp;
+    moray_fit fit;
+    CHECK_OK(moray_ocp_new(
+                 &ocp, &(moray_ocp_spec){.name = "blind", .phases = 1, .phase = &phase, .ns = 1, .endpoint = nothing}),
+             "without data");
+    moray_solution *solution = solve(ocp, &settings, NULL);
+    const moray_status status = moray_fit_new(&fit, solution, false);
+    CHECK(status.code == MORAY_INPUT &&
+              strcmp(status.text, "nothing that is observed in blind is in its objective") == 0,
+          "told: %s", status.text);
+    CHECK(moray_solution_residuals(solution, NULL) == 0, "no residuals");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
 
 static void test_none(void)
 {
@@ -243,6 +286,8 @@ int main(void)
     test_open();
     test_names();
     test_active();
+    test_zeros();
+    test_no_data();
     test_none();
     return tap_done();
 }

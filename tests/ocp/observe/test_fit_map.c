@@ -336,8 +336,40 @@ static void test_form(const struct form *form)
     moray_ocp_free(ocp);
 }
 
+static void see_parameters(const moray_node *at, moray_num *y, const void *data)
+{
+    (void)data;
+    y[0] = at->s[0] * at->s[1] * at->t;
+    y[1] = at->s[1];
+}
+
+// Where parameters alone are seen there is nothing else, and all times share one entry of each.
+static void test_parameters(void)
+{
+    const moray_phase_spec phase = {
+        .nx = 1,
+        .nu = 1,
+        .continuous = still,
+        .tf = moray_fixed(4),
+        .observed = {.n = 3, .ny = 2, .time = time_of[0], .value = value_of[0], .observe = see_parameters}};
+    struct transcription *t;
+    struct mesh mesh;
+    moray_ocp *ocp;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .ns = 2, .endpoint = nothing}),
+             "parameters alone");
+    CHECK_OK(moray_mesh_uniform(&mesh, 2, (struct method){MORAY_GAUSS, 2}), "mesh");
+    CHECK_OK(moray_transcription_new(&t, ocp, &mesh), "transcription");
+    test_map(t->endpoint);
+    CHECK(t->endpoint->jac.nnz == 2 && t->endpoint->hess.nnz == 3, "%d slopes, %d second derivatives",
+          t->endpoint->jac.nnz, t->endpoint->hess.nnz);
+    moray_transcription_free(t);
+    moray_mesh_free(&mesh);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
+    test_parameters();
     test_loss();
     for (int k = 0; k < 32; k++)
         test_form(&(struct form){.loss = k & 1 ? MORAY_HUBER : MORAY_LEAST_SQUARES,
