@@ -90,6 +90,38 @@ static void test_proof(void)
     moray_test_rig_free(&rig);
 }
 
+// Three links in a current along the course: slowly swum they stay on their orbit, faster they leave it. With too few
+// periods to settle in, nothing but orbits gives a gain.
+static void test_stability(void)
+{
+    const double omega[2] = {0.39, 1.5};
+    moray_robot robot = moray_robot_paper();
+    robot.links = 3;
+    moray_test_rig rig;
+    moray_gait_trial trial[2] = {{.held = {false}}};
+    moray_orbit_spec spec = moray_orbit_spec_default(&robot, model);
+    moray_orbit *orbit;
+    CHECK_OK(moray_test_rig_new(&rig, &robot, (double[]){0.222364, -0.005}, 0), "rig");
+    rig.settings.max_periods = 3;
+    memcpy(spec.current, rig.current, sizeof spec.current);
+    CHECK_OK(moray_orbit_new(&orbit, &spec), "orbit");
+    for (int k = 0; k < 2; k++) {
+        moray_orbit_result found;
+        trial[k].gait[model] = (moray_gait){.amplitude = 0.81, .omega = omega[k], .delta = 0.6, .taper = -0.4};
+        CHECK_OK(moray_orbit_find(orbit, &trial[k].gait[model], &found), "found");
+        CHECK(moray_failed(moray_orbit_stays(orbit)) == (k == 1), "at %g rad/s %s", omega[k], k ? "left" : "kept");
+        trial[k].steady[model] = found.steady;
+    }
+    for (int k = 0; k < 4; k++) {
+        const moray_gait_gain gain = moray_gait_gain_over(&rig, &trial[k / 2], &trial[k % 2]);
+        const bool none = isnan(gain.speed_percent_at_equal_power) && isnan(gain.power_percent_at_equal_speed);
+        CHECK(none == (k > 0), "from %g to %g rad/s: gain %g %%: %s", omega[k / 2], omega[k % 2],
+              gain.speed_percent_at_equal_power, gain.why_no_speed.text);
+    }
+    moray_orbit_free(orbit);
+    moray_test_rig_free(&rig);
+}
+
 // Where the current is too strong across the course the gait swims straight, begun along it.
 static void test_not_held(void)
 {
@@ -130,6 +162,7 @@ static void test_scatter(void)
 int main(void)
 {
     test_proof();
+    test_stability();
     test_not_held();
     test_scatter();
     return tap_done();
