@@ -81,15 +81,17 @@ static moray_water *water_of(void)
 }
 
 typedef struct helm {
-    double size; // of the offset
-    int seen;    // measurements
+    double size, jump; // of the offset; at the fourth measurement
+    int seen;          // measurements
     double worst;
 } helm;
 
 static moray_offset waving(double t, const void *self)
 {
-    const double size = ((const helm *)self)->size, rate = 1.7;
-    return (moray_offset){size * sin(rate * t), size * rate * cos(rate * t), -size * rate * rate * sin(rate * t)};
+    const helm *h = self;
+    const double size = h->size, rate = 1.7, jump = h->seen > 3 ? h->jump : 0;
+    return (moray_offset){size * sin(rate * t) + jump * (1 + 0.5 * t), size * rate * cos(rate * t) + 0.5 * jump,
+                          -size * rate * rate * sin(rate * t)};
 }
 
 // From the start on, a period apart.
@@ -100,20 +102,27 @@ static moray_status look(const moray_swim_sample *sample, void *self)
     return moray_ok();
 }
 
+typedef struct case_of {
+    const moray_water *water;
+    double turning, jump, k_d;
+} case_of;
+
 // Begins on the gait, offset and all; the joints are where gait and offset are throughout.
-static void swim(moray_model model, const moray_water *water, double turning, bool on_gait, moray_swim_track *track,
-                 double *energy)
+static void swim(moray_model model, const case_of *c, bool on_gait, moray_swim_track *track, double *energy)
 {
-    const double times[] = {0.5, 0.9, 2.1, 3.4};
-    helm h = {.size = model == MORAY_CONTROL_ORIENTED ? 0.01 : 0.1};
+    const double fourth = 0.2 + 3 * 0.35, times[] = {0.5, fourth - 1e-13, 2.1, 3.4}; // measured just after a sample
+    helm h = {.size = model == MORAY_CONTROL_ORIENTED ? 0.01 : 0.1, .jump = c->jump};
     const double body[MORAY_BODY_STATES] = {0.3, -0.2, 0.1, 0.1, 0.15, -0.05};
     const moray_swim_controller controller = {.offset = waving, .measure = look, .self = &h, .period = 0.35};
     const moray_sim_settings settings = moray_sim_settings_default();
-    const moray_swim_on_gait how = {.steps = 400};
+    const moray_swim_on_gait how = {.steps = 1000};
     const moray_gait_change change = {0, gait_of(model)};
     moray_swimmer *swimmer = swimmer_of(model);
+    moray_robot robot = robot_of();
     moray_gait begun = change.gait;
     double x[STATES], V[2], worst = 0, phi[JOINTS], v_phi[JOINTS], want[3 * JOINTS];
+    robot.k_d = c->k_d;
+    CHECK_OK(moray_swimmer_set_robot(swimmer, &robot), "damping");
     const moray_offset offset = waving(0.2, &h);
     begun.offset = offset.value;
     begun.offset_rate = offset.rate;
@@ -126,14 +135,14 @@ static void swim(moray_model model, const moray_water *water, double turning, bo
                                   .controller = &controller,
                                   .times = times,
                                   .n_times = 4,
-                                  .current_turning = turning,
-                                  .water = water,
+                                  .current_turning = c->turning,
+                                  .water = c->water,
                                   .observe = moray_swim_track_add,
                                   .observer = track};
     CHECK_OK(on_gait ? moray_swim_run_on_gait(swimmer, &plan, &how, x, energy)
                      : moray_swim_run(swimmer, &settings, &plan, x, energy),
              on_gait ? "on the gait" : "all joints");
-    for (int k = 0; k < track->n; k++) {
+    for (int k = 0; k < track->n && c->jump == 0; k++) {
         moray_gait_reference(&change.gait, JOINTS, times[k], want, want + JOINTS, want + 2 * JOINTS);
         moray_swimmer_joints(swimmer, track->x + k * STATES, phi, v_phi);
         for (int i = 0; i < JOINTS; i++) {
@@ -148,12 +157,12 @@ static void swim(moray_model model, const moray_water *water, double turning, bo
     moray_swimmer_free(swimmer);
 }
 
-static void test_water(moray_model model, const moray_water *water, double turning)
+static void test_water(moray_model model, const case_of *c)
 {
     moray_swim_track all, on;
     double energy[2], worst = 0, drift = 0;
-    swim(model, water, turning, false, &all, &energy[0]);
-    swim(model, water, turning, true, &on, &energy[1]);
+    swim(model, c, false, &all, &energy[0]);
+    swim(model, c, true, &on, &energy[1]);
     for (int k = 0; k < 4; k++) {
         for (int i = 0; i < STATES; i++)
             worst = tap_worse(worst, fabs(all.x[k * STATES + i] - on.x[k * STATES + i]));
@@ -163,10 +172,10 @@ static void test_water(moray_model model, const moray_water *water, double turni
         for (int i = 0; i < 2; i++)
             worst = tap_worse(worst, fabs(all.current[2 * k + i] - on.current[2 * k + i]));
         drift = fmax(drift, hypot(on.current[2 * k] - on.current[0], on.current[2 * k + 1] - on.current[1]));
-        if (!water) {
-            const double angle = turning * (on.t[k] - 0.2), c = cos(angle), s = sin(angle);
-            worst = tap_worse(worst, fabs(on.current[2 * k] - 0.08 * c - 0.05 * s));
-            worst = tap_worse(worst, fabs(on.current[2 * k + 1] - 0.08 * s + 0.05 * c));
+        if (!c->water) {
+            const double angle = c->turning * (on.t[k] - 0.2), cosine = cos(angle), sine = sin(angle);
+            worst = tap_worse(worst, fabs(on.current[2 * k] - 0.08 * cosine - 0.05 * sine));
+            worst = tap_worse(worst, fabs(on.current[2 * k + 1] - 0.08 * sine + 0.05 * cosine));
         }
     }
     CHECK(worst < 2e-8, "as all joints: off by %.1e", worst);
@@ -232,13 +241,51 @@ static void test_afloat(const moray_water *water)
           "%s", status.text);
 }
 
+// A robot that leaves the table is told, by whoever looks first.
+static void test_adrift(moray_model model, const moray_water *water)
+{
+    const double time = 2;
+    const moray_swim_on_gait how = {.steps = 16};
+    const moray_sim_settings settings = moray_sim_settings_default();
+    const moray_gait_change change = {0, gait_of(model)};
+    for (int k = 0; k < 4; k++) {
+        helm h = {.size = 0};
+        moray_swim_track track;
+        moray_swimmer *swimmer = swimmer_of(model);
+        const moray_swim_controller controller = {.offset = waving, .measure = look, .self = &h, .period = 0.35};
+        const moray_swim_plan plan = {.t1 = 3,
+                                      .schedule = &change,
+                                      .n_changes = 1,
+                                      .controller = k < 2 ? &controller : NULL,
+                                      .times = &time,
+                                      .n_times = k < 2 ? 0 : 1,
+                                      .water = water,
+                                      .observe = moray_swim_track_add,
+                                      .observer = &track};
+        double x[STATES], body[MORAY_BODY_STATES] = {[MORAY_STATE_P_X] = -1.3};
+        CHECK_OK(moray_swim_track_new(&track, swimmer, 1), "track");
+        moray_swimmer_on_gait(swimmer, &change.gait, 0, body, x);
+        const moray_status status = k % 2 ? moray_swim_run_on_gait(swimmer, &plan, &how, x, NULL)
+                                          : moray_swim_run(swimmer, &settings, &plan, x, NULL);
+        CHECK(status.code == MORAY_INPUT && strstr(status.text, k < 2 ? "water: at t = 0 s" : "water: at t = 2 s") &&
+                  track.n == 0,
+              "adrift: %s", status.text);
+        moray_swim_track_free(&track);
+        moray_swimmer_free(swimmer);
+    }
+}
+
 int main(void)
 {
     moray_water *water = water_of();
     test_room();
     for (int model = 0; model < 2; model++) {
-        test_water((moray_model)model, NULL, 0.9);
-        test_water((moray_model)model, water, 0);
+        const double jump = model == MORAY_CONTROL_ORIENTED ? 0.004 : 0.05;
+        test_water((moray_model)model, &(case_of){NULL, 0.9, 0, 50});
+        test_water((moray_model)model, &(case_of){water, 0, 0, 50});
+        test_water((moray_model)model, &(case_of){NULL, 0.3, jump, 50});
+        test_water((moray_model)model, &(case_of){water, 0, jump, 8}); // underdamped
+        test_adrift((moray_model)model, water);
     }
     test_refused();
     test_afloat(water);
