@@ -26,6 +26,7 @@ struct piece {
 };
 static struct piece piece[N];
 static const moray_scheme *scheme; // NULL: before there is one
+static bool held;                  // the control, over each interval of the first mesh
 
 static double product(double tau, int without)
 {
@@ -97,7 +98,8 @@ static void begin(struct problem *b, const char *name)
                                         .mesh = mesh,
                                         .intervals = N,
                                         .u = MORAY_BOUNDS(moray_between(-1, 1)),
-                                        .c = MORAY_BOUNDS(none)}};
+                                        .c = MORAY_BOUNDS(none),
+                                        .held = &held}};
     moray_settings settings = moray_settings_default();
     settings.max_iterations = 0;
     settings.scheme = name;

@@ -124,6 +124,10 @@ static void test_merging(void)
     test_calm(none, mixed, &(struct expected){4, {mesh[2], mesh[3], mesh[5], 1}, {0}, {3, 3, 3, 3}, {s, s, s, u}});
     // 1e-2 of the tolerance, once 2^4 times the sum, is the most
     test_calm(little, new, &(struct expected){4, {mesh[2], mesh[4], mesh[5], 1}, {0}, {3, 3, 3, 3}, {m, m, u, u}});
+    held = true; // then no edge goes
+    test_calm(none, new,
+              &(struct expected){6, {mesh[1], mesh[2], mesh[3], mesh[4], mesh[5], 1}, {0}, {3, 3, 3, 3, 3, 3}, {u}});
+    held = false;
     test_calm(more, new, &(struct expected){4, {mesh[1], mesh[3], mesh[4], 1}, {0}, {3, 3, 3, 3}, {u, m, u, m}});
 }
 
