@@ -117,6 +117,24 @@ static void test_empty_log(void)
     moray_ipopt_log_close(&log);
 }
 
+// A log may have any descriptor, the one of standard input where that is closed.
+static void test_first_descriptor(void)
+{
+    struct ipopt_log log;
+    char line[20];
+    const int kept = dup(STDIN_FILENO);
+    close(STDIN_FILENO);
+    const bool opened = moray_ipopt_log_open(&log);
+    CHECK(opened && log.file == 0 && write(log.file, "some words\n", 11) == 11, "a log in place of standard input");
+    CHECK(moray_ipopt_log_find(&log, "words", line, sizeof line) && strcmp(line, "some words") == 0, "is read: %s",
+          line);
+    moray_ipopt_log_close(&log);
+    if (kept >= 0) {
+        dup2(kept, STDIN_FILENO);
+        close(kept);
+    }
+}
+
 // What Ipopt says of its linear systems: time of the processor, the system's beside it.
 static void test_linear_seconds(void)
 {
@@ -146,6 +164,7 @@ int main(void)
 {
     test_linear_seconds();
     test_empty_log();
+    test_first_descriptor();
     moray_nlp_info info;
     double p;
     CHECK(moray_nlp_settings_default().linear_solver == MORAY_LINEAR_MORAY, "our own is the default");

@@ -282,6 +282,25 @@ static void test_refusals(void)
     refuse(&b, &settings, "Ipopt refuses a problem of 0 variables and 6 constraints");
 }
 
+// MA57 is where it is installed, and else refused; our own factorisation does not stand in for it.
+static void test_missing_solver(void)
+{
+    struct box b;
+    moray_nlp_info info;
+    moray_nlp_settings settings = tight();
+    box_new(&b);
+    b.upper[1] = b.upper[3] = 1, b.lower[0] = b.lower[2] = 0;
+    CHECK_OK(solve(&b, &settings, &info), "our own");
+    settings.linear_solver = MORAY_LINEAR_MA57;
+    const moray_status status = solve(&b, &settings, &info);
+    CHECK(moray_failed(status) ? status.code == MORAY_INPUT &&
+                                     strcmp(status.text, "Ipopt refuses an option when it starts: is its linear solver "
+                                                         "there?") == 0
+                               : info.outcome == MORAY_NLP_SOLVED,
+          "another: %s", status.text);
+    CHECK(info.linear_solver == MORAY_LINEAR_MA57, "and no other takes its place");
+}
+
 static void test_names(void)
 {
     static const char *const outcomes[] = {"solved",
@@ -312,6 +331,7 @@ int main(void)
     test_accounts(false);
     test_accounts(true);
     test_refusals();
+    test_missing_solver();
     test_names();
     return tap_done();
 }

@@ -217,6 +217,20 @@ static void test_scales(void)
     }
 }
 
+// Without scales of the user Ipopt has its own, which bring the largest slope down to 100.
+static void test_own_scale(void)
+{
+    struct sums s;
+    moray_nlp_info info;
+    sums_new(&s, 0);
+    s.a[1] = 1e4;
+    const struct record own = solve_from(&s, usual, origin, 0, &info);
+    CHECK_NEAR(own.at[0].dual_infeasibility, 100, 1e-9, "slope at the start in Ipopt's scale");
+    s.nlp.f_scale = 1;
+    const struct record given = solve_from(&s, usual, origin, 0, &info);
+    CHECK_NEAR(given.at[0].dual_infeasibility, 2e4, 1e-9, "in the user's");
+}
+
 // Rows alone: their multiplier is of the unit of the row, as the solver's first estimate is not.
 static void test_row_scales(void)
 {
@@ -342,6 +356,7 @@ int main(void)
     test_limit();
     test_time();
     test_scales();
+    test_own_scale();
     test_row_scales();
     test_looser();
     test_barrier();

@@ -155,8 +155,21 @@ static void test_most_involved(void)
           "which %d times has a negative part", negative);
 }
 
+static void test_nothing(void)
+{
+    struct planted p;
+    double weight[m], norm;
+    plant(&p, 3);
+    memset(p.rows, 0, sizeof p.rows);
+    const moray_status status =
+        moray_nlp_dependent_rows(&(struct selection){&p.nlp, p.jac, p.rows, p.cols}, weight, &norm);
+    CHECK(status.code == MORAY_NUMERIC && strcmp(status.text, "no dependence can be computed") == 0, "of no rows: %s",
+          status.text);
+}
+
 int main(void)
 {
+    test_nothing();
     test_dependence();
     test_most_involved();
     test_unremovable();

@@ -200,6 +200,12 @@ static void test_settings(void)
     records[0].calls = 0;
     CHECK_OK(moray_search(&problem, &settings, x, &info), "one evaluation and no tolerance at all");
     CHECK(info.outcome == MORAY_SEARCH_EVALUATION_LIMIT, "ends: %s", moray_search_outcome_text(info.outcome));
+    const double fixed_lower[n] = {-2, 0.25, -1}, fixed_upper[n] = {1.5, 0.25, 3};
+    const moray_search_problem fixed = {n, 2, fixed_lower, fixed_upper, true, &records[0], waves};
+    settings.max_evaluations = 300, settings.x_tolerance = 1e-10;
+    records[0].calls = 0;
+    CHECK_OK(moray_search(&fixed, &settings, x, &info), "one variable fixed");
+    CHECK(x[1] == 0.25 && info.evaluations > 3, "stays where it is: %g", x[1]);
     settings.x_tolerance = 1;
     refuse(&problem, &settings, "x_tolerance = 1: must lie between 0 and 1");
     settings = good, settings.f_tolerance = -0.5;
