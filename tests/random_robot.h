@@ -49,6 +49,22 @@ static inline moray_robot random_unequal_robot(random_seed *seed, int N, moray_l
     return robot;
 }
 
+// Smoothed enough for differences, with a table of two lines.
+static inline moray_motor random_motor(random_seed *seed)
+{
+    moray_motor motor = {.fitted = true,
+                         .forward = tap_random(seed, 0.4, 1),
+                         .backward = tap_random(seed, 0, 1),
+                         .friction = tap_random(seed, 0.1, 1),
+                         .viscous = tap_random(seed, 0.1, 1),
+                         .copper = tap_random(seed, 0.1, 1),
+                         .smooth_rate = 0.1,
+                         .smooth_power = 0.1};
+    const double speed[] = {0, 1, 2.5}, torque[] = {3, 2.5, 0};
+    moray_motor_set_table(&motor, speed, torque, 3);
+    return motor;
+}
+
 // The k-th combination of the choices of hydrodynamics, of so many; the first is the paper's.
 enum { HYDRO_VARIANTS = 18 };
 static inline moray_hydrodynamics hydro_variant(int k)

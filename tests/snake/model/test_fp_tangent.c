@@ -27,26 +27,12 @@ static fp_weights weights_of(const scene *s)
     return (fp_weights){s->lambda, s->forces ? s->rho : NULL, s->supply ? s->sigma : NULL, s->pi};
 }
 
-static void fit_motors(scene *s, random_seed *seed)
-{
-    const double speed[] = {0, 1, 2.5}, torque[] = {3, 2.5, 0};
-    s->robot.motor = (moray_motor){.fitted = true,
-                                   .forward = tap_random(seed, 0.4, 1),
-                                   .backward = tap_random(seed, 0, 1),
-                                   .friction = tap_random(seed, 0.1, 1),
-                                   .viscous = tap_random(seed, 0.1, 1),
-                                   .copper = tap_random(seed, 0.1, 1),
-                                   .smooth_rate = 0.3,
-                                   .smooth_power = 0.3};
-    moray_motor_set_table(&s->robot.motor, speed, torque, 3);
-}
-
 static void set_scene(scene *s, random_seed *seed, int N, int variant, bool unequal, bool motors)
 {
     s->robot = unequal ? random_unequal_robot(seed, N, s->link) : random_robot(seed, N);
     s->robot.hydro = hydro_variant(variant);
     if (motors)
-        fit_motors(s, seed);
+        s->robot.motor = random_motor(seed);
     s->fp = moray_fp_robot_of(&s->robot, s->part);
     double *const part[] = {s->V, s->theta, s->dtheta, s->ubar, s->v, s->lambda, s->rho, s->sigma, &s->pi};
     const int size[] = {2, N, N, N - 1, 2, 3, N - 1, LINES * (N - 1), 1};

@@ -8,21 +8,6 @@
 #include "moray/snake/plant.h"
 #include "random_robot.h"
 
-static moray_motor random_motor(random_seed *seed)
-{
-    moray_motor motor = {.fitted = true,
-                         .forward = tap_random(seed, 0.4, 1),
-                         .backward = tap_random(seed, 0, 1),
-                         .friction = tap_random(seed, 0.1, 1),
-                         .viscous = tap_random(seed, 0.1, 1),
-                         .copper = tap_random(seed, 0.1, 1),
-                         .smooth_rate = 0.1,
-                         .smooth_power = 0.1};
-    const double speed[] = {0, 1, 2.5}, torque[] = {3, 2.5, 0};
-    CHECK_OK(moray_motor_set_table(&motor, speed, torque, 3), "a table");
-    return motor;
-}
-
 // No smoothing to speak of.
 static void test_power(random_seed *seed)
 {
