@@ -154,6 +154,17 @@ static void test_ringing(const moray_ocp *ocp, moray_solution *solution)
             }
 }
 
+// Of several that ring alike the first.
+static void test_first(moray_solution *solution)
+{
+    double swing = -1;
+    memset(solution->iterate.x, 0, (size_t)solution->transcription->nlp.n * sizeof(double));
+    CHECK(moray_find_ringing(solution, &swing) == 0 && swing == 0, "none rings where all stand still: %g", swing);
+    ring(solution, 0, 1), ring(solution, 1, 0), ring(solution, 1, 2);
+    CHECK(moray_find_ringing(solution, &swing) == 2, "the second control is the first");
+    CHECK_NEAR(swing, 1, 0.05, "which does all of the time");
+}
+
 // Where the first meshes are those of a guess, their number is that of the history, and so is the scheme; after Radau
 // comes Gauss, after both none.
 static void test_next(const moray_ocp *ocp, moray_solution *solution)
@@ -232,6 +243,7 @@ int main(void)
     moray_ocp *ocp = NULL;
     moray_solution *solution = begin(&ocp, &none);
     test_ringing(ocp, solution);
+    test_first(solution);
     memset(solution->iterate.x, 0, (size_t)solution->transcription->nlp.n * sizeof(double));
     test_next(ocp, solution);
     moray_solution_free(solution);

@@ -113,6 +113,24 @@ static void test_calm(const double *part, const enum mesh_past *past, const stru
     end(&b);
 }
 
+// An error that is the tolerance is small enough.
+static void test_just_enough(void)
+{
+    struct problem b;
+    begin(&b, "radau3");
+    for (int k = 0; k < N; k++)
+        piece[k] = step(9, 0, 0, k == 2);
+    look(&b);
+    check(&b, b.error[2], b.error[2],
+          &(struct expected){4,
+                             {mesh[2], mesh[3], mesh[5], 1},
+                             {0},
+                             {3, 3, 3, 3},
+                             {mesh_merged, mesh_untouched, mesh_merged, mesh_untouched}});
+    look_away(&b);
+    end(&b);
+}
+
 static void test_merging(void)
 {
     static const enum mesh_past new[N] = {0}, mixed[N] = {mesh_merged,  mesh_settled, mesh_settled,
@@ -142,6 +160,7 @@ int main(void)
     test_steps("radau3");
     test_steps("gauss4");
     test_steps("lobatto4");
+    test_just_enough();
     test_merging();
     return tap_done();
 }

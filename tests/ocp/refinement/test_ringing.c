@@ -95,6 +95,19 @@ static double alternating_once_less(double tau, int n)
     return n > 7 ? 3 : n % 2 ? 3 : -1;
 }
 
+// To and fro every fourth node, and every fifth.
+static double alternating_slowly(double tau, int n)
+{
+    (void)tau;
+    return n / 4 % 2 ? 3 : -1;
+}
+
+static double alternating_more_slowly(double tau, int n)
+{
+    (void)tau;
+    return n / 5 % 2 ? 3 : -1;
+}
+
 static double alternating_within_digits(double tau, int n)
 {
     return tau + (n % 2 ? 0.004 : 0);
@@ -125,6 +138,8 @@ static void test_what_rings(void)
                  {alternating_for_a_while, "half of the time", 0.5},
                  {alternating_often, "eight times, each turn but the first from the node before", 7 / 100.},
                  {alternating_once_less, "seven times, which may be a coincidence", 0},
+                 {alternating_slowly, "at every fourth node", 0.96},
+                 {alternating_more_slowly, "at every fifth, which is no longer from node to node", 0},
                  {alternating_within_digits, "by less than a hundredth", 0},
                  {oscillating, "with the time", 0},
                  {switching, "once", 0}};
