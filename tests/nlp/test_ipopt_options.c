@@ -236,17 +236,17 @@ static void test_row_scales(void)
 {
     struct sums s;
     moray_nlp_info info;
-    const double scale[n] = {1, 1, 1e-14}, multiplier = -4 * (sqrt(2) - 2) / (2e14 * sqrt(2));
+    const double scale[n] = {1, 1, 1e-14}, multiplier = -4 * (sqrt(3) - 2) / (2e14 * sqrt(3));
     sums_new(&s, 3);
-    s.size[2] = 1e14; // x x is 2 to rounding, which is 0.04 in this unit
-    s.g_lower[2] = s.g_upper[2] = 2e14;
+    s.size[2] = 1e14; // of no number is the square 3: rounding is 0.06 in this unit
+    s.g_lower[2] = s.g_upper[2] = 3e14;
     solve_from(&s, usual, origin, 1000, &info);
     CHECK(info.outcome != MORAY_NLP_SOLVED, "unscaled, rounding is above what is asked: %s",
           moray_nlp_outcome_text(info.outcome));
     s.nlp.g_scale = scale;
     solve_from(&s, usual, origin, 1000, &info);
     CHECK(info.outcome == MORAY_NLP_SOLVED, "scaled, it is not: %s", moray_nlp_outcome_text(info.outcome));
-    CHECK_NEAR(x[2], sqrt(2), 1e-8, "solved");
+    CHECK_NEAR(x[2], sqrt(3), 1e-8, "solved");
     CHECK_NEAR(lambda[2] / multiplier, 1, 1e-6, "with the multiplier in the user's unit");
 }
 
