@@ -126,6 +126,39 @@ static void check(moray_solution *solution)
 
 // ---- Sizes of columns and rows, each that of what it is ----
 
+static void add(double **to, const double *size, int n)
+{
+    for (int i = 0; i < n; i++)
+        *(*to)++ = size[i];
+}
+
+// Of what the endpoint depends on, in its order.
+static void check_end_sizes(const moray_solution *solution)
+{
+    const struct transcription *t = solution->transcription;
+    struct witness w;
+    double sizes[MOST], *to = sizes;
+    CHECK_OK(moray_witness_of_sizes(&w, solution), "sizes");
+    for (int p = 0; p < 2; p++) {
+        const struct phase *phase = &t->ocp->phase[p];
+        const double *size = w.phase[p].size;
+        for (int end = 0; end < 2; end++) {
+            add(&to, size, phase->nx);
+            add(&to, &w.duration, 1);
+        }
+        add(&to, w.phase[p].integral, phase->nq);
+        for (int end = 0; end < 2 && p == 0; end++)
+            add(&to, size + NX0, NU0);
+    }
+    add(&to, w.phase[0].size + NX0 + NU0, NS);
+    for (int k = 0; k < DATA; k++)
+        add(&to, w.phase[1].size, NX1 + NU1);
+    CHECK(to - sizes == t->endpoint->n_in, "%d inputs, expected %d", t->endpoint->n_in, (int)(to - sizes));
+    for (int j = 0; j < t->endpoint->n_in; j++)
+        CHECK(w.end_size[j] == sizes[j], "input %d of the ends has the size %g, not %g", j, w.end_size[j], sizes[j]);
+    moray_witness_free(&w);
+}
+
 static void check_sizes(moray_solution *solution)
 {
     static double column[MOST], row[MOST], columns[MOST], rows[MOST];
@@ -193,6 +226,7 @@ int main(void)
             check(solution);
         }
         check_sizes(solution);
+        check_end_sizes(solution);
         moray_solution_free(solution);
         moray_ocp_free(ocp);
     }
