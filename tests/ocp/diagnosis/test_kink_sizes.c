@@ -9,7 +9,7 @@
 
 #include "ocp/diagnosis/diagnosis.h"
 
-enum shape { corner, waves, ramp, jump, smooth };
+enum shape { corner, waves, ramp, jump, rounded, smooth };
 static const double low = -3, high = 5, piece = 0.5; // of the range that is looked at, a sixteenth
 
 // A function of one input, from one node of the phase on.
@@ -32,6 +32,8 @@ static double bend(const struct bent *bent, double z)
         return fmin(fmax(past, 0), bent->size);
     case jump:
         return past > 0 ? bent->size : 0;
+    case rounded:
+        return hypot(past, bent->size);
     default:
         return exp(past);
     }
@@ -132,6 +134,8 @@ static void test_sizes(void)
     check(&(struct bent){ramp, piece / 12, 1, 3, 0, 0}, false, "a ramp");
     check(&(struct bent){ramp, piece / 8, 1, 3, 0, 0}, true, "a ramp");
     check(&(struct bent){jump, 1, 1, 3, 0, 0}, false, "a jump");
+    check(&(struct bent){rounded, 1e-5 * (high - low), 1, 3, 0, 0}, true, "a corner that is hardly round");
+    check(&(struct bent){rounded, 1e-4 * (high - low), 1, 3, 0, 0}, false, "a round one");
     check(&(struct bent){smooth, 1, 1, 3, 0, 0}, false, "an exponential");
 }
 

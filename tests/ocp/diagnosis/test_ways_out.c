@@ -80,13 +80,13 @@ static const char elsewhere[] =
 // The event is to be `off` less than it is; each parameter is at one of its bounds, and would go the other way.
 static void test_bounds(moray_bounds event, double scale)
 {
-    static const double slopes[][2] = {{3, -1}, {-1, 3}, {2, 2.5}, {-4, -1}};
+    static const double slopes[][2] = {{3, -1}, {-1, 3}, {2, 2.5}, {-4, -1}, {2, 2}};
     moray_ocp *ocp = NULL;
     moray_solution *solution = begin(&ocp, event);
     const struct layout *layout = &solution->transcription->layout;
     x_scale[layout->s + 1] = scale;
     g_scale[layout->events] = 1 / scale;
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 5; k++)
         for (int at = 0; at < 4; at++) {
             const int place[] = {at % 2, at / 2};
             double most = 0;
