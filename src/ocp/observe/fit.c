@@ -158,7 +158,6 @@ static moray_status factor(struct inverse *v)
 static void name_open(const moray_fit *fit, const moray_ocp *ocp, char *text, size_t size)
 {
     size_t used = 0;
-    text[0] = 0;
     for (int i = 0; i < fit->ns; i++) {
         char name[120];
         if (!isinf(fit->error[i]) || used >= size)
