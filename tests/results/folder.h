@@ -33,6 +33,16 @@ static inline void put(const char *name, const char *text)
     fclose(file);
 }
 
+// In place of gnuplot a script of ours, which keeps what it is told in the file "told".
+static inline void stand_in(void)
+{
+    char path[2000];
+    put("gnuplot", "#!/bin/sh\ncat > told\nprintf '<svg >\\n</svg>\\n'\n");
+    chmod(in_root("gnuplot"), 0755);
+    snprintf(path, sizeof path, "%s:%s", root, getenv("PATH"));
+    setenv("PATH", path, 1);
+}
+
 // The whole file, "" when there is none; free it.
 static inline char *content(const char *name)
 {

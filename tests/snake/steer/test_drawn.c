@@ -10,15 +10,6 @@
 
 enum { SAMPLES = 41 };
 
-static void stand_in(void)
-{
-    char path[2000];
-    put("gnuplot", "#!/bin/sh\ncat > told\nprintf '<svg >\\n</svg>\\n'\n");
-    chmod(in_root("gnuplot"), 0755);
-    snprintf(path, sizeof path, "%s:%s", root, getenv("PATH"));
-    setenv("PATH", path, 1);
-}
-
 static moray_offset none(double t, const void *self)
 {
     (void)t, (void)self;
