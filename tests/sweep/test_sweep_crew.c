@@ -294,8 +294,30 @@ static void test_summary(void)
     CHECK(!line, "is no summary");
 }
 
+// Until a process says something, or is late; where its end wakes nobody it is looked at again at once.
+static void test_sleep(void)
+{
+    int pipes[2];
+    struct worker worker = {.pid = getpid(), .pipe = {-1, -1}};
+    struct pollfd room[3];
+    struct crew crew = {.n_workers = 1, .worker = &worker, .poll = room, .ranks = 1};
+    for (int k = 0; k < 4; k++) {
+        const bool told = k == 1, late = k == 2, idle = k == 3;
+        CHECK(pipe(pipes) == 0 && (!told || write(pipes[1], "x", 1) == 1), "a pipe");
+        worker.ends = k == 0 ? -1 : pipes[0];
+        worker.deadline = moray_clock() + (late ? 0.02 : 1000);
+        worker.pid = idle ? 0 : getpid();
+        const double begun = moray_clock();
+        moray_crew_sleep(&crew, idle ? 0.03 : 20);
+        const double slept = moray_clock() - begun;
+        CHECK(slept < 10 && (!late || slept > 0.015) && (!idle || slept > 0.025), "case %d: slept %g s", k, slept);
+        close(pipes[0]), close(pipes[1]);
+    }
+}
+
 int main(void)
 {
+    test_sleep();
     setvbuf(stdout, NULL, _IOLBF, 0); // processes that are made here have nothing of it to write
     CHECK_OK(moray_grid_new(&spec, &grid), "a grid");
     test_idle();
