@@ -165,6 +165,12 @@ static void test_disagreement(moray_solution *solution)
             check_apart(solution, 9e-3, turned ? 0.5 * sign : -one, turned ? one : -0.5 * sign, true);
         }
     check_apart(solution, 9e-3, 0, 0, false);
+    const double kept = solution->iterate.objective; // of the last mesh, with the one before
+    const moray_mesh_record meshes[] = {{.intervals = 10, .error = 1e-3, .objective = 2},
+                                        {.intervals = 20, .error = 1e-3}};
+    solution->iterate.objective = 3;
+    check(solution, meshes, 2, true, "The optima of 10 and 20 intervals differ, 2 and 3: try other guesses.\n");
+    solution->iterate.objective = kept;
 }
 
 int main(void)

@@ -91,6 +91,43 @@ static void check(const moray_settings *asked, const moray_guess *guess, int sto
     moray_ocp_free(ocp);
 }
 
+// ---- A solve that runs out of iterations has failed, though its constraints hold ----
+
+static void bowl(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = at->u[0];
+}
+
+static void least(const moray_ends *at, moray_end_values *out, const void *data)
+{
+    const moray_num x = at->phase[0].xf[0];
+    (void)data;
+    out->objective = x * x * x * x + (x - 3) * (x - 3);
+}
+
+static void test_feasible(void)
+{
+    const moray_phase_spec phase = {
+        .nx = 1, .nu = 1, .nq = 1, .continuous = bowl, .tf = moray_fixed(1), .x0 = MORAY_BOUNDS(moray_fixed(0))};
+    moray_settings settings = moray_settings_default();
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    int meshes;
+    settings.max_iterations = 2;
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1, .phase = &phase, .endpoint = least}), "a bowl");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "begun");
+    double worst = 0;
+    for (int i = 0; i < solution->transcription->nlp.m; i++)
+        worst = tap_worse(worst, fabs(solution->iterate.g[i]));
+    moray_solution_history(solution, &meshes);
+    CHECK(moray_solution_info(solution)->outcome == MORAY_NLP_ITERATION_LIMIT && worst < 1e-9,
+          "out of iterations where the dynamics hold to %.1e", worst);
+    CHECK(meshes == 3, "is tried otherwise: %d attempts", meshes);
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 int main(void)
 {
     const double time[] = {0, 1}, late[] = {1, 2}, x[] = {0, 1}, u[] = {1, 1}, s = 1;
@@ -117,5 +154,6 @@ int main(void)
     check(&other, NULL, 0, 1, "none without time");
     other.max_cpu_seconds = 1e3;
     check(&other, NULL, 0, 3, "with time for all of them all");
+    test_feasible();
     return tap_done();
 }
