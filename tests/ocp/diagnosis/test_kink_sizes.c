@@ -126,6 +126,8 @@ static void test_sizes(void)
         check(&(struct bent){corner, 4.8 * sign, 1, 2, 3, 0}, false, "a corner");
         check(&(struct bent){corner, 5.5 * sign, 1, 2, 3, 0}, true, "a corner");
     }
+    check(&(struct bent){corner, -5, 1, 2, 3, 0}, false, "a corner"); // in binary numbers: a twentieth exactly
+    check(&(struct bent){ramp, piece / 10, 1, 3, 0, 0}, false, "a ramp");
     // Between pieces of 1/2 waves bend by (2 - 2 cos(1)) 2, a corner by all that it is: a fifth of both is the least.
     const double most = (2 - 2 * cos(1)) * 2;
     check(&(struct bent){waves, 0.24 * most, 1, 1, 2, 0}, false, "a corner in waves");
