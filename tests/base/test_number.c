@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#define _GNU_SOURCE // uselocale
 #include "tap.h"
 
 #include <limits.h>
@@ -59,8 +60,22 @@ static void test_counts(void)
           "of none and of two");
 }
 
+// Numbers have points in between, and what they had before behind.
+static void test_locale(void)
+{
+    const locale_t own = newlocale(LC_ALL_MASK, "C.UTF-8", (locale_t)0), usual = uselocale(own);
+    CHECK(own && uselocale((locale_t)0) == own, "a locale of its own");
+    const locale_t before = moray_c_locale_begin();
+    CHECK(before == own && uselocale((locale_t)0) != own, "is left");
+    moray_c_locale_end(before);
+    CHECK(uselocale((locale_t)0) == own, "and comes back");
+    uselocale(usual);
+    freelocale(own);
+}
+
 int main(void)
 {
+    test_locale();
     test_counts();
     test_texts();
     test_quantiles();
