@@ -218,6 +218,10 @@ static void test_places(void)
     CHECK(places == 13 && places_around(there, other) == 13, "at %d places", places);
     for (int j = 0; j < N_IN; j++)
         CHECK(one[0][j] == 0 && other[0][j] == 0, "the first of which is given");
+    const double golden = (sqrt(5) - 1) / 2; // whose multiples fill an interval evenly
+    CHECK_NEAR(one[1][0], 0.1 * (2 * golden - 1), 1e-13, "the next as far as the golden section");
+    CHECK_NEAR(one[2][0], 0.5 * (2 * (2 * golden - 1) - 1), 1e-13, "and its multiples");
+    CHECK_NEAR(one[1][1], 0.1 * (2 * (2 * golden - 1) - 1), 1e-13, "of the second input twice as much");
     for (int k = 0; k < places; k++)
         for (int j = 0; j < N_IN; j++) {
             CHECK_NEAR(other[k][j], one[k][j], 1e-13, "and the others as far from it as it is from 0, and 1");
