@@ -90,7 +90,7 @@ static inline int handles(void)
     return n;
 }
 
-static moray_output *open_in(const char *name)
+static inline moray_output *open_in(const char *name)
 {
     moray_output *output = NULL;
     CHECK_OK(moray_output_open(&output, in_root(name)), "open");
