@@ -63,6 +63,14 @@ static void test_gaits(void)
     refuse_gait(&input, MORAY_FIRST_PRINCIPLES,
                 "a_m = 0.2: no link-angle amplitude below 90 deg belongs to it at delta_deg = 40, so it cannot be "
                 "mapped to the first-principles model");
+    char says[200];
+    input.a = 2 * moray_robot_paper().l * cos(input.delta / 2); // links at right angles
+    snprintf(
+        says, sizeof says,
+        "a_m = %.10g: no link-angle amplitude below 90 deg belongs to it at delta_deg = 40, so it cannot be mapped "
+        "to the first-principles model",
+        input.a);
+    refuse_gait(&input, MORAY_FIRST_PRINCIPLES, says);
     input.a = 0.03;
     input.alpha = 10 * DEG;
     refuse_gait(&input, MORAY_CONTROL_ORIENTED, "alpha_deg = 10 contradicts a_m = 0.03: give one of them");
@@ -165,6 +173,33 @@ static void test_texts(void)
           "%s", status.text);
 }
 
+// Each list reaches its field of every link, and no link behind the last.
+static void test_lists(void)
+{
+    static const char *const keys[] = {"link_length_m", "link_m_kg",     "link_J_kg_m2",  "link_c_t",      "link_c_n",
+                                       "link_mu_n",     "link_lambda_1", "link_lambda_2", "link_lambda_3", "link_cm_m",
+                                       "link_cb_m",     "fin_c_t",       "fin_c_n",       "fin_mu_n",      "fin_at_m"};
+    enum { lists = sizeof keys / sizeof *keys };
+    char text[4000] = "[robot]\nlinks=3\n[links]\n";
+    settings s;
+    for (int k = 0; k < lists; k++) {
+        const double least = (k ? 0 : 1) + 0.001 * (k + 20); // long enough for the places along the link
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s=%g,%g,%g\n", keys[k], least, least + 0.021,
+                 least + 0.042);
+    }
+    put("robot.ini", text);
+    CHECK_OK(PARSE(&s, "--robot", in_root("robot.ini")), "all lists");
+    for (int i = 0; i < 3; i++) {
+        const moray_link link = moray_robot_link(&s.snake.robot, i);
+        const double is[lists] = {2 * link.l, link.m,        link.J,        link.c_t,      link.c_n,
+                                  link.mu_n,  link.lambda_1, link.lambda_2, link.lambda_3, link.cm,
+                                  link.cb,    link.fin_c_t,  link.fin_c_n,  link.fin_mu_n, link.fin_at};
+        for (int k = 0; k < lists; k++)
+            CHECK_NEAR(is[k], (k ? 0 : 1) + 0.001 * (k + 20 + 21 * i), 1e-15, keys[k]);
+    }
+    CHECK(s.snake.link[3].l == 0 && s.snake.link[3].m == 0, "no fourth link");
+}
+
 static double at(const moray_json_file *file, const char *list, const char *key)
 {
     char place[80];
@@ -236,6 +271,7 @@ int main(void)
     test_keys();
     test_the_papers();
     test_texts();
+    test_lists();
     test_summary();
     leave();
     return tap_done();
