@@ -63,6 +63,48 @@ static void check(const double *parts, const char *told)
     moray_ocp_free(ocp);
 }
 
+// ---- As many equations as variables are not too many ----
+
+static void rest(const moray_node *at, moray_rates *out, const void *data)
+{
+    (void)data;
+    out->f[0] = 0 * at->x[0];
+}
+
+static void test_count(int equations)
+{
+    const moray_phase_spec phase = {
+        .nx = 1, .continuous = rest, .tf = moray_fixed(1), .x0 = MORAY_BOUNDS(moray_fixed(0))};
+    moray_bounds e[NE], none = moray_free();
+    moray_settings settings = moray_settings_default();
+    moray_ocp *ocp = NULL;
+    moray_solution *solution = NULL;
+    settings.max_iterations = 0;
+    settings.intervals = 2;
+    settings.scheme = "hermite-simpson";
+    for (int k = 0; k < NE; k++)
+        e[k] = k < equations ? moray_fixed(1) : none;
+    memcpy(part, (double[]){1, 2, 3, 4, 5, 6, 7}, sizeof part);
+    CHECK_OK(moray_ocp_new(&ocp, &(moray_ocp_spec){.phases = 1,
+                                                   .phase = &phase,
+                                                   .ns = NS,
+                                                   .s = MORAY_BOUNDS(none, none, none, none, none, none),
+                                                   .ne = NE,
+                                                   .e = moray_bounds_of(e, NE),
+                                                   .endpoint = ends}),
+             "parameters alone");
+    CHECK_OK(moray_solve(ocp, &settings, NULL, &solution), "begun");
+    solution->info.outcome = MORAY_NLP_INFEASIBLE;
+    moray_diagnose(solution);
+    const char *said =
+        strstr(moray_solution_diagnosis(solution), "Try: free an end value or a time, or add a control: ");
+    CHECK((said != NULL) == (equations > NS), "%d equations for six parameters: %s", equations,
+          moray_solution_diagnosis(solution));
+    CHECK(!said || !strcmp(strstr(said, "there are"), "there are 11 equations for 10 variables.\n"), "with numbers");
+    moray_solution_free(solution);
+    moray_ocp_free(ocp);
+}
+
 // The last row is as long as all others together make it, and counts by its length.
 int main(void)
 {
@@ -74,5 +116,7 @@ int main(void)
     check((double[]){0, 2, 0, 0, -1, 0, -3}, "event g; event b; event e");
     check((double[]){0, 2, 1e-2, 0, -1, 0, -3}, "event g; event b; event e; event c");
     check((double[]){0, 2, 1e-3, 0, -1, 0, -3}, "event g; event b; event e");
+    test_count(NS);
+    test_count(NE);
     return tap_done();
 }
