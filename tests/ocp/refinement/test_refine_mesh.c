@@ -57,6 +57,31 @@ static void test_smooth(const char *name, double rate, bool even)
     end(&b);
 }
 
+// Where coefficients grow, more stages are none, and it is cut.
+static void test_growing(void)
+{
+    struct problem b;
+    struct expected x = {0};
+    double worst = 0, least = INFINITY;
+    begin(&b, "radau5");
+    for (int k = 0; k < N; k++)
+        piece[k] = smooth(-6, false, 1);
+    look(&b);
+    for (int k = 0; k < N; k++) {
+        worst = tap_worse(worst, b.error[k]);
+        least = fmin(least, b.error[k]);
+    }
+    const double tolerance = 0.99 * least;
+    for (int k = 0; k < N; k++) {
+        const double excess = b.error[k] / (0.1 * tolerance);
+        CHECK(excess > 10 && log(excess) < 6 && share_of(&b, k) < 0.69, "%g times what is aimed at", excess);
+        add_even(&x, k, (int)fmax(ceil(pow(excess, 1.0 / 6)), 2), 5, mesh_untouched);
+    }
+    check(&b, tolerance, worst, &x);
+    look_away(&b);
+    end(&b);
+}
+
 // A change between two nodes is cut out, with the stages of new intervals.
 static void test_steps(const char *name)
 {
@@ -157,6 +182,7 @@ int main(void)
     test_smooth("gauss4", 3, true);
     test_smooth("radau3", 1.5, false);
     test_smooth("gauss2", 2, false);
+    test_growing();
     test_steps("radau3");
     test_steps("gauss4");
     test_steps("lobatto4");
