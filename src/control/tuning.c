@@ -10,6 +10,8 @@
 
 enum { most = MORAY_TUNED_NUMBERS, SPREAD = 4, POLISHED = 3, ROUNDS = 8 };
 static const double worthwhile = 5e-3; // relative gain of a round that calls for another
+static const double alike = 2e-2;      // relative difference of estimates that confirm each other
+static const double rough = 1e-2;      // tolerance of searches whose ends are polished
 
 // A point in the box of all scales, each of which goes from 0 to 1.
 typedef struct place {
@@ -20,6 +22,7 @@ typedef struct place {
 // What a point costs; local searches come by many points again.
 typedef struct tried {
     double z[most], cost;
+    bool confirmed;
 } tried;
 
 typedef struct tuning {
@@ -30,6 +33,7 @@ typedef struct tuning {
     bool polishing; // by a quadratic model
     tried *known;   // [n_known] of all tasks before
     int n_known;
+    double best;  // of one task, confirmed
     bool stopped; // of one task
     tried *own;   // [n_own], likewise, of at most
     int n_own, room;
@@ -92,39 +96,74 @@ static moray_status check(const moray_tuning_problem *problem)
 static const tried *recall(const tuning *t, const double *z)
 {
     const size_t bytes = (size_t)t->problem->n * sizeof *z;
-    for (int k = 0; k < t->n_known; k++)
-        if (memcmp(t->known[k].z, z, bytes) == 0)
-            return &t->known[k];
-    for (int k = 0; k < t->n_own; k++)
+    for (int k = t->n_own - 1; k >= 0; k--)
         if (memcmp(t->own[k].z, z, bytes) == 0)
             return &t->own[k];
+    for (int k = t->n_known - 1; k >= 0; k--)
+        if (memcmp(t->known[k].z, z, bytes) == 0)
+            return &t->known[k];
     return NULL;
+}
+
+static void remember(tuning *t, const double *z, double cost, bool confirmed)
+{
+    if (t->n_own == t->room)
+        return;
+    tried *at = &t->own[t->n_own++];
+    *at = (tried){.cost = cost, .confirmed = confirmed};
+    memcpy(at->z, z, (size_t)t->problem->n * sizeof *z);
+}
+
+static void numbers_at(const tuning *t, const double *z, double *x)
+{
+    for (int k = 0; k < t->problem->n; k++)
+        x[k] = from_unit(&t->problem->number[k], z[k]);
 }
 
 // INFINITY where there is no cost.
 static double try_out(tuning *t, const double *z)
 {
     double x[most], cost;
-    for (int k = 0; k < t->problem->n; k++)
-        x[k] = from_unit(&t->problem->number[k], z[k]);
+    numbers_at(t, z, x);
     if (!t->problem->cost(t->problem->self, x, &cost) || !isfinite(cost))
         cost = INFINITY;
     t->evaluations++;
-    if (t->n_own == t->room)
-        return cost;
-    tried *at = &t->own[t->n_own++];
-    memcpy(at->z, z, (size_t)t->problem->n * sizeof *z);
-    return at->cost = cost;
+    return cost;
+}
+
+// The cost itself where all estimates are like it, else the first that is not and makes it no longer the best, or the
+// largest.
+static double confirm(tuning *t, const double *z, double cost)
+{
+    const double bound = cost + alike * fabs(cost);
+    double x[most], other;
+    numbers_at(t, z, x);
+    for (int k = 0; k < t->problem->confirmations && cost < t->best; k++) {
+        const bool known = t->problem->confirm(t->problem->self, x, k, &other) && isfinite(other);
+        t->evaluations++;
+        if (!known || other > bound)
+            cost = fmax(cost, known ? other : INFINITY);
+    }
+    return cost;
 }
 
 static bool cost_at(tuning *t, const double *z, double *cost)
 {
     const tried *before = t->settings->remembers ? recall(t, z) : NULL;
+    bool confirmed = before && before->confirmed;
     if (!before && t->settings->go_on && !t->settings->go_on(t->settings->observer)) {
         t->stopped = true;
         return false;
     }
     *cost = before ? before->cost : try_out(t, z);
+    if (!confirmed && *cost < t->best) {
+        *cost = confirm(t, z, *cost);
+        confirmed = *cost < t->best;
+        before = NULL;
+    }
+    if (!before)
+        remember(t, z, *cost, confirmed);
+    t->best = fmin(t->best, *cost);
     return isfinite(*cost);
 }
 
@@ -145,6 +184,7 @@ static tuning begin_task(const tuning *all, outcome *of, int k)
     tuning t = *all;
     of->at = t.from[k];
     t.own = of->tried;
+    t.best = t.reach < 1 ? INFINITY : -INFINITY; // what is looked over as a whole waits until its end
     return t;
 }
 
@@ -172,6 +212,8 @@ static void improve(int k, void *result, void *self)
     place *found = &((outcome *)result)->at;
     double z[most], lower[most], upper[most];
     const int n = t.problem->n;
+    if (t.reach < 1 && t.problem->confirmations > 0)
+        found->cost = INFINITY; // until it is confirmed again, beside its neighbours
     for (int j = 0; j < n; j++) {
         z[j] = found->z[j];
         lower[j] = fmax(0, z[j] - t.reach);
@@ -182,14 +224,18 @@ static void improve(int k, void *result, void *self)
     moray_search_info info;
     // Gains that make up for one another lie in a curved valley, along which a quadratic model gets further.
     settings.method = t.polishing && n > 1 ? MORAY_SEARCH_BOBYQA : MORAY_SEARCH_COBYLA;
-    settings.x_tolerance = 1e-4;
-    settings.f_tolerance = t.settings->tolerance;
+    settings.x_tolerance = t.reach < 1 ? 1e-4 : rough;
+    settings.f_tolerance = t.reach < 1 ? t.settings->tolerance : rough; // the best are polished
     settings.max_evaluations = t.room;
     settings.progress = carry_on;
     settings.observer = &t;
     if (!moray_failed(moray_search(&problem, &settings, z, &info)) && info.objective < found->cost) {
         memcpy(found->z, z, sizeof z);
         found->cost = info.objective;
+    }
+    if (t.reach == 1 && isfinite(found->cost)) {
+        t.best = INFINITY;
+        found->cost = confirm(&t, found->z, found->cost);
     }
     end_task(&t, result);
 }
@@ -262,9 +308,9 @@ static moray_status search(tuning *t, place *places, int n, int n_from, moray_tu
 {
     const int starts = t->settings->starts + n_from < n ? t->settings->starts + n_from : n;
     const int room = t->settings->evaluations * t->problem->n;
+    t->reach = 1;
     MORAY_TRY(from_each(t, look, 1, places, n, info));
     qsort(places + n_from, (size_t)(n - n_from), sizeof *places, by_cost); // those given start whatever they cost
-    t->reach = 1;
     if (!t->stopped)
         MORAY_TRY(from_each(t, improve, room, places, starts, info));
     qsort(places, (size_t)starts, sizeof *places, by_cost);

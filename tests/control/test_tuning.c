@@ -24,7 +24,7 @@ static void test_many_optima(void)
     double x[2];
     moray_tuning_info info;
     moray_tuning_settings settings = moray_tuning_settings_default();
-    const moray_tuning_problem problem = {2, box, ripples, &calls};
+    const moray_tuning_problem problem = {.n = 2, .number = box, .cost = ripples, .self = &calls};
     settings.jobs = 1;
     CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x, &info), "tunes");
     CHECK_NEAR(info.cost, 0, 1e-2, "the least of all optima");
@@ -54,7 +54,7 @@ static void test_subset(void)
     static const moray_tuned_number all[] = {
         {MORAY_TUNED_LINEAR, -1, 1, 0}, {MORAY_TUNED_LINEAR, -1, 1, 0}, {MORAY_TUNED_WITH_ZERO, 0, 10, 0.01}};
     const double subset[] = {0.123456, 0.123456, 0};
-    const moray_tuning_problem problem = {3, all, hole, NULL};
+    const moray_tuning_problem problem = {.n = 3, .number = all, .cost = hole, .self = NULL};
     const moray_tuning_settings settings = moray_tuning_settings_default();
     moray_tuning_info info;
     double x[3];
@@ -77,7 +77,7 @@ static void test_no_better(void)
 {
     static const moray_tuned_number all[] = {{MORAY_TUNED_LINEAR, -1, 1, 0}, {MORAY_TUNED_LINEAR, -1, 1, 0}};
     static const double told[][2] = {{-0.7, 0.3}, {-1 + 1e-6, 0.3}, {-0.7, 1 - 1e-6}, {-1, -1}};
-    const moray_tuning_problem problem = {2, all, plain, NULL};
+    const moray_tuning_problem problem = {.n = 2, .number = all, .cost = plain, .self = NULL};
     moray_tuning_settings settings = moray_tuning_settings_default();
     settings.starts = 1;
     settings.jobs = 1;
@@ -144,7 +144,7 @@ static void test_looks(int n)
     for (int i = 0; i < told * n; i++)
         from[i] = 0.9 - 0.17 * i / n;
     d = (diary){.n = n};
-    const moray_tuning_problem problem = {n, all, valley, &d};
+    const moray_tuning_problem problem = {.n = n, .number = all, .cost = valley, .self = &d};
     moray_tuning_settings settings = moray_tuning_settings_default();
     moray_tuning_info info;
     settings.starts = starts, settings.evaluations = of_each, settings.jobs = 1;
@@ -175,7 +175,7 @@ static void test_precise(int n)
     for (int j = 0; j < n; j++)
         all[j] = (moray_tuned_number){MORAY_TUNED_LINEAR, -1, 2, 0};
     d = (diary){.n = n};
-    const moray_tuning_problem problem = {n, all, valley, &d};
+    const moray_tuning_problem problem = {.n = n, .number = all, .cost = valley, .self = &d};
     moray_tuning_settings settings = moray_tuning_settings_default();
     moray_tuning_info info;
     settings.jobs = 1;
@@ -214,7 +214,7 @@ static void test_ranges(void)
     settings.starts = settings.evaluations = settings.jobs = 1;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const moray_tuned_number both[] = {good, cases[k].number};
-        const moray_tuning_problem problem = {2, both, valley, &d};
+        const moray_tuning_problem problem = {.n = 2, .number = both, .cost = valley, .self = &d};
         d = (diary){.n = 2};
         const moray_status status = moray_tune(&problem, &settings, NULL, 0, x, &info);
         CHECK(cases[k].sound ? !moray_failed(status)
@@ -225,7 +225,7 @@ static void test_ranges(void)
     for (int n = 0; n <= MORAY_TUNED_NUMBERS + 1; n++) {
         if (n > 0)
             many[n - 1] = good;
-        const moray_tuning_problem problem = {n, many, valley, &d};
+        const moray_tuning_problem problem = {.n = n, .number = many, .cost = valley, .self = &d};
         d = (diary){.n = n};
         const moray_status status =
             n <= 1 || n >= MORAY_TUNED_NUMBERS ? moray_tune(&problem, &settings, NULL, 0, x, &info) : moray_ok();
@@ -252,7 +252,7 @@ static void test_remembers(int n)
     moray_tuning_info info[3];
     for (int j = 0; j < n; j++)
         all[j] = (moray_tuned_number){MORAY_TUNED_LINEAR, -1, 2, 0};
-    const moray_tuning_problem problem = {n, all, valley, &d};
+    const moray_tuning_problem problem = {.n = n, .number = all, .cost = valley, .self = &d};
     moray_tuning_settings settings = moray_tuning_settings_default();
     for (int k = 0; k < 3; k++) { // without, with, and with by two processes
         d = (diary){.n = n};
@@ -286,7 +286,7 @@ static void test_refusals(void)
     double x[2];
     moray_tuning_info info;
     moray_tuning_settings settings = moray_tuning_settings_default();
-    moray_tuning_problem problem = {2, box, nowhere, NULL};
+    moray_tuning_problem problem = {.n = 2, .number = box, .cost = nowhere, .self = NULL};
     settings.jobs = 1;
     CHECK(moray_tune(&problem, &settings, NULL, 0, x, &info).code == MORAY_NUMERIC, "no cost anywhere is told");
     settings.go_on = enough;
@@ -294,7 +294,7 @@ static void test_refusals(void)
     CHECK(moray_tune(&problem, &settings, NULL, 0, x, &info).code == MORAY_INTERRUPTED, "an end called is told");
     CHECK(info.evaluations < 10, "and comes at once: %d", info.evaluations);
     const moray_tuned_number wrong[] = {{MORAY_TUNED_LOGARITHMIC, 0, 1, 0}};
-    problem = (moray_tuning_problem){1, wrong, nowhere, NULL};
+    problem = (moray_tuning_problem){.n = 1, .number = wrong, .cost = nowhere, .self = NULL};
     CHECK(moray_tune(&problem, &settings, NULL, 0, x, &info).code == MORAY_INPUT, "no logarithm of zero");
 }
 

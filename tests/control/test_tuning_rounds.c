@@ -41,7 +41,7 @@ static bool scripted(void *self, const double *x, double *cost)
 static moray_tuning_info tune(script *s)
 {
     static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
-    const moray_tuning_problem problem = {N, unit, scripted, s};
+    const moray_tuning_problem problem = {.n = N, .number = unit, .cost = scripted, .self = s};
     moray_tuning_settings settings = moray_tuning_settings_default();
     moray_tuning_info info;
     double x[N];
@@ -61,7 +61,10 @@ static void test_start(void)
     for (int k = TOLD; k < LOOKS; k++)
         best = s.x[k][0] + s.x[k][1] > s.x[best][0] + s.x[best][1] ? k : best;
     CHECK(best != TOLD, "which is not the first: %d", best - TOLD);
-    CHECK(s.x[LOOKS + TOLD * CALLS][0] == s.x[best][0], "from %g, the best", s.x[best][0]); // the other is near a bound
+    bool again = false;
+    for (int k = LOOKS; k < s.calls && k < MOST; k++)
+        again = again || s.x[k][0] == s.x[best][0]; // the other number is near a bound
+    CHECK(again, "from %g, the best", s.x[best][0]);
 }
 
 // In pairs, the second for certain, each further one where that before it gained more than 0.5 % of the cost.
@@ -121,7 +124,7 @@ static void test_all_agree(void)
     const moray_tuning_info info = tune(&s);
     CHECK(info.agree == SEARCHES && info.searches == SEARCHES, "%d of %d agree", info.agree, info.searches);
     static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
-    const moray_tuning_problem problem = {N, unit, scripted, &s};
+    const moray_tuning_problem problem = {.n = N, .number = unit, .cost = scripted, .self = &s};
     for (int k = 0; k < 2; k++) {
         moray_tuning_settings settings = moray_tuning_settings_default();
         moray_tuning_info none;
@@ -200,7 +203,7 @@ static void test_walk(void)
             s.start[j] = s.along[j] > 0 ? 0.125 : 0.875;
         for (int i = 0; i < POLISHED * N; i++)
             from[i] = s.start[i % N];
-        const moray_tuning_problem problem = {N, unit, sloping, &s};
+        const moray_tuning_problem problem = {.n = N, .number = unit, .cost = sloping, .self = &s};
         moray_tuning_settings settings = moray_tuning_settings_default();
         moray_tuning_info info;
         settings.starts = settings.jobs = 1;
@@ -228,7 +231,7 @@ static void test_remembers(void)
     double x[3][N];
     moray_tuning_info info[3];
     for (int k = 0; k < 3; k++) {
-        const moray_tuning_problem problem = {N, unit, valley, &calls[k]};
+        const moray_tuning_problem problem = {.n = N, .number = unit, .cost = valley, .self = &calls[k]};
         moray_tuning_settings settings = moray_tuning_settings_default();
         settings.starts = 3;
         settings.jobs = 1;
@@ -256,7 +259,7 @@ static void test_one(void)
     static const moray_tuned_number unit = {MORAY_TUNED_LINEAR, 0, 1, 0};
     const double from = 0.5;
     int visits = 0;
-    const moray_tuning_problem problem = {1, &unit, ramp, &visits};
+    const moray_tuning_problem problem = {.n = 1, .number = &unit, .cost = ramp, .self = &visits};
     moray_tuning_settings settings = moray_tuning_settings_default();
     moray_tuning_info info;
     double x;

@@ -28,6 +28,11 @@ typedef struct moray_tuning_problem {
     const moray_tuned_number *number;
     bool (*cost)(void *self, const double *x, double *cost); // false where there is none: infinitely bad
     void *self;
+    // Other estimates of the cost, k < confirmations, as of the same trial simulated in other steps: where one of them
+    // is above it by 2 %, what would be the best point of a search so far costs as much as that. Where a loop is
+    // unstable its cost is as good as random, and the least of many would be a stroke of luck.
+    int confirmations;
+    bool (*confirm)(void *self, const double *x, int k, double *cost);
 } moray_tuning_problem;
 
 typedef struct moray_tuning_settings {

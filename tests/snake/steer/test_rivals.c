@@ -194,7 +194,7 @@ static double tuned(pool *at, unsigned law, double (*subset)[NUMBERS], int n_sub
     const int simplex_starts = tap_thorough() ? 20 : 2;
     moray_tuned_number number[NUMBERS];
     const int n = numbers_of(law, number);
-    const moray_tuning_problem problem = {n, number, cost, at};
+    const moray_tuning_problem problem = {.n = n, .number = number, .cost = cost, .self = at};
     moray_tuning_settings settings = moray_tuning_settings_default();
     moray_tuning_info info;
     double from[4 * NUMBERS], x[NUMBERS], best = INFINITY, *to = from;

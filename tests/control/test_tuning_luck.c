@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+//
+// Tuning where a cost may be a stroke of luck: what other estimates do not confirm is not taken, however low it is.
+#include <math.h>
+
+#include "moray/control/tuning.h"
+#include "tap.h"
+
+enum { ESTIMATES = 3, LUCKY = 2 };
+
+typedef struct book {
+    int costs, confirmations, of[ESTIMATES];
+    double steps; // added per estimate
+    bool never;   // other estimates have no cost there
+} book;
+
+// In the upper half of the numbers every other stripe looks like nothing costs.
+static bool lucky(double x)
+{
+    return x > 0.5 && fmod(x, 0.05) < 0.025;
+}
+
+static double bowl(const double *x)
+{
+    const double a = x[0] - 0.2, b = x[1] - 0.3;
+    return 1 + a * a + b * b;
+}
+
+static bool cost_of(void *self, const double *x, double *cost)
+{
+    ((book *)self)->costs++;
+    *cost = lucky(x[0]) ? 0.1 : bowl(x);
+    return true;
+}
+
+// The bowl itself, each estimate `steps` more than the one before it.
+static bool other(void *self, const double *x, int k, double *cost)
+{
+    book *b = self;
+    b->confirmations++;
+    b->of[k]++;
+    *cost = (lucky(x[0]) ? 3 : bowl(x)) + b->steps * (k + 1);
+    return !(b->never && lucky(x[0]));
+}
+
+static moray_tuning_info tune(book *b, int confirmations, double x[2])
+{
+    static const moray_tuned_number unit[] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
+    const moray_tuning_problem problem = {
+        .n = 2, .number = unit, .cost = cost_of, .self = b, .confirmations = confirmations, .confirm = other};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    settings.jobs = 1;
+    CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x, &info), "tunes");
+    CHECK(info.evaluations == b->costs + b->confirmations, "%d and %d calls are counted", b->costs, b->confirmations);
+    return info;
+}
+
+int main(void)
+{
+    double x[2];
+    book plain = {0}, sure = {.steps = 1e-3}, never = {.never = true};
+    moray_tuning_info info = tune(&plain, 0, x);
+    CHECK(lucky(x[0]) && info.cost == 0.1 && plain.confirmations == 0, "unasked, luck is taken at %g", x[0]);
+    info = tune(&sure, ESTIMATES, x);
+    CHECK(!lucky(x[0]) && fabs(x[0] - 0.2) < 1e-2 && fabs(x[1] - 0.3) < 1e-2, "confirmed at %g, %g", x[0], x[1]);
+    CHECK_NEAR(info.cost, bowl(x), 1e-12, "at its own cost, which others are like");
+    CHECK(sure.of[0] > sure.of[1] && sure.of[1] >= sure.of[2], "no more are asked for than tell: %d, %d, %d",
+          sure.of[0], sure.of[1], sure.of[2]);
+    CHECK(sure.confirmations < sure.costs, "of what might be best alone: %d beside %d", sure.confirmations, sure.costs);
+    tune(&never, ESTIMATES, x);
+    CHECK(!lucky(x[0]) && fabs(x[0] - 0.2) < 1e-2, "nor where others have no cost: %g, %g", x[0], x[1]);
+    book apart = {.steps = 0.1};
+    info = tune(&apart, LUCKY, x);
+    CHECK_NEAR(info.cost, bowl(x) + LUCKY * 0.1, 1e-12, "that of the largest which is not like it");
+    return tap_done();
+}
