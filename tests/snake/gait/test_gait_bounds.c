@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "moray/snake/gait_over.h"
+#include "moray/snake/gait_search.h"
 #include "snake/gait/problem.h"
 
 enum { LINKS = 5, JOINTS = LINKS - 1 };
@@ -345,8 +346,32 @@ static void test_over(void)
     refuse_over(scenario, 1, "scenario no 1: all have their joints on the gait, and the same model");
 }
 
+// In still water the heading returns without an offset only; in any current it may need one.
+static void test_search(void)
+{
+    static const double currents[][2] = {{0, 0}, {0.05, 0}, {0, -0.05}};
+    for (int side = -1; side <= 1; side += 2)
+        for (int k = 0; k < 3; k++) {
+            moray_gait_problem_spec spec = spec_of(MORAY_CONTROL_ORIENTED);
+            moray_gait_search *search;
+            spec.limits.offset = side < 0 ? moray_between(-0.02, -0.001) : moray_between(0.001, 0.02);
+            memcpy(spec.current, currents[k], sizeof spec.current);
+            const moray_status status = moray_gait_search_new(&search, &spec, "lobatto5", 12);
+            CHECK(moray_failed(status) == (k == 0) && !search == (k == 0), "in (%g, %g) m/s: %s", currents[k][0],
+                  currents[k][1], status.text);
+            moray_gait_search_free(search);
+        }
+    moray_gait_problem_spec spec = spec_of(MORAY_CONTROL_ORIENTED);
+    moray_gait_search *search;
+    spec.limits.taper = moray_between(0, 0.25);
+    const moray_status status = moray_gait_search_new(&search, &spec, "lobatto5", 12);
+    CHECK(status.code == MORAY_INPUT && strcmp(status.text, "taper = 0:0.25: a search knows gaits without one") == 0,
+          "%s", status.text);
+}
+
 int main(void)
 {
+    test_search();
     test_events_fp();
     test_events_control();
     test_path();

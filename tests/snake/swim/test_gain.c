@@ -159,8 +159,41 @@ static void test_scatter(void)
     moray_test_rig_free(&rig);
 }
 
+// Velocities through the water return, turned where their axes do not turn with the body.
+static void test_closing(moray_model of)
+{
+    moray_orbit orbit = {.spec = {.model = of, .steered = false, .current = {0.3, -0.2}, .course = 0.4}};
+    unsigned long long seed = 4;
+    double in[ORBIT_ENDS + 1], out[ORBIT_STATES + 1];
+    CHECK_OK(moray_orbit_closing(&orbit), "closing");
+    for (int i = 0; i <= ORBIT_ENDS; i++)
+        in[i] = tap_random(&seed, -1, 1);
+    orbit.closing.value(orbit.closing.self, in, out);
+    const double *x0 = in, *xT = in + ORBIT_STATES, turn = in[ORBIT_ENDS];
+    const bool control = of == MORAY_CONTROL_ORIENTED;
+    double began[2], ended[2];
+    for (int end = 0; end < 2; end++) {
+        const double *x = end ? xT : x0, angle = control ? x[0] : 0, c = cos(angle), s = sin(angle);
+        (end ? ended : began)[0] = x[4] - 0.3 * c + 0.2 * s;
+        (end ? ended : began)[1] = x[5] + 0.2 * c + 0.3 * s;
+    }
+    const double lag = control ? 0 : turn, c = cos(lag), s = sin(lag);
+    const double want[] = {x0[1],
+                           x0[2],
+                           xT[0] - x0[0] - turn,
+                           xT[3] - x0[3],
+                           ended[0] - c * began[0] + s * began[1],
+                           ended[1] - s * began[0] - c * began[1],
+                           (xT[2] - x0[2]) * cos(0.4) - (xT[1] - x0[1]) * sin(0.4)};
+    for (int i = 0; i <= ORBIT_STATES; i++)
+        CHECK_NEAR(out[i], want[i], 1e-14, "condition");
+    moray_map_release(&orbit.closing);
+}
+
 int main(void)
 {
+    test_closing(MORAY_CONTROL_ORIENTED);
+    test_closing(MORAY_FIRST_PRINCIPLES);
     test_proof();
     test_stability();
     test_not_held();
