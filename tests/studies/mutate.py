@@ -23,6 +23,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -323,6 +324,8 @@ def main():
     options.add_argument("--check-list", nargs="?", const=EQUIVALENT, metavar="FILE",
                          help="only tell which equivalent mutants the source has no longer")
     asked = options.parse_args()
+    # What a shell starts in the background ignores it, and so would the programs that tests interrupt.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     listed = equivalents(asked.check_list or EQUIVALENT)
     unknown = stale(listed)
     if unknown or asked.check_list:
