@@ -21,10 +21,10 @@ typedef struct moray_pattern {
 //   hessian:  values[k] = d2 (sum_i weight[i] out[i]) / d in[row k] d in[col k]  over `hess`, lower triangle (row >=
 //   col)
 // No entry stands twice in a pattern. The callbacks write every value of their pattern, allocate nothing, and show
-// that they are outside their domain by a NaN. `self` may hold scratch space, so one map serves one thread. `hold`, NULL
-// where there is nothing to gain by it, is told which inputs keep their values from here on, held[n_in], or by NULL that
-// none does: entries of the Hessian by held ones may be left 0.
-// `release` frees what `self` and the patterns own; NULL where nothing is owned.
+// that they are outside their domain by a NaN. `self` may hold scratch space, so one map serves one thread. `hold`,
+// NULL where there is nothing to gain by it, is told which inputs keep their values from here on, held[n_in], or by
+// NULL that none does: entries of the Hessian by held ones may be left 0. `release` frees what `self` and the patterns
+// own; NULL where nothing is owned.
 typedef struct moray_map {
     int n_in, n_out;
     moray_pattern jac, hess;

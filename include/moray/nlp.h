@@ -14,8 +14,8 @@ MORAY_BEGIN
 
 // The callbacks return false where a function is not defined. `fresh` says that x differs from the last call's.
 // Patterns are fixed, without repeated entries; the Hessian is that of sigma f + sum lambda_i g_i, lower triangle.
-// `hold`, which may be NULL, is told when a solver begins (true) that has no use for entries of the Hessian by variables
-// that their bounds fix, so that they may be left 0, and when it ends.
+// `hold`, which may be NULL, is told when a solver begins (true) that has no use for entries of the Hessian by
+// variables that their bounds fix, so that they may be left 0, and when it ends.
 typedef struct moray_nlp {
     int n, m;
     const double *x_lower, *x_upper, *g_lower, *g_upper;

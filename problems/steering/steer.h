@@ -177,7 +177,7 @@ struct steer_job {
     moray_steering_plan plan[3];                    // owned; without a solution: not yet made
     moray_certificate certificate[2];
     const moray_solution *certified[2]; // whose certificates these are; NULL: none yet
-    double turn_rate[2]; // sustained at the limit of the offset [rad/s], with its sign
+    double turn_rate[2];                // sustained at the limit of the offset [rad/s], with its sign
     steer_trial trial[STEER_TRIALS];
     int n_trials;
     moray_swim_scene *scene; // of the report, while it is written
@@ -279,9 +279,9 @@ steer_trial *steer_add(steer_job *job, const char *name, const steer_law *law, i
 void steer_add_plans(steer_job *job, const steer_law *blind, const steer_law *both);
 void steer_add_receding(steer_job *job, const steer_law *law);
 
-// Certifies the plans that are not yet, at the same time tunes and swims every trial not yet run whose gait and plan are
-// known, in equal shares of the time that is left; one that does not end in its share stays not run. Error: those of
-// moray_certify and moray_swim_closed_loop_run, MORAY_INTERRUPTED.
+// Certifies the plans that are not yet, at the same time tunes and swims every trial not yet run whose gait and plan
+// are known, in equal shares of the time that is left; one that does not end in its share stays not run. Error: those
+// of moray_certify and moray_swim_closed_loop_run, MORAY_INTERRUPTED.
 moray_status steer_run_trials(steer_job *job);
 
 // Takes over from n trials what was found of those that job has too.

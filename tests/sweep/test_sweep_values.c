@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The values of an axis as a user writes them: every number of a range by its closed form, refusals by their whole text.
+// The values of an axis as a user writes them: every number of a range by its closed form, refusals by their whole
+// text.
 #include "tap.h"
 
 #include <stdlib.h>
