@@ -8,12 +8,13 @@
 
 #include "moray/dense.h"
 
-static bool cut(double *u, int n, double limit)
+// What the joints lack to what is wanted; whether one lacks any.
+static bool cut(const double *wanted, int n, double limit, double *lacks)
 {
     bool beyond = false;
     for (int i = 0; i < n; i++) {
-        beyond = beyond || fabs(u[i]) > limit;
-        u[i] = fmin(fmax(u[i], -limit), limit);
+        beyond = beyond || fabs(wanted[i]) > limit;
+        lacks[i] = fmin(fmax(wanted[i], -limit), limit) - wanted[i];
     }
     return beyond;
 }
@@ -21,16 +22,11 @@ static bool cut(double *u, int n, double limit)
 bool moray_torque_limited(const torque_limit *limit, moray_efforts_fn *efforts, void *self, double *ubar)
 {
     const int n = limit->n;
-    double *wanted = limit->room, *u = wanted + n, *A = u + n;
+    double *wanted = limit->room, *lacks = wanted + n, *column = lacks + n, *A = column + n;
     if (!efforts(self, ubar, wanted))
         return false;
-    for (int i = 0; i < n; i++)
-        u[i] = wanted[i];
-    if (!cut(u, n, limit->most))
+    if (!cut(wanted, n, limit->most, lacks))
         return true;
-    double *lacks = A + n * n, *column = lacks + n;
-    for (int i = 0; i < n; i++)
-        lacks[i] = u[i] - wanted[i];
     for (int j = 0; j < n; j++) {
         const double before = ubar[j], step = 1 + fabs(before);
         ubar[j] += step;

@@ -9,7 +9,7 @@ typedef struct torque_limit {
     double most;  // of every effort; 0: no limit
     double *room; // [TORQUE_ROOM(n)], owned
 } torque_limit;
-#define TORQUE_ROOM(n) ((size_t)(n) * ((size_t)(n) + 4))
+#define TORQUE_ROOM(n) ((size_t)(n) * ((size_t)(n) + 3))
 
 // Efforts u[n] of the accelerations ubar[n], affine in them. False where there are none.
 typedef bool moray_efforts_fn(void *self, const double *ubar, double *u);
