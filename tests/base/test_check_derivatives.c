@@ -205,8 +205,47 @@ static void test_none(void)
     CHECK(isnan(report.jacobian_error) && report.jacobian_row == 0, "no number: %g", report.jacobian_error);
 }
 
+// y = (x^2, x^3), whose second slope is off by a constant: its Hessian is right, though it has fewer rows than outputs.
+static void squares(void *self, const double *x, double *y)
+{
+    (void)self;
+    y[0] = x[0] * x[0];
+    y[1] = x[0] * x[0] * x[0];
+}
+
+static void slopes(void *self, const double *x, double *values)
+{
+    (void)self;
+    values[0] = 2 * x[0];
+    values[1] = 3 * x[0] * x[0] + 5;
+}
+
+static void bends(void *self, const double *x, const double *w, double *values)
+{
+    (void)self;
+    values[0] = 2 * w[0] + 6 * w[1] * x[0];
+}
+
+static void test_more_outputs(void)
+{
+    static int rows[] = {0, 1}, columns[] = {0, 0};
+    const moray_map map = {.n_in = 1,
+                           .n_out = 2,
+                           .jac = {.nnz = 2, .row = rows, .col = columns},
+                           .hess = {.nnz = 1, .row = rows, .col = columns},
+                           .value = squares,
+                           .jacobian = slopes,
+                           .hessian = bends};
+    const double x = 0.7, weights[] = {0.4, -1.3};
+    moray_derivative_report report;
+    CHECK_OK(moray_check_derivatives(&map, &x, weights, &report), "checked");
+    CHECK(report.jacobian_error > 1 && report.jacobian_row == 1, "the slope of row %d is wrong", report.jacobian_row);
+    CHECK(report.hessian_error < 1e-8, "the Hessian is right: %.1e", report.hessian_error);
+}
+
 int main(void)
 {
+    test_more_outputs();
     test_none();
     test_doubt();
     test_jacobian();

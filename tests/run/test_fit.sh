@@ -26,6 +26,7 @@ cp out exact
 run
 check "the table: parameters with their intervals" eval 'grep -q "^Parameters, with intervals of 95 %$" out &&
     grep -qE "^rate  *0\.[0-9]+  *0\.[0-9]+  *0\.[0-9]+  *0\.[0-9]+  1/s$" out'
+check "times of the only phase need not say whose" eval 'grep -qE "^initial time  *0  s$" out && grep -qE "^final time  *4  s$" out'
 check "and what the data leave open by its name, without an interval" eval '
     grep -q "^not determined by the data  *spare$" out && grep -qE "^spare  *[0-9.e-]+$" out'
 run --json --set gauss_newton=yes
