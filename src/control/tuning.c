@@ -179,12 +179,18 @@ static bool carry_on(void *observer, const moray_search_progress *progress)
     return !((const tuning *)observer)->stopped;
 }
 
+// Whether the whole box is searched, for places to polish: they are confirmed at the end, not on the way.
+static bool looks_over(const tuning *t)
+{
+    return t->reach == 1;
+}
+
 static tuning begin_task(const tuning *all, outcome *of, int k)
 {
     tuning t = *all;
     of->at = t.from[k];
     t.own = of->tried;
-    t.best = t.reach < 1 ? INFINITY : -INFINITY; // what is looked over as a whole waits until its end
+    t.best = looks_over(&t) ? -INFINITY : INFINITY;
     return t;
 }
 
@@ -212,7 +218,7 @@ static void improve(int k, void *result, void *self)
     place *found = &((outcome *)result)->at;
     double z[most], lower[most], upper[most];
     const int n = t.problem->n;
-    if (t.reach < 1 && t.problem->confirmations > 0)
+    if (!looks_over(&t) && t.problem->confirmations > 0)
         found->cost = INFINITY; // until it is confirmed again, beside its neighbours
     for (int j = 0; j < n; j++) {
         z[j] = found->z[j];
@@ -224,8 +230,8 @@ static void improve(int k, void *result, void *self)
     moray_search_info info;
     // Gains that make up for one another lie in a curved valley, along which a quadratic model gets further.
     settings.method = t.polishing && n > 1 ? MORAY_SEARCH_BOBYQA : MORAY_SEARCH_COBYLA;
-    settings.x_tolerance = t.reach < 1 ? 1e-4 : rough;
-    settings.f_tolerance = t.reach < 1 ? t.settings->tolerance : rough; // the best are polished
+    settings.x_tolerance = looks_over(&t) ? rough : 1e-4;
+    settings.f_tolerance = looks_over(&t) ? rough : t.settings->tolerance;
     settings.max_evaluations = t.room;
     settings.progress = carry_on;
     settings.observer = &t;
@@ -233,7 +239,7 @@ static void improve(int k, void *result, void *self)
         memcpy(found->z, z, sizeof z);
         found->cost = info.objective;
     }
-    if (t.reach == 1 && isfinite(found->cost)) {
+    if (looks_over(&t) && isfinite(found->cost)) {
         t.best = INFINITY;
         found->cost = confirm(&t, found->z, found->cost);
     }

@@ -243,6 +243,22 @@ static void check_interval(const struct trial *trial, struct unseen *u, int p, i
     CHECK(moray_unseen_interval(u, interval, objective, NULL, &where) == found, "the same without jumps");
 }
 
+static void check_phase(const struct trial *trial, const struct witness *w, int p)
+{
+    struct examiner e;
+    struct unseen u;
+    CHECK_OK(moray_examiner_new(&e, w, p), "examiner");
+    CHECK_OK(moray_unseen_new(&u, &e), "effects");
+    CHECK(u.kinds == (p ? MORAY_UNSEEN_KINDS : high_control), "%d kinds", u.kinds);
+    check_direction(&u, w->phase[p].size, p ? NU : 0);
+    if (p == 1)
+        check_controls(trial, &u);
+    for (int k = 0; k < INTERVALS; k++)
+        check_interval(trial, &u, p, k);
+    moray_unseen_free(&u);
+    moray_examiner_free(&e);
+}
+
 static void test_effects(const struct trial *trial)
 {
     moray_bounds x[] = {moray_free(), moray_free(), moray_free()};
@@ -290,20 +306,8 @@ static void test_effects(const struct trial *trial)
     set_iterate(solution);
     CHECK_OK(moray_witness_of_sizes(&w, solution), "sizes");
     memcpy(w.phase[1].size + NX, trial->size, sizeof trial->size);
-    for (int p = 0; p < 2; p++) {
-        struct examiner e;
-        struct unseen u;
-        CHECK_OK(moray_examiner_new(&e, &w, p), "examiner");
-        CHECK_OK(moray_unseen_new(&u, &e), "effects");
-        CHECK(u.kinds == (p ? MORAY_UNSEEN_KINDS : high_control), "%d kinds", u.kinds);
-        check_direction(&u, w.phase[p].size, p ? NU : 0);
-        if (p == 1)
-            check_controls(trial, &u);
-        for (int k = 0; k < INTERVALS; k++)
-            check_interval(trial, &u, p, k);
-        moray_unseen_free(&u);
-        moray_examiner_free(&e);
-    }
+    for (int p = 0; p < 2; p++)
+        check_phase(trial, &w, p);
     moray_witness_free(&w);
     moray_solution_free(solution);
     moray_ocp_free(ocp);
