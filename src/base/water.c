@@ -31,8 +31,9 @@ void moray_water_free(moray_water *water)
     if (!water)
         return;
     for (int k = 0; k < water->axis[T].n; k++) {
-        for (int c = 0; c < 2 && water->surface[c]; c++)
-            moray_surface_free(water->surface[c][k]);
+        for (int c = 0; c < 2; c++)
+            if (water->surface[c])
+                moray_surface_free(water->surface[c][k]);
         if (water->weight)
             moray_spline_free(water->weight[k]);
     }

@@ -83,5 +83,6 @@ int main(void)
     fail_each("the null space", false, in_null_space);
     fail_each("the form that suits", false, by_either);
     fail_each("LU", false, by_lu);
+    CHECK(uneven == 0, "what a run takes it frees, but for %ld", uneven);
     return tap_done();
 }
