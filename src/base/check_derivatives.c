@@ -141,7 +141,7 @@ static void check_both(struct difference *d, const double *weight, double *value
 moray_status moray_check_derivatives(const moray_map *map, const double *in, const double *weight,
                                      moray_derivative_report *report)
 {
-    const size_t m = (size_t)(map->n_in > map->n_out ? map->n_in : map->n_out) + 1;
+    const size_t m = (size_t)(map->n_in > map->n_out ? map->n_in : map->n_out);
     const size_t nnz = (size_t)(map->jac.nnz > map->hess.nnz ? map->jac.nnz : map->hess.nnz) + 1;
     double *block = calloc(m * (6 + levels * levels) + 2 * nnz, sizeof *block);
     if (!block)

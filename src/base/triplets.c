@@ -64,7 +64,7 @@ moray_status moray_triplets_close(triplets *t)
 {
     const int n = t->puts, rows = largest(t->row, n) + 1, cols = largest(t->col, n) + 1;
     const int keys = rows > cols ? rows : cols;
-    int *order = malloc((2 * (size_t)n + (size_t)keys + 2) * sizeof *order);
+    int *order = malloc((2 * (size_t)n + (size_t)keys + 1) * sizeof *order);
     t->slot = malloc(((size_t)n + 1) * sizeof *t->slot);
     moray_status status = moray_error(MORAY_MEMORY, "no memory for a sparse matrix of %d contributions", n);
     if (order && t->slot && !t->failed) {

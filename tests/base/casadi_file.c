@@ -7,7 +7,7 @@
 #define EXPORT __attribute__((visibility("default")))
 typedef long long integer;
 static const double g = 9.80665;
-static int holders, memories;
+static int holders, memories, slides;
 
 static const integer state[] = {3, 1, 1}, control[] = {1, 1, 0, 1, 0}; // dense in short, dense in full
 static const integer by_state[] = {3, 3, 0, 0, 0, 2, 0, 1}, by_control[] = {3, 1, 0, 3, 0, 1, 2};
@@ -19,6 +19,7 @@ static const integer state_out[] = {3, 3, 0, 0, 0, 0}, control_out[] = {1, 3, 0,
 static int slide(const double **arg, double **res)
 {
     const double v = arg[0][2], u = arg[1][0];
+    slides++;
     res[0][0] = v * sin(u);
     res[0][1] = -v * cos(u);
     res[0][2] = g * cos(u);
@@ -71,6 +72,11 @@ EXPORT void wire_release(int mem);
 EXPORT void wire_release(int mem)
 {
     memories -= mem >= 0;
+}
+EXPORT int wire_calls(void);
+EXPORT int wire_calls(void)
+{
+    return slides;
 }
 EXPORT int wire_balance(void);
 EXPORT int wire_balance(void)

@@ -115,19 +115,21 @@ static void test_couple(const char *name, double hessian_error)
     moray_map_release(&map);
 }
 
-// A Jacobian that takes no results needs none.
-static void test_calls(void *file)
+// A Jacobian that takes no results needs none, nor does a Hessian, whatever its weights.
+static void test_calls(void *file, const char *name, const char *counter, bool bends)
 {
-    const moray_casadi_spec spec = {.path = object, .name = "lame"};
-    const double in[8] = {0};
+    const moray_casadi_spec spec = {.path = object, .name = name};
+    const double in[8] = {0}, weight[RESULTS] = {1, 2, 3};
     double values[9];
     int (*calls)(void);
     moray_map map;
-    *(void **)&calls = dlsym(file, "lame_calls");
-    CHECK_OK(moray_map_from_casadi(&map, &spec), "lame");
+    *(void **)&calls = dlsym(file, counter);
+    CHECK_OK(moray_map_from_casadi(&map, &spec), name);
     const int before = calls();
     map.jacobian(map.self, in, values);
-    CHECK(calls() == before, "a Jacobian from the arguments alone calls for no results: %d", calls() - before);
+    if (bends)
+        map.hessian(map.self, in, weight, values);
+    CHECK(calls() == before, "derivatives from the arguments alone call for no results: %d", calls() - before);
     moray_map_release(&map);
 }
 
@@ -167,7 +169,8 @@ int main(int argc, char **argv)
     test_places();
     test_couple("couple", 1e-12);
     test_couple("lame", 1e-7);
-    test_calls(file);
+    test_calls(file, "lame", "lame_calls", false);
+    test_calls(file, "wire", "wire_calls", true);
     test_scalar();
     test_refusal("/nowhere.so", "wire", NULL, MORAY_IO, "/nowhere.so: cannot be loaded");
     test_refusal(object, "wired", NULL, MORAY_INPUT, "no function wired");

@@ -95,8 +95,58 @@ static void test_edges(void)
     moray_map_release(&map);
 }
 
+// Where x0 x1 is flat in x0, it bends nothing that is felt there; the other outputs keep the two inputs apart.
+static void flat(void *self, const double complex *x, double complex *out)
+{
+    (void)self;
+    out[0] = x[0] * x[1];
+    out[1] = x[0] + x[1];
+    out[2] = x[0];
+}
+
+static void flat_behind(void *self, const double complex *x, double complex *out)
+{
+    const double complex turned[] = {x[1], x[0]};
+    flat(self, turned, out);
+}
+
+static void test_flat(void)
+{
+    const double at[] = {0.5, 0}, turned[] = {0, 0.5};
+    for (int k = 0; k < 2; k++) {
+        moray_map map = look(2, 3, k ? flat_behind : flat, k ? turned : at);
+        const int own = k, other = 1 - k;
+        CHECK(map.jac.nnz == 4 && has(&map.jac, 0, other) && has(&map.jac, 1, own) && has(&map.jac, 1, other) &&
+                  has(&map.jac, 2, own),
+              "%d slopes", map.jac.nnz);
+        CHECK(map.hess.nnz == 0, "%d bends", map.hess.nnz);
+        moray_map_release(&map);
+    }
+}
+
+// A slope that bends where there is no value.
+static void holed(void *self, const double complex *x, double complex *out)
+{
+    (void)self;
+    const bool within = creal(x[0]) < 0, on_axis = cimag(x[0]) == 0 && cimag(x[1]) == 0;
+    out[0] = within ? (on_axis ? NAN : x[0] + x[1] * x[1]) : x[0] + x[1];
+    out[1] = x[0];
+}
+
+static void test_holed(void)
+{
+    const double at[] = {1, 1, -1, 1};
+    moray_map map;
+    CHECK_OK(moray_complex_map_new(&map, 2, 2, holed, NULL, NULL, &(struct numeric_probe){.points = at, .n = 2}),
+             "a map by what is at two points");
+    CHECK(map.jac.nnz == 3 && map.hess.nnz == 0, "%d slopes, %d bends", map.jac.nnz, map.hess.nnz);
+    moray_map_release(&map);
+}
+
 int main(void)
 {
+    test_flat();
+    test_holed();
     test_lines();
     test_together();
     test_edges();

@@ -17,7 +17,7 @@ static const double bends[N_OUT][N_IN][N_IN] = {{{-0.7, 0.3, 0}, {0.3, 0, -1.1},
                                                 {{0.9, 0, -0.6}, {0, 0, 0}, {-0.6, 0, -0.8}}};
 
 static double extra_slope[N_OUT], extra_bend[N_OUT], called_at[CALLS][N_IN];
-static int calls, looks, dense_looks;
+static int calls, looks, dense_looks, undefined = -1; // output that has no value, but slopes
 
 static double slope_at(int i, int j, const double *in)
 {
@@ -45,6 +45,7 @@ static void value(void *self, const double *in, double *out)
         out[i] = shift[i] + bend_along(i, in, in) / 2;
         for (int j = 0; j < N_IN; j++)
             out[i] += slopes[i][j] * in[j];
+        out[i] = i == undefined ? NAN : out[i];
     }
 }
 
@@ -185,6 +186,13 @@ static void test_doubts(void)
         extra_bend[1 - i] = 1;
         CHECK(!moray_map_pattern_holds(&map, point), "but the other's does");
         extra_slope[i] = extra_bend[1 - i] = 0;
+        undefined = i;
+        extra_slope[i] = 1;
+        CHECK(moray_map_pattern_holds(&map, point), "nor does what has no value");
+        extra_slope[i] = 0, extra_slope[1 - i] = 1;
+        CHECK(!moray_map_pattern_holds(&map, point), "beside which the other's slope does");
+        extra_slope[1 - i] = 0;
+        undefined = -1;
     }
     moray_map_release(&map);
 }
