@@ -68,7 +68,7 @@ moray_status moray_ldl_plan_entries(struct plan *plan, const moray_pattern *patt
 {
     const size_t n = (size_t)plan->n, puts = (size_t)pattern->nnz;
     plan->puts = pattern->nnz;
-    plan->source = malloc((4 * puts + n + 2) * sizeof *plan->source);
+    plan->source = malloc((4 * puts + n + 1) * sizeof *plan->source);
     if (!plan->source)
         return moray_error(MORAY_MEMORY, "no memory for %d entries", pattern->nnz);
     plan->slot = plan->source + puts;

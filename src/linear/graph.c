@@ -81,7 +81,7 @@ moray_status moray_ldl_graph_new(struct graph *graph, int n, const moray_pattern
 {
     int *seen = calloc((size_t)n + 1, sizeof *seen);
     moray_status status = allocate(graph, n, 2 * (size_t)pattern->nnz);
-    if (!seen && !moray_failed(status))
+    if (!seen)
         status = moray_error(MORAY_MEMORY, "no memory to order a matrix of %d rows", n);
     if (!moray_failed(status)) {
         count(graph, pattern);

@@ -45,6 +45,18 @@ static inline void start(sample *s, int n)
     memset(s->A, 0, sizeof s->A);
 }
 
+// Constraints of all variables, entries of either sign; of two of the variables they are about 1, of others `distance`.
+static inline void put_constraints(sample *s, int one, int other, double distance)
+{
+    const int variables = s->n - s->m;
+    for (int c = 0; c < s->m; c++) {
+        const double common = tap_random(&s->seed, 0.5, 1);
+        for (int j = 0; j < variables; j++)
+            put(s, variables + c, j,
+                (pick(s, 2) ? 1 : -1) * (j == one || j == other ? common : distance) * tap_random(&s->seed, 0.3, 1));
+    }
+}
+
 // The largest residual of A x = b, each over what its row adds up.
 static inline double residual_of(const sample *s, const double *x, const double *b)
 {

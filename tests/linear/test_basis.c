@@ -279,8 +279,38 @@ static void test_nearly(void)
     CHECK(alike < all / 10, "and not alike, but for %d", alike);
 }
 
+// [1 2; 2 v], one variable over: what is singular stays so, asked again; what is factored is not factored again, which
+// shows where the factors are of another matrix by now.
+static void test_factored(void)
+{
+    static sample s;
+    struct basis basis;
+    bool found;
+    const double other[] = {4, 0, 0, 8};
+    double x[] = {4, 8};
+    s.m = 2;
+    start(&s, 5);
+    for (int c = 0; c < 2; c++)
+        for (int j = 0; j < 2; j++)
+            put(&s, 3 + c, j, c + j == 0 ? 1 : c + j == 1 ? 2 : 5);
+    CHECK_OK(moray_basis_choose(&basis, 3, 2, &s.pattern, s.value, 0, &found), "chosen");
+    CHECK(found && basis.place[2] == -1, "what is in no constraint is over");
+    CHECK_OK(moray_basis_factor(&basis, s.value), "regular");
+    CHECK_OK(moray_sparse_lu_factor(basis.lu, other), "another in its place");
+    CHECK_OK(moray_basis_factor(&basis, s.value), "the same once more");
+    CHECK_OK(moray_sparse_lu_solve(basis.lu, 1, x), "solved");
+    CHECK(x[0] == 1 && x[1] == 1, "by the factors that there were: %g, %g", x[0], x[1]);
+    s.value[3] = 4;
+    for (int again = 0; again < 2; again++)
+        CHECK(moray_basis_factor(&basis, s.value).code == MORAY_NUMERIC, "singular, time %d", again);
+    s.value[3] = 5;
+    CHECK_OK(moray_basis_factor(&basis, s.value), "regular again");
+    moray_basis_free(&basis);
+}
+
 int main(void)
 {
+    test_factored();
     test_nearly();
     test_own();
     test_just_strong();

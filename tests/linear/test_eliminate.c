@@ -298,8 +298,24 @@ static void test_ties(void)
     }
 }
 
+// A column that is as good as the threshold, and no better, is left to the parent, unless there is none.
+static void test_just_threshold(void)
+{
+    static struct made made;
+    for (int k = 0; k < 4; k++) {
+        const bool root = k >= 2;
+        struct full full = {.width = root ? 2 : 1, .height = 2, .index = {100, 101}};
+        full.M[0][0] = k % 2 ? nextafter(0.0625, 1) : 0.0625;
+        full.M[0][1] = full.M[1][0] = 1;
+        make(&made, &full, 0.0625, root);
+        moray_ldl_front_eliminate(&made.ldl, 0);
+        CHECK(made.front.pivots == (root ? 2 : k), "%d pivots", made.front.pivots);
+    }
+}
+
 int main(void)
 {
+    test_just_threshold();
     test_ties();
     static const double thresholds[] = {0.01, 0.1, 0.25, 0.45};
     for (int k = 0; k < 4; k++)

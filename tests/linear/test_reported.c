@@ -96,12 +96,7 @@ static void make(sample *s, unsigned long long seed, double distance)
         if (i > 0)
             put(s, i, i - 1, tap_random(&s->seed, -1, 1));
     }
-    for (int c = 0; c < s->m; c++) {
-        const double common = tap_random(&s->seed, 0.5, 1);
-        for (int j = 0; j < variables; j++)
-            put(s, variables + c, j,
-                (pick(s, 2) ? 1 : -1) * (j == one || j == other ? common : distance) * tap_random(&s->seed, 0.3, 1));
-    }
+    put_constraints(s, one, other, distance);
 }
 
 // Over what each row makes of the largest of the solution, and its right-hand side; summed up in the same order.
