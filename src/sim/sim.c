@@ -79,7 +79,6 @@ moray_status moray_sim_start(moray_sim *sim, double t, const double *x)
     }
     memmove(sim->x, x, (size_t)sim->ode.n * sizeof *sim->x);
     sim->t = t;
-    sim->outside = false;
     return sim->method->restart(sim);
 }
 

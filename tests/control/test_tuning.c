@@ -97,7 +97,8 @@ enum { ROOM = 20000 };
 typedef struct diary {
     int n, calls;
     double x[ROOM][MORAY_TUNED_NUMBERS];
-    int last; // after so many it is told to end; 0: never
+    double least;      // of all costs so far
+    int last, refused; // after so many calls it is told to end, 0: never; how often
 } diary;
 
 // A curved valley in the first two numbers, a bowl in all others.
@@ -112,13 +113,16 @@ static bool valley(void *self, const double *x, double *cost)
         const double off = j == 1 ? 5 * (x[1] - x[0] * x[0]) : x[j] - 0.3;
         *cost += off * off;
     }
+    d->least = d->calls == 1 ? *cost : fmin(d->least, *cost);
     return true;
 }
 
 static bool until(void *observer)
 {
-    const diary *d = observer;
-    return d->last == 0 || d->calls < d->last;
+    diary *d = observer;
+    const bool goes_on = d->last == 0 || d->calls < d->last;
+    d->refused += !goes_on;
+    return goes_on;
 }
 
 // g^(n + 1) = g + 1, by bisection.
@@ -194,6 +198,38 @@ static void test_precise(int n)
         CHECK(moray_tune(&problem, &settings, NULL, 0, x, &info).code == MORAY_INTERRUPTED && d.calls == ends[k] &&
                   info.evaluations == d.calls,
               "told to end after %d of %d calls", ends[k], calls);
+    }
+}
+
+// Whenever it is told to end, the best so far is what it has found; told so once, a search asks no more.
+static void test_ended(void)
+{
+    static diary d;
+    const moray_tuned_number all[] = {{MORAY_TUNED_LINEAR, -1, 2, 0}, {MORAY_TUNED_LINEAR, -1, 2, 0}};
+    const moray_tuning_problem problem = {.n = 2, .number = all, .cost = valley, .self = &d};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    double x[2];
+    settings.starts = 3, settings.evaluations = 5, settings.jobs = 1;
+    settings.go_on = until;
+    settings.observer = &d;
+    for (int remembers = 0; remembers < 2; remembers++) {
+        settings.remembers = remembers;
+        d = (diary){.n = 2};
+        CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x, &info), "tunes");
+        const int calls = d.calls;
+        int wrong = 0;
+        for (int last = 1; last < calls; last++) {
+            d = (diary){.n = 2, .last = last};
+            wrong += moray_tune(&problem, &settings, NULL, 0, x, &info).code != MORAY_INTERRUPTED;
+            const double least = d.least;
+            double cost;
+            d.last = 0;
+            valley(&d, x, &cost);
+            wrong += info.cost != least || cost != least;
+        }
+        CHECK(wrong == 0 && calls > 100, "of %d calls: the best so far, but for %d", calls, wrong);
+        CHECK(d.refused == 1, "told so at its last call it asks once: %d", d.refused);
     }
 }
 
@@ -307,6 +343,7 @@ int main(void)
         test_looks(n);
     test_precise(1);
     test_precise(3);
+    test_ended();
     test_ranges();
     test_remembers(1);
     test_remembers(3);

@@ -185,8 +185,10 @@ run --set raise=2 --out twice
 check "SIGINT twice: ends at once, nothing is left" eval '[ $code -eq 130 ] && [ ! -s out ] && [ ! -e twice ]'
 run --set raise=2 --set signal=15 --out twice
 check "SIGTERM twice, too" eval '[ $code -eq 143 ] && [ ! -s out ] && [ ! -e twice ]'
-run --set undefined=1
+run --set undefined=1 --out reason
 check "functions not finite at the guess: exit 1: $(cat err)" eval '[ $code -eq 1 ] && says "not finite"'
+check "which is left with the settings, and nothing else" eval '[ "$(ls -A reason | tr "\n" " ")" = "run.ini summary.json " ] &&
+    grep -q "^undefined = 1" reason/run.ini && grep -q "\"reason\":.*not finite" reason/summary.json'
 for wrong in --links=3 --robot=x --current=1,1; do
     run $wrong
     check "no robots here: $(cat err)" eval '[ $code -eq 2 ] && says "unknown option"'

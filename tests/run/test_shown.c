@@ -337,11 +337,26 @@ static void test_kept(const rig *r)
         CHECK(moray_failed(moray_check_starts(k & 1 ? "a" : "", k & 2 ? "b" : "")) == (k == 3), "only one of both");
 }
 
+// Of observations that are in the objective, and of none that events alone see.
+static void test_fitted(rig *r)
+{
+    for (int apart = 0; apart < 2; apart++) {
+        phases[1].observed.events_only = apart;
+        r->run.fitted = false;
+        CHECK_OK(moray_run_fit(&r->run), "looked for");
+        CHECK(r->run.fitted == !apart, "intervals of %s", apart ? "nothing" : "what is fitted");
+        if (r->run.fitted)
+            moray_fit_free(&r->run.fit);
+    }
+    phases[1].observed.events_only = false;
+}
+
 int main(void)
 {
     rig r;
     close(mkstemp(path));
     rig_new(&r, 3);
+    test_fitted(&r);
     complete(&r);
     test_tables(&r);
     test_summary(&r);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "moray/sim.h"
+#include "sim/sim_version.h"
 #include "sim/times.h"
 
 static void says(moray_status status, moray_code code, const char *text)
@@ -87,7 +88,9 @@ static void test_states(moray_sim_method method)
         double x[3] = {1, 2, 3};
         CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 3, .rhs = one_of_three, .self = &i}, &settings), "new");
         x[i] = NAN;
-        CHECK(moray_sim_start(sim, 0, x).code == MORAY_NUMERIC, "no start from a NaN");
+        char text[100];
+        snprintf(text, sizeof text, "simulation cannot start at t = 0.5: x[%d] = nan", i);
+        says(moray_sim_start(sim, 0.5, x), MORAY_NUMERIC, text);
         x[i] = i + 1;
         CHECK_OK(moray_sim_start(sim, 0, x), "start");
         const moray_status status = moray_sim_advance(sim, 2);
@@ -106,11 +109,59 @@ static void test_states(moray_sim_method method)
     moray_sim_free(sim);
 }
 
+// The same, whose first question after the third has no answer where that is asked for.
+typedef struct interrupted {
+    int asked, refused;
+    bool outside;
+} interrupted;
+
+static bool interrupted_explosion(double t, const double *x, double *dx, void *self)
+{
+    interrupted *e = self;
+    explosion(t, x, dx, NULL);
+    return ++e->asked != e->refused && !(e->outside && t > 0.5);
+}
+
+// What once had no answer, but had one with a shorter step, or before the simulation began anew, is not why it stops.
+static void test_forgotten(moray_sim_method method)
+{
+    moray_sim_settings settings = moray_sim_settings_default();
+    settings.method = method;
+    settings.rtol = settings.atol = 1e-4;
+    for (int k = 0; k < 2; k++) {
+        interrupted e = {.refused = k ? 0 : 4, .outside = k};
+        moray_sim *sim;
+        CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 1, .rhs = interrupted_explosion, .self = &e}, &settings), "new");
+        CHECK_OK(moray_sim_start(sim, 0, (double[]){1}), "start");
+        if (k) {
+            const moray_status first = moray_sim_advance(sim, 2);
+            CHECK(strstr(first.text, "outside its domain or not finite") != NULL, "%s", first.text);
+            e.outside = false;
+            CHECK_OK(moray_sim_start(sim, 0, (double[]){1}), "start anew");
+        }
+        const moray_status status = moray_sim_advance(sim, 2);
+        CHECK(status.code == MORAY_NUMERIC && strstr(status.text, "with ever shorter steps"), "%s", status.text);
+        moray_sim_free(sim);
+    }
+}
+
+static void test_version(void)
+{
+    char version[32] = "none", none[2] = "x";
+    moray_sundials_version(version, sizeof version);
+    CHECK(version[0] >= '1' && version[0] <= '9' && strchr(version, '.'), "SUNDIALS %s", version);
+    moray_sundials_version(none, sizeof none);
+    CHECK(none[0] == 0, "a version that has no room is empty: %c", none[0]);
+}
+
 int main(void)
 {
+    test_version();
     test_settings();
     test_times();
     for (int method = MORAY_SIM_EXPLICIT; method <= MORAY_SIM_TR_BDF2; method++)
         test_states((moray_sim_method)method);
+    for (int method = MORAY_SIM_EXPLICIT; method <= MORAY_SIM_TR_BDF2; method++)
+        test_forgotten((moray_sim_method)method);
     return tap_done();
 }

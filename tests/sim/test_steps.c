@@ -14,7 +14,7 @@ typedef struct equation {
     int refused;           // the question that has no answer, from 1 on
     bool broken;           // no answers but the first
     int n;
-    double asked[MOST];
+    double asked[MOST], told[MOST]; // the first state's slope
 } equation;
 
 static bool slope(double t, const double *x, double *dx, void *self)
@@ -23,8 +23,10 @@ static bool slope(double t, const double *x, double *dx, void *self)
     dx[0] = dx[1] = NAN; // before x is read, which stands apart
     for (int i = 0; i < 2; i++)
         dx[i] = e->rate * x[i] + e->power[i] * pow(t, 7);
-    if (e->n < MOST)
+    if (e->n < MOST) {
+        e->told[e->n] = dx[0];
         e->asked[e->n++] = t;
+    }
     return e->n != e->refused && !(e->broken && e->n > 1);
 }
 
@@ -131,8 +133,8 @@ static void check_steps(course *c, const equation *e, double max_step, double st
           e->n);
 }
 
-// Errors in two states of which either is the worse, with a stop behind which they are a thousand times as large, so
-// that what step was to be tried is rejected.
+// Errors in two states of which either is the worse, with stops, of which two are close to each other, behind which
+// they are a thousand times as large, so that what step was to be tried is rejected.
 static void check_control(double first, double second, double max_step, bool rejected)
 {
     equation e = {.power = {first, second}};
@@ -141,12 +143,35 @@ static void check_control(double first, double second, double max_step, bool rej
     course c = {.step = 1e-6, .before = 1, .at = 2};
     CHECK_OK(moray_sim_advance(sim, 0.7), "advance");
     check_steps(&c, &e, max_step, 0.7, per_step);
+    CHECK_OK(moray_sim_advance(sim, 0.7 + 1.0 / 1024), "a little further");
+    check_steps(&c, &e, max_step, 0.7 + 1.0 / 1024, per_step);
     for (int i = 0; i < 2; i++)
         e.power[i] *= 1000;
     CHECK_OK(moray_sim_advance(sim, 1.5), "advance");
     check_steps(&c, &e, max_step, 1.5, 1000 * per_step);
     CHECK((c.rejections > 0) == rejected, "%d rejected", c.rejections);
     moray_sim_free(sim);
+}
+
+// A step whose error is the tolerance to the last bit is taken: the tolerance is what a first run's slopes make of it.
+static void test_just_good(void)
+{
+    const double none[2] = {0};
+    double tolerance = 1e-60;
+    for (int round = 0; round < 2; round++) {
+        equation e = {.power = {1, 0.5}};
+        moray_sim *sim = started(&e, 1e-14, tolerance, 0, none);
+        CHECK_OK(moray_sim_advance(sim, 1e-3), "advance");
+        const double h = e.asked[1 + LAST];
+        CHECK_RELATIVE(h, 1e-4, 1e-12, "the first step tried");
+        CHECK((e.asked[2 + LAST] >= h) == (round > 0), "is taken the second time: %g", e.asked[2 + LAST]);
+        double error = 0;
+        for (int s = 0; s < PD_STAGES; s++)
+            if (pd_b[s] != pd_embedded[s])
+                error += h * (pd_b[s] - pd_embedded[s]) * (s > 0 ? e.told[1 + s] : e.told[0]);
+        tolerance = fabs(error);
+        moray_sim_free(sim);
+    }
 }
 
 // A question without an answer, the fourth of a step, makes the step a quarter, after which it does not grow at once.
@@ -202,6 +227,7 @@ int main(void)
     check_control(1, 1000, 0, true);
     check_control(1, 1000, 0.05, false);
     test_refused();
+    test_just_good();
     test_started_anew();
     test_smallest_step();
     return tap_done();
