@@ -16,7 +16,7 @@ struct columns {
 static moray_status take(const moray_csv *csv, const char *const *names, int n, struct columns *c)
 {
     c->rows = csv->rows;
-    c->number = calloc((size_t)n * (size_t)csv->rows + 1, sizeof *c->number);
+    c->number = calloc((size_t)n * (size_t)csv->rows, sizeof *c->number);
     if (!c->number)
         return moray_error(MORAY_MEMORY, "no memory for a table of %d lines", csv->rows);
     for (int j = 0; j < n; j++) {
@@ -112,7 +112,7 @@ moray_status moray_surface_read(moray_surface **surface, const char *path, const
         status = take(&csv, names, 3, &c);
     if (!moray_failed(status)) {
         int nx = 0, ny = 0;
-        grid = calloc(3 * (size_t)c.rows + 1, sizeof *grid);
+        grid = calloc(3 * (size_t)c.rows, sizeof *grid);
         status = grid ? fill_grid(&csv, &c, grid, &nx, &ny) : moray_error(MORAY_MEMORY, "no memory for the table");
         if (!moray_failed(status))
             status = moray_surface_new(surface, nx, grid, ny, grid + c.rows, grid + 2 * c.rows, ends, outside);

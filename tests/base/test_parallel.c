@@ -160,8 +160,32 @@ static void test_begun(void)
     sigaction(SIGCHLD, &(struct sigaction){.sa_handler = SIG_DFL}, NULL);
 }
 
+static int shared_blocks(void)
+{
+    char line[500];
+    int n = 0;
+    FILE *maps = fopen("/proc/self/maps", "r");
+    while (maps && fgets(line, sizeof line, maps))
+        n += strstr(line, "/dev/zero") != NULL;
+    if (maps)
+        fclose(maps);
+    return n;
+}
+
+// What the processes share is given back.
+static void test_shared(void)
+{
+    const int before = shared_blocks();
+    for (int k = 0; k < 3; k++) {
+        int results[5] = {0};
+        CHECK_OK(moray_parallel(5, sizeof *results, results, add_to, NULL, 2), "added");
+    }
+    CHECK(shared_blocks() == before, "%d blocks more", shared_blocks() - before);
+}
+
 int main(void)
 {
+    test_shared();
     test_begun();
     test_counts();
     test_processors();

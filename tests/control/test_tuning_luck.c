@@ -11,6 +11,7 @@ enum { ESTIMATES = 3, LUCKY = 2 };
 typedef struct book {
     int costs, confirmations, of[ESTIMATES];
     double steps; // added per estimate
+    double level; // added to all costs
     bool never;   // other estimates have no cost there
 } book;
 
@@ -28,8 +29,9 @@ static double bowl(const double *x)
 
 static bool cost_of(void *self, const double *x, double *cost)
 {
-    ((book *)self)->costs++;
-    *cost = lucky(x[0]) ? 0.1 : bowl(x);
+    book *b = self;
+    b->costs++;
+    *cost = (lucky(x[0]) ? 0.1 : bowl(x)) + b->level;
     return true;
 }
 
@@ -39,7 +41,7 @@ static bool other(void *self, const double *x, int k, double *cost)
     book *b = self;
     b->confirmations++;
     b->of[k]++;
-    *cost = (lucky(x[0]) ? 3 : bowl(x)) + b->steps * (k + 1);
+    *cost = (lucky(x[0]) ? 3 : bowl(x)) + b->steps * (k + 1) + b->level;
     return !(b->never && lucky(x[0]));
 }
 
@@ -73,5 +75,8 @@ int main(void)
     book apart = {.steps = 0.1};
     info = tune(&apart, LUCKY, x);
     CHECK_NEAR(info.cost, bowl(x) + LUCKY * 0.1, 1e-12, "that of the largest which is not like it");
+    book below = {.steps = 0.01, .level = -5};
+    info = tune(&below, ESTIMATES, x);
+    CHECK_NEAR(info.cost, bowl(x) - 5, 1e-12, "of costs below zero likewise its own, which others are like");
     return tap_done();
 }

@@ -75,7 +75,8 @@ static double step_from(double t, const equation *e, int question)
 }
 
 // Each attempt is a quarter of the one before, down to a thousand times what the clock tells apart at t and on the way.
-static void check_end(double t, double way)
+// Returns the last one.
+static double check_end(double t, double way)
 {
     equation e = {.beyond = t, .refused = {-1, -1}};
     moray_sim *sim = started(&e, MORAY_SIM_ARKODE, t);
@@ -94,6 +95,7 @@ static void check_end(double t, double way)
     CHECK(attempts > 5 && before > 0.98 * least && before < 4.08 * least, "the last of %d: %g of %g", attempts, before,
           least);
     moray_sim_free(sim);
+    return before;
 }
 
 // Near a stop what was to be tried is longer than the way, and a quarter of the way is next.
@@ -134,6 +136,7 @@ int main(void)
     check_end(0, 64);
     check_end(-1000, 1);
     check_end(1000, 1);
+    CHECK_RELATIVE(check_end(1024, 1000 * 0x1p-12) / (1e3 * DBL_EPSILON * 1024), 1, 1e-2, "the least itself is tried");
     test_near_stop();
     test_on();
     return tap_done();

@@ -145,6 +145,27 @@ static void test_forgotten(moray_sim_method method)
     }
 }
 
+// No slope but past 0.5, and there up to 1 and down from it by much.
+static bool torn(double t, const double *x, double *dx, void *self)
+{
+    (void)self;
+    dx[0] = t <= 0.5 ? 0 : x[0] > 1 - 1e-12 ? -1e15 : 2e15;
+    return true;
+}
+
+static void test_torn(void)
+{
+    const moray_sim_settings settings = {.method = MORAY_SIM_TR_BDF2, .rtol = 1e-6, .atol = 1e-6, .max_steps = 1000};
+    moray_sim *sim;
+    CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 1, .rhs = torn}, &settings), "new");
+    CHECK_OK(moray_sim_start(sim, 0, (double[]){1}), "start");
+    CHECK_OK(moray_sim_advance(sim, 0.5), "to where it is torn");
+    says(moray_sim_advance(sim, 1), MORAY_NUMERIC,
+         "simulation stopped at t = 0.5 on its way to 1: the stage equations do not converge with ever shorter steps "
+         "(singular right-hand side?)");
+    moray_sim_free(sim);
+}
+
 static void test_version(void)
 {
     char version[32] = "none", none[2] = "x";
@@ -157,6 +178,7 @@ static void test_version(void)
 int main(void)
 {
     test_version();
+    test_torn();
     test_settings();
     test_times();
     for (int method = MORAY_SIM_EXPLICIT; method <= MORAY_SIM_TR_BDF2; method++)

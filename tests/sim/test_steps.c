@@ -42,14 +42,20 @@ static moray_sim *started(equation *e, double rtol, double atol, double max_step
 
 // ---- The first step (Hairer, Norsett and Wanner, II.4) -------------------------------------------------------------
 
-static void check_first(double rate, const double x[2], double to, double euler, double step)
+static void check_first_by(double rtol, double atol, double rate, const double x[2], double to, double euler,
+                           double step)
 {
     equation e = {.rate = rate};
-    moray_sim *sim = started(&e, 1e-3, 1e-3, 0, x);
+    moray_sim *sim = started(&e, rtol, atol, 0, x);
     CHECK_OK(moray_sim_advance(sim, to), "advance");
     CHECK_RELATIVE(e.asked[1], euler, 1e-12, "step by Euler [s]");
     CHECK_RELATIVE(e.asked[1 + LAST], step, 1e-12, "first step [s]");
     moray_sim_free(sim);
+}
+
+static void check_first(double rate, const double x[2], double to, double euler, double step)
+{
+    check_first_by(1e-3, 1e-3, rate, x, to, euler, step);
 }
 
 static void test_first(void)
@@ -68,6 +74,9 @@ static void test_first(void)
     check_first(-1.5e-9, x, 1, 1e-6, 100 * 1e-6);
     check_first(-50, little, 1, 0.01 / 50, 100 * 0.01 / 50);
     check_first(-50, less, 1, 1e-6, 100 * 1e-6);
+    // Nor does what is just that.
+    check_first_by(1e-14, 1, -50, (double[]){1e-5, 0}, 1, 1e-6, 100 * 1e-6);
+    check_first_by(1e-14, 1, 1024 * 1e-5, (double[]){1.0 / 1024, 0}, 1, 1e-6, 100 * 1e-6);
 }
 
 // ---- The steps after it --------------------------------------------------------------------------------------------
@@ -218,8 +227,50 @@ static void test_smallest_step(void)
     moray_sim_free(sim);
 }
 
+// What is no longer than a thousand times that is not tried: 1000 / 4096 s / 4^k is longer for twenty k.
+static void test_just_least(void)
+{
+    const double x[] = {1, 1};
+    equation e = {.rate = 0.01, .broken = true};
+    moray_sim *sim = started(&e, 1e-3, 1e-3, 1000 * 0x1p-12, x);
+    CHECK(moray_sim_advance(sim, 1).code == MORAY_NUMERIC, "no way");
+    CHECK(e.n == 2 + 20, "%d questions", e.n);
+    moray_sim_free(sim);
+}
+
+// A slope at the end of a step alone, as steep as the step is short: its error is twice the tolerance whatever the
+// step.
+typedef struct steep {
+    int asked;
+} steep;
+
+static bool ever_steeper(double t, const double *x, double *dx, void *self)
+{
+    steep *s = self;
+    (void)x;
+    const bool last = s->asked > 1 && (s->asked - 2) % LAST == LAST - 1;
+    dx[0] = last ? 2e-3 / fabs(pd_b[LAST] - pd_embedded[LAST]) / t : 0;
+    s->asked++;
+    return true;
+}
+
+// Sixty times.
+static void test_rejections(void)
+{
+    const moray_sim_settings settings = {.method = MORAY_SIM_EXPLICIT, .rtol = 1e-14, .atol = 1e-3, .max_steps = 1000};
+    steep s = {0};
+    moray_sim *sim;
+    CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 1, .rhs = ever_steeper, .self = &s}, &settings), "new");
+    CHECK_OK(moray_sim_start(sim, 0, (double[]){0}), "start");
+    CHECK(moray_sim_advance(sim, 1).code == MORAY_NUMERIC, "no way");
+    CHECK(s.asked == 2 + 60 * LAST, "%d questions", s.asked);
+    moray_sim_free(sim);
+}
+
 int main(void)
 {
+    test_just_least();
+    test_rejections();
     test_first();
     check_control(0, 0, 0, false);
     check_control(0, 0, 0.15, false);
