@@ -84,6 +84,24 @@ static void test_range(void)
     moray_water_free(steady);
 }
 
+// Of one time alone, by each of the functions, whatever time is asked for.
+static void test_steady(void)
+{
+    moray_water *steady = water_table(path, water_cubic, 1);
+    double V[2], W[2], own[2], d[2][MORAY_WATER_SLOPES];
+    moray_num Z[2];
+    water_cubic(0.7, -1.1, 0, own);
+    moray_water_at(steady, 0.7, -1.1, 9, V);
+    moray_water_slopes(steady, 0.7, -1.1, -8, W, d);
+    moray_water_at_complex(steady, 0.7, -1.1, 7, Z);
+    for (int c = 0; c < 2; c++) {
+        CHECK_NEAR(V[c], own[c], 1e-14, "value");
+        CHECK(W[c] == V[c] && creal(Z[c]) == V[c], "by all functions: %g, %g", W[c], creal(Z[c]));
+        CHECK(d[c][2] == 0 && d[c][6] == 0 && d[c][7] == 0 && d[c][8] == 0, "which no time changes");
+    }
+    moray_water_free(steady);
+}
+
 // ---- What does not change ------------------------------------------------------------------------------------------
 
 // In last digits neither, which a certificate would take for a slope.
@@ -175,6 +193,7 @@ int main(void)
     close(mkstemp(path));
     test_cubic();
     test_range();
+    test_steady();
     test_uniform();
     test_some();
     test_refusals();

@@ -195,8 +195,100 @@ static void test_mean(const char *scheme)
     moray_map_release(&closing);
 }
 
+// An orbit that cannot close: what is left of that is told as it is, whatever the scales of states.
+static void never(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    out[0] = 5 + in[0] * in[0];
+    out[1] = in[3] - in[1];
+}
+
+static void test_scales(void)
+{
+    static const double scales[][2] = {{1000, 2}, {1e-3, 3}};
+    moray_map plant, closing;
+    const double from[2] = {0.3, 0.2}, p[2] = {0, 0.7};
+    const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, resting, NULL, NULL, probe), "plant");
+    CHECK_OK(moray_map_from_complex(&closing, 6, 2, never, NULL, NULL, probe), "closing conditions");
+    for (int k = 0; k < 2; k++) {
+        moray_periodic_orbit *orbit;
+        moray_periodic_orbit_info info;
+        const moray_periodic_orbit_spec spec = {.nx = 2,
+                                                .ns = 1,
+                                                .plant = &plant,
+                                                .closing = &closing,
+                                                .scheme = "radau2",
+                                                .intervals = 4,
+                                                .scale = scales[k]};
+        CHECK_OK(moray_periodic_orbit_new(&orbit, &spec), "orbit");
+        CHECK(moray_failed(moray_periodic_orbit_solve(orbit, p, &guess, &info)), "does not close");
+        CHECK(info.residual >= 5 && info.residual < (k ? 1000 : 6), "by %g", info.residual);
+        moray_periodic_orbit_free(orbit);
+    }
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
+// ---- No end --------------------------------------------------------------------------------------------------------
+
+static void still(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self, (void)in;
+    out[0] = out[1] = 0;
+}
+
+// Of which a step of Newton's method leaves the e-th part.
+static void slow(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    out[0] = 1e9 * cexp(-in[0]);
+    out[1] = in[3] - in[1] + in[1];
+}
+
+// 5, whatever its slopes say.
+static void stuck(void *self, const double *in, double *out)
+{
+    (void)self;
+    out[0] = 5;
+    out[1] = in[1];
+}
+
+static void given_up(const moray_map *closing, int steps, double left)
+{
+    char says[100];
+    moray_map plant;
+    const double from[2] = {0, 0}, p[2] = {0, 0.7};
+    const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+    moray_periodic_orbit_info info;
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, still, NULL, NULL, probe), "plant");
+    moray_periodic_orbit *orbit = orbit_of(&plant, closing, "radau2");
+    const moray_status status = moray_periodic_orbit_solve(orbit, p, &guess, &info);
+    snprintf(says, sizeof says, "defects of %.2g are left after %d steps of Newton's method", left, steps);
+    CHECK(status.code == MORAY_NOT_SOLVED && strcmp(status.text, says) == 0, "%s, not %s", status.text, says);
+    CHECK(info.iterations == steps, "%d steps", info.iterations);
+    moray_periodic_orbit_free(orbit);
+    moray_map_release(&plant);
+}
+
+// After forty steps that each get on, or none that does.
+static void test_no_end(void)
+{
+    moray_map closing;
+    CHECK_OK(moray_map_from_complex(&closing, 6, 2, slow, NULL, NULL, probe), "closing conditions");
+    given_up(&closing, 40, 1e9 * exp(-40));
+    moray_map_release(&closing);
+    static const moray_closing_condition starts[] = {{MORAY_CLOSE_STARTS, 0, 0}, {MORAY_CLOSE_STARTS, 1, 0}};
+    CHECK_OK(moray_closing_map(&closing, 2, 1, starts, 2), "closing conditions");
+    closing.value = stuck;
+    given_up(&closing, 0, 5);
+    moray_map_release(&closing);
+}
+
 int main(void)
 {
+    test_no_end();
+    test_scales();
     test_mean("radau3");
     test_mean("gauss3");
     test_mean("lobatto4");

@@ -58,8 +58,37 @@ static moray_tuning_info tune(book *b, int confirmations, double x[2])
     return info;
 }
 
+static bool one(void *self, const double *x, double *cost)
+{
+    (void)self, (void)x;
+    *cost = 1;
+    return true;
+}
+
+static bool just_alike(void *self, const double *x, int k, double *cost)
+{
+    (void)self, (void)x, (void)k;
+    *cost = 1 + 2e-2;
+    return true;
+}
+
+// An estimate that is above a cost by 2 % is like it.
+static void test_just_alike(void)
+{
+    static const moray_tuned_number unit = {MORAY_TUNED_LINEAR, 0, 1, 0};
+    const moray_tuning_problem problem = {
+        .n = 1, .number = &unit, .cost = one, .confirmations = 1, .confirm = just_alike};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    double x;
+    settings.jobs = 1;
+    CHECK_OK(moray_tune(&problem, &settings, NULL, 0, &x, &info), "tunes");
+    CHECK(info.cost == 1, "to %g", info.cost);
+}
+
 int main(void)
 {
+    test_just_alike();
     double x[2];
     book plain = {0}, sure = {.steps = 1e-3}, never = {.never = true};
     moray_tuning_info info = tune(&plain, 0, x);
