@@ -312,7 +312,7 @@ static moray_status polish(tuning *t, int room, place *places, int n, moray_tuni
 
 static moray_status search(tuning *t, place *places, int n, int n_from, moray_tuning_info *info)
 {
-    const int starts = t->settings->starts + n_from < n ? t->settings->starts + n_from : n;
+    const int starts = t->settings->starts + n_from; // of n_from + SPREAD times as many
     const int room = t->settings->evaluations * t->problem->n;
     t->reach = 1;
     MORAY_TRY(from_each(t, look, 1, places, n, info));

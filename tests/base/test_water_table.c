@@ -64,6 +64,11 @@ static void test_range(void)
     moray_water_range(moving, low, high);
     for (int a = 0; a < 3; a++) {
         CHECK(low[a] == ends[0][a] && high[a] == ends[1][a], "axis %d from %g to %g", a, low[a], high[a]);
+        for (int side = 0; side < 2; side++) {
+            double at[3] = {inside[0], inside[1], inside[2]};
+            at[a] = side ? ends[1][a] + 1e-9 : ends[0][a] - 1e-9;
+            CHECK(moray_water_covers(moving, at[0], at[1], at[2]), "as far as rounding goes: %.10g", at[a]);
+        }
         for (int side = 0; side < 2; side++)
             for (int beyond = -1; beyond <= 1; beyond += 2) {
                 double at[3];
