@@ -28,7 +28,7 @@ static void test_texts(void)
 
 static void test_quantiles(void)
 {
-    double odd[] = {5, 1, 3}, even[] = {4, 1, 3, 2}, single[] = {7};
+    double odd[] = {5, 1, 3}, even[] = {4, 1, 3, 2, NAN}, single[] = {7, NAN};
     CHECK(moray_quantile(odd, 3, 0.5) == 3 && odd[0] == 1 && odd[2] == 5, "the middle one of three, which are sorted");
     CHECK(moray_quantile(even, 4, 0.5) == 2.5, "half-way between the middle ones of four");
     CHECK(moray_quantile(even, 4, 0) == 1 && moray_quantile(even, 4, 1) == 4, "the ends");
