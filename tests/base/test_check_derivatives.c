@@ -146,6 +146,28 @@ static void nothing(void *self, const double *x, const double *w, double *values
     (void)self, (void)x, (void)w, (void)values;
 }
 
+static void zeros(void *self, const double *x, double *y)
+{
+    (void)self, (void)x;
+    y[0] = y[1] = 0;
+}
+
+// Of two that are as wrong the first is told.
+static void test_first(void)
+{
+    int row[] = {0, 1}, col[] = {0, 0};
+    const moray_map map = {.n_in = 1,
+                           .n_out = 2,
+                           .jac = {.nnz = 2, .row = row, .col = col},
+                           .value = zeros,
+                           .jacobian = half,
+                           .hessian = nothing};
+    const double x = 1;
+    moray_derivative_report report;
+    CHECK_OK(moray_check_derivatives(&map, &x, weight, &report), "checked");
+    CHECK(report.jacobian_error == 0.5 && report.jacobian_row == 0, "row %d", report.jacobian_row);
+}
+
 // Rounding of a value leaves its slope in doubt by as much as it makes of the last difference; the other's it leaves.
 static void test_doubt(void)
 {
@@ -248,6 +270,7 @@ int main(void)
     test_more_outputs();
     test_none();
     test_doubt();
+    test_first();
     test_jacobian();
     test_hessian();
     test_missing();

@@ -143,8 +143,27 @@ static void test_holed(void)
     moray_map_release(&map);
 }
 
+// Of what never changes nothing is missing.
+static void constant(void *self, const double complex *x, double complex *out)
+{
+    (void)self;
+    out[0] = 3;
+    out[1] = 2 * x[0];
+    out[2] = 0;
+}
+
+static void test_constant(void)
+{
+    const double at = 0.5, elsewhere = -7;
+    moray_map map = look(1, 3, constant, &at);
+    CHECK(map.jac.nnz == 1 && map.hess.nnz == 0, "%d slopes, %d bends", map.jac.nnz, map.hess.nnz);
+    CHECK(moray_map_pattern_holds(&map, &elsewhere), "which holds elsewhere");
+    moray_map_release(&map);
+}
+
 int main(void)
 {
+    test_constant();
     test_flat();
     test_holed();
     test_lines();

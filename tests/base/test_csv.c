@@ -114,6 +114,7 @@ static void test_refused(void)
         {"a,b\n1,2\n3\n", ":3: 1 field, but line 1 names 2 columns"},
         {"a,b\n1,2,3\n", ":2: 3 fields, but line 1 names 2 columns"},
         {"a,\n1,2\n", ":1: column 2 has no name"},
+        {",b\n1,2\n", ":1: column 1 has no name"},
         {"a,b,a\n1,2,3\n", ":1: column a is named twice"},
         {"a,\"b\n1,2\n", ":1: field 2: quotes must surround the whole field"},
         {"a,b\n1,2\"\n", ":2: field 2: quotes"},

@@ -29,6 +29,7 @@ int main(void)
     status = moray_error(MORAY_INPUT, "%s", "\"a\r\nb\tc\033d\177\303\251\"");
     CHECK(strcmp(status.text, "\"a  b c?d?\303\251\"") == 0, "a text is one line: %s", status.text);
     CHECK(strcmp(moray_code_text(MORAY_INTERRUPTED), "interrupted") == 0, "texts follow the codes");
+    CHECK(strcmp(moray_code_text((moray_code)(MORAY_INTERRUPTED + 1)), "unknown code") == 0, "as far as they go");
     CHECK(strcmp(moray_code_text((moray_code)99), "unknown code") == 0, "an unknown code has a text");
     return tap_done();
 }
