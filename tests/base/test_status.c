@@ -26,6 +26,12 @@ int main(void)
     const char *cut = moray_error(MORAY_INPUT, "%s", lengthy).text, *end = strrchr(cut, 'x');
     CHECK(strcmp(end + 1, " ...") == 0 && (end - cut) % 4 == 2 && strlen(cut) > sizeof status.text - 9,
           "behind a whole word, and says so: %s", end - 6);
+    for (size_t length = sizeof status.text - 1; length <= sizeof status.text; length++) {
+        const bool fits = length < sizeof status.text;
+        status = moray_error(MORAY_INPUT, "%.*s", (int)length, lengthy);
+        CHECK((strcmp(status.text + strlen(status.text) - 4, " ...") != 0) == fits, "a text of %zu bytes %s", length,
+              fits ? "fits" : "is cut");
+    }
     status = moray_error(MORAY_INPUT, "%s", "\"a\r\nb\tc\033d\177\303\251\"");
     CHECK(strcmp(status.text, "\"a  b c?d?\303\251\"") == 0, "a text is one line: %s", status.text);
     CHECK(strcmp(moray_code_text(MORAY_INTERRUPTED), "interrupted") == 0, "texts follow the codes");

@@ -298,6 +298,21 @@ static void test_ties(void)
     }
 }
 
+// Of two columns that are as good, and not good, the first is taken first.
+static void test_equal(void)
+{
+    static struct made made;
+    struct full full = {.width = 2, .height = 3, .index = {100, 101}};
+    for (int k = 0; k < 2; k++) {
+        full.M[k][k] = 0.0625;
+        full.M[2][k] = full.M[k][2] = 1;
+    }
+    make(&made, &full, 0.01, false);
+    moray_ldl_front_eliminate(&made.ldl, 0);
+    CHECK(made.front.pivots == 2 && made.index[0] == 100 && made.index[1] == 101, "%d, then %d", made.index[0],
+          made.index[1]);
+}
+
 // A column that is as good as the threshold, and no better, is left to the parent, unless there is none.
 static void test_just_threshold(void)
 {
@@ -315,6 +330,7 @@ static void test_just_threshold(void)
 
 int main(void)
 {
+    test_equal();
     test_just_threshold();
     test_ties();
     static const double thresholds[] = {0.01, 0.1, 0.25, 0.45};
