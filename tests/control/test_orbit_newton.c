@@ -230,6 +230,36 @@ static void test_scales(void)
     moray_map_release(&closing);
 }
 
+// ---- Slopes of before ----------------------------------------------------------------------------------------------
+
+// Rest is at 0.01 / p.
+static void damped(void *self, const moray_num *in, moray_num *out)
+{
+    (void)self;
+    out[0] = 0.01 - in[2] * in[0];
+    out[1] = -in[1];
+}
+
+// Slopes that would overshoot are found out: it takes no more steps than from slopes of its own.
+static void test_worse(void)
+{
+    moray_map plant, closing = returning();
+    const double from[2] = {0.01, 0};
+    const moray_periodic_orbit_guess guess = {.state = start_at, .self = from};
+    moray_periodic_orbit_info own, old;
+    CHECK_OK(moray_map_from_complex(&plant, 4, 2, damped, NULL, NULL, probe), "plant");
+    moray_periodic_orbit *one = orbit_of(&plant, &closing, "radau2"), *other = orbit_of(&plant, &closing, "radau2");
+    CHECK_OK(moray_periodic_orbit_solve(one, (double[]){5, 0.7}, &guess, &own), "from there");
+    CHECK_OK(moray_periodic_orbit_solve(other, (double[]){1, 0.7}, &guess, &old), "at rest there");
+    CHECK_OK(moray_periodic_orbit_solve(other, (double[]){5, 0.7}, NULL, &old), "on from there");
+    CHECK(old.iterations == own.iterations && old.slopes == own.slopes && own.slopes == 1, "%d steps and %d",
+          old.iterations, own.iterations);
+    moray_periodic_orbit_free(one);
+    moray_periodic_orbit_free(other);
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
 // ---- No end --------------------------------------------------------------------------------------------------------
 
 static void still(void *self, const moray_num *in, moray_num *out)
@@ -288,6 +318,7 @@ static void test_no_end(void)
 int main(void)
 {
     test_no_end();
+    test_worse();
     test_scales();
     test_mean("radau3");
     test_mean("gauss3");

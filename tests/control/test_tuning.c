@@ -302,6 +302,36 @@ static void test_remembers(int n)
     CHECK(info[1].evaluations < info[0].evaluations && info[2].evaluations == info[1].evaluations, "in fewer calls");
 }
 
+// Down to a corner, into which one search steps again and again.
+static bool to_corner(void *self, const double *x, double *cost)
+{
+    diary *d = self;
+    for (int j = 0; j < d->n && d->calls < ROOM; j++)
+        d->x[d->calls][j] = x[j];
+    d->calls++;
+    *cost = 10 - x[0] - 2 * x[1] - 0.1 * x[0] * x[1];
+    return true;
+}
+
+static void test_corner(void)
+{
+    static diary d;
+    const moray_tuned_number all[] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
+    const moray_tuning_problem problem = {.n = 2, .number = all, .cost = to_corner, .self = &d};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info[2];
+    double x[2][2];
+    settings.jobs = 1;
+    for (int k = 0; k < 2; k++) {
+        d = (diary){.n = 2};
+        settings.remembers = k;
+        CHECK_OK(moray_tune(&problem, &settings, NULL, 0, x[k], &info[k]), "tunes");
+    }
+    CHECK(info[1].evaluations < info[0].evaluations, "%d and %d calls", info[0].evaluations, info[1].evaluations);
+    CHECK(info[1].cost == info[0].cost && memcmp(x[0], x[1], sizeof x[0]) == 0, "to the same: %g, %g", info[0].cost,
+          info[1].cost);
+}
+
 // ---- What is refused -----------------------------------------------------------------------------------------------
 
 static bool nowhere(void *self, const double *x, double *cost)
@@ -347,6 +377,7 @@ int main(void)
     test_ranges();
     test_remembers(1);
     test_remembers(3);
+    test_corner();
     test_refusals();
     return tap_done();
 }
