@@ -4,6 +4,7 @@
 // linker leads the solver's and the certificate's calls to the test's.
 #include "tap.h"
 
+#include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -23,6 +24,7 @@ moray_status __wrap_moray_solution_load(moray_solution **solution, const moray_o
 static moray_settings asked;
 static char scheme[40], ipopt[80];
 static const moray_guess *begun;
+static bool answers;         // interruptions, while it solves
 static bool solves;          // else it fails at once
 static int loads_intervals;  // of what is to be gone on with
 static moray_status verdict; // of the certificate
@@ -31,6 +33,9 @@ static moray_certificate certificate;
 moray_status __wrap_moray_solve(const moray_ocp *ocp, const moray_settings *settings, const moray_guess *guess,
                                 moray_solution **solution)
 {
+    struct sigaction now;
+    sigaction(SIGINT, NULL, &now);
+    answers = now.sa_handler != SIG_DFL;
     asked = *settings;
     begun = guess;
     snprintf(scheme, sizeof scheme, "%s", settings->scheme);
@@ -72,7 +77,8 @@ static void arrive(const moray_ends *at, moray_end_values *out, const void *data
     out->objective = at->phase->q[0];
 }
 
-static char said[1000]; // on standard error
+static char said[1000];     // on standard error
+static bool answered_since; // interruptions, behind the solve
 
 // Its exit code; what it prints is left out.
 static int run(const moray_settings *settings, const moray_guess *guess, const char *const *words)
@@ -99,6 +105,9 @@ static int run(const moray_settings *settings, const moray_guess *guess, const c
     if (!freopen("/dev/null", "w", stdout))
         return -1;
     const int code = moray_app_run(&(moray_app){.spec = &spec, .settings = settings, .guess = guess}, argc, argv);
+    struct sigaction now;
+    sigaction(SIGINT, NULL, &now);
+    answered_since = now.sa_handler != SIG_DFL;
     fflush(NULL);
     dup2(out, STDOUT_FILENO);
     dup2(err, STDERR_FILENO);
@@ -131,6 +140,7 @@ static moray_settings odd_settings(void)
 
 static void check_asked(const moray_settings *want, const char *want_ipopt)
 {
+    CHECK(answers && !answered_since, "interruptions are answered while it solves");
     CHECK(strcmp(scheme, want->scheme) == 0 && asked.intervals == want->intervals, "%s, %d intervals", scheme,
           asked.intervals);
     CHECK(asked.tolerance == want->tolerance && asked.mesh_tolerance == want->mesh_tolerance, "to %g, mesh to %g",

@@ -4,6 +4,8 @@
 // itself and numbers by hand.
 #include "tracks.h"
 
+#include <stdint.h>
+
 enum { NS = 2, LONGEST = 20000 };
 
 // ---- Numbers by hand -----------------------------------------------------------------------------------------------
@@ -297,6 +299,26 @@ static void test_summary(rig *r)
     r->run.fitted = r->run.certified = true;
 }
 
+// Of each parameter what is its own, and of each mesh, the first of which was not solved.
+static void test_own(rig *r)
+{
+    int meshes;
+    moray_mesh_record *mesh = (moray_mesh_record *)(uintptr_t)moray_solution_history(r->run.solution, &meshes);
+    const moray_nlp_outcome outcome = mesh[0].outcome;
+    run_tables t;
+    mesh[0].outcome = MORAY_NLP_INFEASIBLE;
+    error[1] = 0.25;
+    CHECK_OK(moray_run_tables_new(&t, &r->run), "tables");
+    check_row(&t.table[2].rows[1], "s[1]", (double[]){-0.5, 0.25, -3, 2}, 4);
+    check_meshes(r, &t.table[4]);
+    moray_run_tables_free(&t);
+    show(r);
+    check_parts(r);
+    has("\"s[1]\":{\"value\":-0.5,\"standard_error\":0.25,\"lower\":-3,\"upper\":2}");
+    error[1] = INFINITY;
+    mesh[0].outcome = outcome;
+}
+
 static void test_printed(rig *r)
 {
     r->run.common.json = false;
@@ -360,6 +382,7 @@ int main(void)
     complete(&r);
     test_tables(&r);
     test_summary(&r);
+    test_own(&r);
     test_printed(&r);
     test_lines(&r);
     test_kept(&r);

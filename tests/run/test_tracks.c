@@ -169,6 +169,36 @@ static void test_residuals(rig *r)
     table_free(&t);
 }
 
+static void see_first(const moray_node *at, moray_num *y, const void *data)
+{
+    (void)data;
+    y[0] = at->x[0] * at->x[0];
+}
+
+// Of observations in both phases each has its own rows, columns and figures.
+static void test_both(void)
+{
+    static const double at[] = {0.75, 1.5}, value[] = {0.3, 0.6};
+    rig r;
+    table t;
+    seen_first = (moray_observations){.n = 2, .ny = 1, .time = at, .value = value, .observe = see_first};
+    rig_new(&r, 0);
+    write_table(&r, moray_run_write_residuals, "residuals.csv", &t);
+    CHECK(t.csv.rows == 2 + SEEN && n_figures == 1 + CHANNELS, "%d rows, %d figures", t.csv.rows, n_figures);
+    for (int k = 0; k < t.csv.rows; k++) {
+        const double *row = t.number + k * t.csv.columns;
+        CHECK(row[0] == (k < 2 ? 1 : 2) && row[1] == (k < 2 ? at[k] : seen_at[k - 2]), "row %d", k);
+    }
+    for (int k = 0; k < 2; k++)
+        CHECK_NEAR(figure_of("fit_1_1")->y[1][k], value[k], 0, "seen in the first");
+    for (int k = 0; k < SEEN; k++)
+        CHECK_NEAR(figure_of("fit_2_1")->x[1][k], seen_at[k], 0, "when it was seen in the second");
+    CHECK_NEAR(figure_of("fit_2_1")->y[1][2], seen[2 * CHANNELS], 0, "and what");
+    table_free(&t);
+    rig_free(&r);
+    seen_first = (moray_observations){0};
+}
+
 // By a map in place of the function.
 static void see_inputs(void *self, const moray_num *in, moray_num *y)
 {
@@ -301,6 +331,7 @@ int main(void)
     test_figures(&r);
     test_plain(&r);
     rig_free(&r);
+    test_both();
     unlink(path);
     return tap_done();
 }

@@ -119,6 +119,7 @@ static const char *const x_units[] = {"m", "m/s", "m"}, *const u_units[] = {"N",
                          *const x_units_two[] = {"m/s", NULL}, *const u_units_two[] = {"kN"};
 
 static moray_phase_spec phases[2];
+static moray_observations seen_first; // of the first phase; none as a rule
 
 typedef struct rig {
     moray_ocp_spec spec;
@@ -144,7 +145,8 @@ static void rig_new(rig *r, int refinements)
                                    .u = MORAY_BOUNDS(moray_between(-5, 5), moray_between(-0.2, 0.7)),
                                    .c = MORAY_BOUNDS(moray_between(-3, 1.1)),
                                    .x_names = x_one,
-                                   .u_names = u_one};
+                                   .u_names = u_one,
+                                   .observed = seen_first};
     phases[1] =
         (moray_phase_spec){.name = "down",
                            .nx = 2,

@@ -145,6 +145,34 @@ static void test_forgotten(moray_sim_method method)
     }
 }
 
+// A slope that no step from 0 is short enough for; at first it has no answers.
+static bool endless(double t, const double *x, double *dx, void *self)
+{
+    (void)x;
+    dx[0] = t > 0 ? 100 / t : 0;
+    return t == 0 || *(const bool *)self;
+}
+
+// What has had no answer before the simulation began anew is not why its first step fails.
+static void test_anew(moray_sim_method method)
+{
+    bool answers = false;
+    moray_sim_settings settings = moray_sim_settings_default();
+    moray_sim *sim;
+    settings.method = method;
+    settings.rtol = settings.atol = 1e-4;
+    CHECK_OK(moray_sim_new(&sim, &(moray_ode){.n = 1, .rhs = endless, .self = &answers}, &settings), "new");
+    for (; CHECK(!moray_failed(moray_sim_start(sim, 0, (double[]){1})), "start"); answers = true) {
+        const moray_status status = moray_sim_advance(sim, 1);
+        CHECK(status.code == MORAY_NUMERIC &&
+                  strstr(status.text, answers ? "with ever shorter steps" : "outside its domain or not finite"),
+              "%s", status.text);
+        if (answers)
+            break;
+    }
+    moray_sim_free(sim);
+}
+
 // No slope but past 0.5, and there up to 1 and down from it by much.
 static bool torn(double t, const double *x, double *dx, void *self)
 {
@@ -185,5 +213,7 @@ int main(void)
         test_states((moray_sim_method)method);
     for (int method = MORAY_SIM_EXPLICIT; method <= MORAY_SIM_TR_BDF2; method++)
         test_forgotten((moray_sim_method)method);
+    test_anew(MORAY_SIM_EXPLICIT);
+    test_anew(MORAY_SIM_ARKODE);
     return tap_done();
 }
