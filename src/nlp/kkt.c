@@ -15,14 +15,12 @@ static void keep_worst(double *worst, int *where, double value, int here)
     }
 }
 
-// Relative to 1 + |bound| + size.
+// Relative to 1 + |bound| + size; not above 0 where there is none.
 static double violation(double value, double lower, double upper, double size)
 {
     if (lower > -MORAY_INFINITY && value < lower)
         return (lower - value) / (1 + fabs(lower) + size);
-    if (upper < MORAY_INFINITY && value > upper)
-        return (value - upper) / (1 + fabs(upper) + size);
-    return 0;
+    return upper < MORAY_INFINITY ? (value - upper) / (1 + fabs(upper) + size) : 0;
 }
 
 // max(1, mean |multiplier|), so that a problem stated in small units does not look unsolved

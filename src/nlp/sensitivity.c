@@ -168,9 +168,11 @@ static double row_scale(const moray_nlp_sensitivity *s, int row)
 static double scaled_norm(const moray_nlp_sensitivity *s, const double *vector)
 {
     double largest = 0;
-    for (int i = 0; i < s->nlp->n + s->nlp->m; i++)
-        if (!(fabs(vector[i] * row_scale(s, i)) <= largest))
-            largest = fabs(vector[i] * row_scale(s, i));
+    for (int i = 0; i < s->nlp->n + s->nlp->m; i++) {
+        const double size = fabs(vector[i] * row_scale(s, i));
+        if (!(size <= largest))
+            largest = size;
+    }
     return largest;
 }
 

@@ -109,6 +109,19 @@ static inline void dense_new(struct dense *d, int n, int m)
     d->at = (moray_iterate){.x = d->x, .z_lower = d->z_lower, .z_upper = d->z_upper, .g = d->g, .lambda = d->lambda};
 }
 
+// x0^2 + 2 x1^2 + 3 x2^2, x0 + x1 + x2
+static inline void weighted_squares(const double *x, const double *p, struct facts *f)
+{
+    (void)p;
+    for (int j = 0; j < 3; j++) {
+        f->f += (j + 1) * x[j] * x[j];
+        f->g[0] += x[j];
+        f->gradient[j] = 2 * (j + 1) * x[j];
+        f->jac[0][j] = 1;
+        f->hess[j][j] = 2 * (j + 1);
+    }
+}
+
 // Room for a slope.
 struct slope {
     double x[most], z_lower[most], z_upper[most], beyond, g[2], lambda[2];

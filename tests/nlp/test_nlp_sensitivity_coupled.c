@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Sensitivities of a quadratic programme whose variables are all in all of it, against two of its solutions.
+// Sensitivities of a quadratic programme whose variables are all in all of it, against two of its solutions;
+// and how little of slope and curvature is enough.
 #include "tap.h"
 
 #include <string.h>
@@ -85,6 +86,61 @@ static void test_coupled(int held, bool lower, bool upper, const double *moves)
     moray_nlp_sensitivity_free(s);
 }
 
+// ---- The least slope of a row: x0^2 / 2 + x1^2 / 2, a x0 = b -------------------------------------------------------
+
+static void steep(const double *x, const double *p, struct facts *f)
+{
+    f->f = (x[0] * x[0] + x[1] * x[1]) / 2;
+    f->g[0] = p[0] * x[0];
+    f->jac[0][0] = p[0];
+    for (int j = 0; j < 2; j++)
+        f->gradient[j] = x[j], f->hess[j][j] = 1;
+}
+
+// Each of three refinements leaves r / (r + a^2) of the row's residual, r = 1e-10 in the solver's scale: what is left
+// is to be 1e-6 of the largest right-hand side in that scale, which here is of x1, 10 times that of the row.
+static void test_slope(double left, bool follows)
+{
+    const double f_scale = 0.25, g_scale = 4, scales[] = {3, 0.5}, r = 1e-10 * f_scale / (g_scale * g_scale);
+    const double rest = cbrt(left * 1e-5), by_row = 1, by_column = 10 * g_scale * scales[1] / f_scale;
+    struct dense d = {.facts = steep, .p = {sqrt(r * (1 / rest - 1))}, .g_lower = {0}, .g_upper = {0}};
+    struct slope room;
+    moray_iterate slope = slope_in(&room);
+    moray_nlp_sensitivity *s;
+    dense_new(&d, 2, 1);
+    d.nlp.f_scale = f_scale, d.nlp.g_scale = &g_scale, d.nlp.x_scale = scales;
+    CHECK_OK(moray_nlp_sensitivity_new(&s, &d.nlp, &d.at), "a row of little slope");
+    const moray_nlp_shift shift = {.gradient = (double[]){0, by_column}, .g_lower = &by_row, .g_upper = &by_row};
+    const moray_status status = moray_nlp_sensitivity_solve(s, &shift, &slope);
+    CHECK(follows ? !moray_failed(status) : status.code == MORAY_NUMERIC, "%g of what may be left: %s", left,
+          status.text);
+    if (follows)
+        CHECK_NEAR(slope.x[0] * d.p[0], 1 - left * 1e-5, 1e-9, "the row, but for what is left");
+    moray_nlp_sensitivity_free(s);
+}
+
+// ---- The least curvature: (x0 + x1)^2 / 2 + c x1^2 / 2 -------------------------------------------------------------
+
+static void valley(const double *x, const double *p, struct facts *f)
+{
+    (void)x;
+    f->hess[0][0] = f->hess[0][1] = f->hess[1][0] = 1;
+    f->hess[1][1] = 1 + p[0];
+}
+
+static void test_curvature(void)
+{
+    const double least = 4 * 0x1p-52;
+    for (int k = 0; k < 2; k++) {
+        struct dense d = {.facts = valley, .p = {k * least}};
+        moray_nlp_sensitivity *s;
+        dense_new(&d, 2, 0);
+        const moray_status status = moray_nlp_sensitivity_new(&s, &d.nlp, &d.at);
+        CHECK(k ? !moray_failed(status) : status.code == MORAY_NUMERIC, "a curvature of %g: %s", d.p[0], status.text);
+        moray_nlp_sensitivity_free(s);
+    }
+}
+
 int main(void)
 {
     // Of mixed signs; such that all that moves falls.
@@ -93,5 +149,8 @@ int main(void)
         for (int kind = 1; kind < 4; kind++)
             for (int k = 0; k < 2; k++)
                 test_coupled(held, kind & 1, kind & 2, moves[k]);
+    test_slope(0.97, true);
+    test_slope(1.03, false);
+    test_curvature();
     return tap_done();
 }

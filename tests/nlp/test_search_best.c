@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "moray/clock.h"
 #include "moray/search.h"
 
 enum { n = 3, room = 4000 };
@@ -163,6 +164,33 @@ static void test_chance(moray_search_method method)
     CHECK(parting() >= 0 && parting() < 3, "%s: another seed, other points", name);
 }
 
+// ---- An end by rounding ----
+
+static bool shallow(void *self, const double *x, double *f, double *c, double *gradient, double *jacobian)
+{
+    (void)self, (void)c, (void)gradient, (void)jacobian;
+    *f = 1e6 + (x[0] - 1) * (x[0] - 1) / 2 + x[1] * x[1] / 2;
+    return true;
+}
+
+// Without tolerances COBYLA asks hundreds of times for one point, which is an end too.
+static void test_repeats(void)
+{
+    moray_search_settings settings = moray_search_settings_default();
+    moray_search_info info;
+    const moray_search_problem problem = {2, 0, lower, upper, false, NULL, shallow};
+    double x[] = {-1.2, 1};
+    settings.method = MORAY_SEARCH_COBYLA, settings.max_evaluations = 400;
+    settings.x_tolerance = settings.f_tolerance = 0;
+    const double start = moray_clock();
+    CHECK_OK(moray_search(&problem, &settings, x, &info), "no tolerance");
+    const double seconds = moray_clock() - start;
+    CHECK(info.outcome == MORAY_SEARCH_CONVERGED && info.evaluations > 20 && info.evaluations < 300,
+          "%s, after %d points", moray_search_outcome_text(info.outcome), info.evaluations);
+    CHECK(info.seconds > 0 && info.seconds <= seconds, "%g s of %g", info.seconds, seconds);
+    CHECK(fabs(x[0] - 1) < 1e-4 && fabs(x[1]) < 1e-4, "as far as rounding lets it: (%g, %g)", x[0], x[1]);
+}
+
 // ---- Refusals, texts ----
 
 static void refuse(const moray_search_problem *problem, const moray_search_settings *settings, const char *told)
@@ -250,6 +278,7 @@ int main(void)
     test_start();
     test_chance(MORAY_SEARCH_ISRES);
     test_chance(MORAY_SEARCH_MLSL);
+    test_repeats();
     test_problems();
     test_settings();
     test_texts();
