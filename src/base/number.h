@@ -5,6 +5,7 @@
 #define SRC_BASE_NUMBER_H
 
 #include <locale.h>
+#include <math.h>
 #include <stdbool.h>
 
 #include "moray/number.h"
@@ -13,6 +14,12 @@
 int moray_count_up(double count);
 
 bool moray_all_finite(const double *values, int n);
+
+// The larger of two errors; a NaN, which fmax passes over, is the worst.
+static inline double moray_worse(double worst, double error)
+{
+    return isnan(error) || error > worst ? error : worst;
+}
 
 // Ascending numbers, for qsort and bsearch.
 int moray_by_value(const void *one, const void *other);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "linear/null_space.h"
 
 static const double accurate = 1e-11; // residual that the null-space form may leave
@@ -98,7 +99,7 @@ static moray_status solve_in_null_space(kkt_factors *kkt, double *b, bool *good)
     *good = error <= accurate;
     if (!*good)
         memcpy(b, kkt->kept, size);
-    kkt->error = *good ? fmax(kkt->error, error) : 0;
+    kkt->error = *good ? moray_worse(kkt->error, error) : 0;
     return moray_ok();
 }
 
@@ -114,7 +115,7 @@ static moray_status solve_one(kkt_factors *kkt, double *b)
         count_failure(kkt);
     }
     MORAY_TRY(moray_ldl_solve(kkt->ldl, 1, b));
-    kkt->error = fmax(kkt->error, moray_ldl_statistics_of(kkt->ldl).error);
+    kkt->error = moray_worse(kkt->error, moray_ldl_statistics_of(kkt->ldl).error);
     return moray_ok();
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "linear/null_space_parts.h"
 
 static const double accurate = 1e-14; // residual that refinement would hardly better
@@ -62,8 +63,7 @@ static double find_residual(null_space *ns)
         size = larger(size, fabs(x[i]));
     for (int i = 0; i < ns->n; i++) {
         const double least = ns->largest[i] * size + fabs(ns->rhs[i]), here = fabs(r[i]);
-        const double share = least > 0 ? here / least : here;
-        worst = share <= worst ? worst : share; // keeps a NaN
+        worst = moray_worse(worst, least > 0 ? here / least : here);
     }
     return worst;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "linear/parts.h"
 
 static const double accurate = 1e-14; // backward error that refinement would hardly better
@@ -97,7 +98,7 @@ static double find_residual(moray_ldl *ldl)
         r[c] -= sum;
     }
     for (int c = 0; c < plan->n; c++) {
-        worst = fabs(r[c]) <= worst ? worst : fabs(r[c]); // keeps a NaN
+        worst = moray_worse(worst, fabs(r[c]));
         size = fabs(x[c]) > size ? fabs(x[c]) : size;
         size = fabs(ldl->rhs[c]) > size ? fabs(ldl->rhs[c]) : size;
     }
@@ -138,7 +139,7 @@ moray_status moray_ldl_solve(moray_ldl *ldl, int columns, double *B)
         return moray_error(MORAY_NUMERIC, "a sparse matrix of %d rows has no factors to solve with", ldl->n);
     double error = 0;
     for (int j = 0; j < columns && ldl->n > 0; j++)
-        error = fmax(error, solve_one(ldl, B + (size_t)j * (size_t)ldl->n));
+        error = moray_worse(error, solve_one(ldl, B + (size_t)j * (size_t)ldl->n));
     ldl->statistics.error = error;
     ldl->statistics.solves += columns;
     return moray_ok();

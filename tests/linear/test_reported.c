@@ -81,6 +81,35 @@ static void test_worst(void)
     moray_ldl_free(ldl);
 }
 
+// What is no number anywhere is told, whatever comes after it.
+static void test_nan(void)
+{
+    int row[] = {0, 1, 2}, col[] = {0, 1, 2}, all_row[] = {0, 1, 2, 2}, all_col[] = {0, 1, 0, 1};
+    moray_ldl *ldl;
+    kkt_factors *kkt;
+    null_space *ns;
+    bool fits;
+    CHECK_OK(moray_ldl_new(&ldl, 3, &(moray_pattern){3, row, col}), "made");
+    CHECK_OK(moray_ldl_factor(ldl, (double[]){1, 2, 4}, 0.1), "factored");
+    CHECK_OK(moray_kkt_factors_new(&kkt, 3, &(moray_pattern){4, all_row, all_col}), "made");
+    CHECK_OK(moray_kkt_factors_factor(kkt, (double[]){1, 2, 3, 4}, 0.1), "factored");
+    CHECK_OK(moray_null_space_new(&ns, 3, &(moray_pattern){4, all_row, all_col}), "made");
+    CHECK_OK(moray_null_space_factor(ns, (double[]){1, 2, 3, 4}, &fits), "factored");
+    for (int at = 0; at < 6; at++) {
+        double B[] = {1, 2, 3, 4, 5, 6}, same[] = {1, 2, 3, 4, 5, 6}, b[] = {1, 2, 3}, error;
+        B[at] = same[at] = b[at % 3] = NAN;
+        CHECK_OK(moray_ldl_solve(ldl, 2, B), "solved");
+        CHECK(isnan(moray_ldl_statistics_of(ldl).error), "number %d: %g", at, moray_ldl_statistics_of(ldl).error);
+        CHECK_OK(moray_kkt_factors_solve(kkt, 2, same), "solved");
+        CHECK(isnan(moray_kkt_factors_error(kkt)), "number %d: %g", at, moray_kkt_factors_error(kkt));
+        CHECK_OK(moray_null_space_solve(ns, b, &error), "solved");
+        CHECK(isnan(error), "number %d: %g", at, error);
+    }
+    moray_null_space_free(ns);
+    moray_kkt_factors_free(kkt);
+    moray_ldl_free(ldl);
+}
+
 // ---- Null space ----
 
 // Variables, two more than constraints, in rows and columns of sizes far apart; two columns are much larger than the
@@ -356,6 +385,7 @@ int main(void)
     test_error();
     test_large_solution();
     test_worst();
+    test_nan();
     test_null_space();
     test_kept_basis();
     test_no_choice();
