@@ -15,6 +15,11 @@
 enum { body = MORAY_BODY_STATES, ENERGY = body, states };
 
 static const double no_wait = 1e-9; // of a step: what is left by rounding
+static const double alike = 1e-11;  // of a step: what steps differ by rounding
+
+typedef struct fading {
+    double time, of[2][2];
+} fading;
 
 typedef struct on_gait {
     moray_swimmer *swimmer;
@@ -25,6 +30,7 @@ typedef struct on_gait {
     double t, start, y[states];
     swim_current current;
     double deviation[2];  // of the offset from what is commanded, and its rate, at t
+    fading half_faded;    // of that in half a step
     double slope[states]; // of y at t,
     bool known;           // where nothing has changed since it was found
     int measurements;
@@ -33,15 +39,23 @@ typedef struct on_gait {
 
 // ---- Joints --------------------------------------------------------------------------------------------------------
 
-// e and e' a time after e[].
-static void relax(const moray_robot *robot, const double e[2], double time, double after[2])
+// What a deviation and its rate are a time later, per unit of each.
+static fading fading_after(const moray_robot *robot, double time)
 {
     const double half = robot->k_d / 2;
     const double complex root = csqrt(half * half - robot->k_p) + 1e-9 * half; // never zero
-    const double complex c = ccosh(root * time), s = csinh(root * time) / root, slope = e[1] + half * e[0];
-    const double fading = exp(-half * time);
-    after[0] = fading * creal(e[0] * c + slope * s);
-    after[1] = fading * creal(e[0] * root * root * s + slope * c) - half * after[0];
+    const double complex c = ccosh(root * time), s = csinh(root * time) / root;
+    const double decay = exp(-half * time), even = creal(c), odd = creal(s), back = creal(root * root * s);
+    return (fading){.time = time,
+                    .of = {{decay * (even + half * odd), decay * odd},
+                           {decay * (back - half * half * odd), decay * (even - half * odd)}}};
+}
+
+static void relax(const fading *by, const double e[2], double after[2])
+{
+    const double value = by->of[0][0] * e[0] + by->of[0][1] * e[1];
+    after[1] = by->of[1][0] * e[0] + by->of[1][1] * e[1];
+    after[0] = value;
 }
 
 static moray_offset commanded(const on_gait *r, double t)
@@ -79,18 +93,19 @@ static void place(on_gait *r, double t, const double *y)
         moray_swim_stir(r->swimmer, r->plan->water, t, r->x);
 }
 
-// Likewise, and the efforts in u.
-static bool rates(on_gait *r, double t, const double *y, double *dy)
+// Likewise, and the efforts in u; where that is NULL, without them and the power.
+static bool rates(on_gait *r, double t, const double *y, double *dy, double *u)
 {
     const moray_robot *robot = moray_swimmer_robot(r->swimmer);
     place(r, t, y);
-    if (!moray_swimmer_rates(r->swimmer, r->x, r->ubar, r->dx, r->u))
+    if (!moray_swimmer_rates(r->swimmer, r->x, r->ubar, r->dx, u))
         return false;
     moray_state_body(moray_swimmer_model(r->swimmer), robot->links, r->dx, dy);
-    dy[ENERGY] = moray_swimmer_power(r->swimmer, r->u, r->v_phi);
+    dy[ENERGY] = u ? moray_swimmer_power(r->swimmer, u, r->v_phi) : 0;
     return true;
 }
 
+// What the body is ahead by along a slope; energy too.
 static void ahead(const double *y, double h, const double *slope, double *at)
 {
     for (int i = 0; i < states; i++)
@@ -100,27 +115,51 @@ static void ahead(const double *y, double h, const double *slope, double *at)
 static bool slope_here(on_gait *r)
 {
     move_joints(r, r->t, r->deviation);
-    return rates(r, r->t, r->y, r->slope);
+    return rates(r, r->t, r->y, r->slope, r->u);
 }
 
-// A step of the classical Runge-Kutta method.
-static bool step(on_gait *r, double h)
+// The classical method of the fourth order from the slope at its start and that in its middle, k[0], where the joints
+// are; k[1] and k[2] are scratch.
+static bool fourth_order(on_gait *r, double h, const double end[2], double k[3][states])
 {
-    const moray_robot *robot = moray_swimmer_robot(r->swimmer);
-    double k[3][states], at[states], half[2], end[2];
-    bool good = r->known || slope_here(r);
-    relax(robot, r->deviation, h / 2, half);
-    relax(robot, half, h / 2, end);
-    move_joints(r, r->t + h / 2, half);
-    ahead(r->y, h / 2, r->slope, at);
-    good = good && rates(r, r->t + h / 2, at, k[0]);
+    double at[states];
     ahead(r->y, h / 2, k[0], at);
-    good = good && rates(r, r->t + h / 2, at, k[1]);
+    bool good = rates(r, r->t + h / 2, at, k[1], r->u);
     move_joints(r, r->t + h, end);
     ahead(r->y, h, k[1], at);
-    good = good && rates(r, r->t + h, at, k[2]);
+    good = good && rates(r, r->t + h, at, k[2], r->u);
     for (int i = 0; i < states; i++)
         r->y[i] += h / 6 * (r->slope[i] + 2 * k[0][i] + 2 * k[1][i] + k[2][i]);
+    return good;
+}
+
+// Likewise Kutta's of the third.
+static bool third_order(on_gait *r, double h, const double end[2], double k[3][states])
+{
+    double at[states];
+    for (int i = 0; i < body; i++)
+        at[i] = r->y[i] + h * (2 * k[0][i] - r->slope[i]);
+    move_joints(r, r->t + h, end);
+    const bool good = rates(r, r->t + h, at, k[1], NULL);
+    for (int i = 0; i < body; i++)
+        r->y[i] += h / 6 * (r->slope[i] + 4 * k[0][i] + k[1][i]);
+    r->y[ENERGY] += h * r->slope[ENERGY];
+    return good;
+}
+
+static bool step(on_gait *r, double h)
+{
+    const bool third = r->how->order == 3;
+    double k[3][states], at[states], half[2], end[2];
+    bool good = r->known || slope_here(r);
+    if (fabs(r->half_faded.time - h / 2) > alike * h)
+        r->half_faded = fading_after(moray_swimmer_robot(r->swimmer), h / 2);
+    relax(&r->half_faded, r->deviation, half);
+    relax(&r->half_faded, half, end);
+    move_joints(r, r->t + h / 2, half);
+    ahead(r->y, h / 2, r->slope, at);
+    good = good && rates(r, r->t + h / 2, at, k[0], third ? NULL : r->u);
+    good = good && (third ? third_order : fourth_order)(r, h, end, k);
     memcpy(r->deviation, end, sizeof end);
     r->t += h;
     r->known = false;
@@ -217,6 +256,8 @@ static moray_status check(const moray_swimmer *swimmer, const moray_swim_plan *p
         return moray_error(MORAY_INPUT, "joints exactly on a gait: one gait without a series is needed");
     if (how->steps < 8)
         return moray_error(MORAY_INPUT, "steps = %d: must be at least 8 a period", how->steps);
+    if (how->order != 0 && how->order != 3 && how->order != 4)
+        return moray_error(MORAY_INPUT, "order = %d: must be 3 or 4, or 0, which is 4", how->order);
     if (plan->controller && plan->controller->measure && !(plan->controller->period > 0))
         return moray_error(MORAY_INPUT, "period of the controller = %g: must be above 0", plan->controller->period);
     return moray_ok();

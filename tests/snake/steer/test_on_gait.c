@@ -5,6 +5,8 @@
 #include "degree.h"
 #include "tap.h"
 
+#include <string.h>
+
 #include "moray/snake/closed_loop.h"
 #include "moray/snake/trial.h"
 
@@ -65,6 +67,37 @@ static void test_against_all_joints(moray_model model, const moray_hydrodynamics
     moray_swim_closed_loop_free(&rough);
 }
 
+// Half the step is an eighth of the error of the third order, a sixteenth of that of the fourth.
+static void test_orders(void)
+{
+    const moray_robot robot = moray_robot_paper();
+    const moray_gait paper = moray_gait_paper(&robot);
+    const moray_gait gait = moray_gait_map(&robot, &paper, MORAY_CONTROL_ORIENTED, MORAY_FIRST_PRINCIPLES);
+    const int orders[] = {0, 4, 3};
+    moray_straight_motion straight;
+    double error[3][2];
+    CHECK_OK(moray_straight_motion_find(&straight, &robot, MORAY_FIRST_PRINCIPLES, &gait), "straight");
+    const moray_swim_on_gait exact = {.steps = 4096};
+    moray_swim_closed_loop all = sail(&robot, &straight, &exact, -1);
+    const int last = all.track.n - 1;
+    for (int i = 0; i < 3; i++)
+        for (int fine = 0; fine < 2; fine++) {
+            const moray_swim_on_gait how = {.steps = fine ? 960 : 480, .order = orders[i]};
+            moray_swim_closed_loop some = sail(&robot, &straight, &how, -1);
+            error[i][fine] = 0;
+            for (int k = 0; k <= last; k++)
+                error[i][fine] = hypot(error[i][fine], some.track.pose[k].v_x - all.track.pose[k].v_x);
+            if (fine)
+                CHECK_RELATIVE(some.track.energy[last], all.track.energy[last], orders[i] == 3 ? 2e-2 : 1e-5,
+                               "joint work [J]");
+            moray_swim_closed_loop_free(&some);
+        }
+    CHECK(error[0][0] == error[1][0] && error[0][1] == error[1][1], "the fourth if none is named");
+    CHECK_NEAR(log2(error[1][0] / error[1][1]), 4, 0.3, "fourth order");
+    CHECK_NEAR(log2(error[2][0] / error[2][1]), 3, 0.3, "third order");
+    moray_swim_closed_loop_free(&all);
+}
+
 // A current that turns all the way round drifts the robot nowhere but for the water's own circle.
 static void test_current(void)
 {
@@ -111,6 +144,15 @@ static void test_refusals(void)
     plan.n_changes = 1;
     how.steps = 7;
     CHECK(moray_swim_run_on_gait(swimmer, &plan, &how, x, NULL).code == MORAY_INPUT, "and steps too long");
+    how.steps = 16;
+    const int orders[] = {-1, 1, 2, 3, 4, 5};
+    for (int k = 0; k < 6; k++) {
+        how.order = orders[k];
+        const moray_status status = moray_swim_run_on_gait(swimmer, &plan, &how, x, NULL);
+        CHECK(orders[k] == 3 || orders[k] == 4 ? !moray_failed(status)
+                                               : status.code == MORAY_INPUT && strstr(status.text, "must be 3 or 4"),
+              "order %d: %s", orders[k], status.text);
+    }
     moray_swimmer_free(swimmer);
 }
 
@@ -121,6 +163,7 @@ int main(void)
     test_against_all_joints(MORAY_FIRST_PRINCIPLES, &paper);
     if (tap_thorough())
         test_against_all_joints(MORAY_FIRST_PRINCIPLES, &consistent);
+    test_orders();
     test_current();
     test_refusals();
     return tap_done();
