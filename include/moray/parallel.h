@@ -25,6 +25,18 @@ MORAY_API int moray_processors(void);
 // died. (A library's threads do not survive the making of a process: what a task calls must not wait for any.)
 MORAY_API moray_status moray_parallel(int n, size_t size, void *results, moray_task_fn *task, void *self, int jobs);
 
+// One task in a process of its own while this one goes on, for instance with what only it can do.
+typedef struct moray_background moray_background;
+
+// Begins it, likewise from the memory as it is now; its result, of `size` bytes, begins as it is given. Where no
+// process can be had the task is done before this returns. End with moray_background_end. Error: MORAY_MEMORY, and
+// *background is NULL.
+MORAY_API moray_status moray_background_begin(moray_background **background, size_t size, const void *result,
+                                              moray_task_fn *task, void *self);
+
+// Waits for it, fills *result and frees it. Error: MORAY_NUMERIC when its process died.
+MORAY_API moray_status moray_background_end(moray_background *background, void *result);
+
 MORAY_END
 
 #endif

@@ -5,6 +5,8 @@
 #include <errno.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,4 +110,48 @@ moray_status moray_parallel(int n, size_t size, void *results, moray_task_fn *ta
     munmap(shared, bytes);
     free(helper);
     return status;
+}
+
+// ---- In the background ---------------------------------------------------------------------------------------------
+
+// In memory that both processes share.
+struct moray_background {
+    pid_t pid; // below 0: there is none, and it is done
+    size_t size, bytes;
+    bool done;
+    max_align_t result[];
+};
+
+moray_status moray_background_begin(moray_background **background, size_t size, const void *result, moray_task_fn *task,
+                                    void *self)
+{
+    const size_t bytes = sizeof(moray_background) + size;
+    moray_background *begun = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    *background = NULL;
+    if (begun == MAP_FAILED)
+        return moray_error(MORAY_MEMORY, "no memory for a task of %zu bytes", size);
+    begun->size = size;
+    begun->bytes = bytes;
+    memcpy(begun->result, result, size);
+    *background = begun;
+    const pid_t pid = fork();
+    if (pid != 0)
+        begun->pid = pid;
+    if (pid > 0)
+        return moray_ok();
+    task(0, begun->result, self);
+    begun->done = true;
+    if (pid == 0)
+        _exit(0);
+    return moray_ok();
+}
+
+moray_status moray_background_end(moray_background *background, void *result)
+{
+    if (background->pid > 0)
+        wait_for(background->pid);
+    const bool done = background->done;
+    memcpy(result, background->result, background->size);
+    munmap(background, background->bytes);
+    return done ? moray_ok() : moray_error(MORAY_NUMERIC, "the process of a task in the background died");
 }

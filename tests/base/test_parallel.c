@@ -7,7 +7,9 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <stdint.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -183,9 +185,102 @@ static void test_shared(void)
     CHECK(shared_blocks() == before, "%d blocks more", shared_blocks() - before);
 }
 
+// ---- In the background ---------------------------------------------------------------------------------------------
+
+struct meeting {
+    atomic_int here, there;
+    pid_t parent;
+};
+
+// Ends when the other process has come here too.
+static void meet(int task, void *result, void *self)
+{
+    struct meeting *m = self;
+    m->there = getpid() != m->parent;
+    for (int k = 0; k < 5000 && !m->here; k++)
+        usleep(1000);
+    *(int *)result += task + 100 * m->here;
+}
+
+static void quit(int task, void *result, void *self)
+{
+    (void)self;
+    *(int *)result = task + 7;
+    _exit(0);
+}
+
+static void double_all(int task, void *result, void *self)
+{
+    const int *n = self;
+    for (int k = 0; k < *n; k++)
+        ((double *)result)[k] = 2 * ((double *)result)[k] + task;
+    *(int *)self = 0; // here alone
+}
+
+static void test_background(void)
+{
+    struct meeting *m = mmap(NULL, sizeof *m, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    const int blocks = shared_blocks();
+    moray_background *one, *other;
+    int met = 5, left = 3, n = 400;
+    double values[400], doubled[400];
+    m->parent = getpid();
+    for (int k = 0; k < n; k++)
+        values[k] = k + 0.5;
+    CHECK_OK(moray_background_begin(&one, sizeof met, &met, meet, m), "begun");
+    CHECK_OK(moray_background_begin(&other, sizeof values, values, double_all, &n), "another beside it");
+    m->here = 1;
+    CHECK_OK(moray_background_end(one, &met), "ended");
+    CHECK(m->there == 1 && met == 105, "while this process went on: %d, %d", m->there, met);
+    CHECK_OK(moray_background_end(other, doubled), "and the other");
+    bool all = true;
+    for (int k = 0; k < 400; k++)
+        all = all && doubled[k] == 2 * k + 1;
+    CHECK(all && values[1] == 1.5 && n == 400, "whose results are there, and nothing else");
+    CHECK_OK(moray_background_begin(&one, sizeof left, &left, quit, NULL), "begun");
+    const moray_status status = moray_background_end(one, &left);
+    CHECK(status.code == MORAY_NUMERIC && strcmp(status.text, "the process of a task in the background died") == 0,
+          "a process that ends on its own: %s", status.text);
+    CHECK(left == 7, "what it had written is there: %d", left);
+    CHECK(waitpid(-1, NULL, WNOHANG) < 0 && shared_blocks() == blocks, "no process and no memory is left");
+    munmap(m, sizeof *m);
+}
+
+// Where no process can be had.
+static void test_alone(void)
+{
+    const pid_t child = fork();
+    if (child == 0) {
+        const struct rlimit none = {0, 0};
+        moray_background *one;
+        int n = 2;
+        double values[2] = {1, 2};
+        const bool bound = setgid(65534) == 0 && setuid(65534) == 0; // root has no limit
+        const bool limited = setrlimit(RLIMIT_NPROC, &none) == 0 && bound;
+        bool good = !moray_failed(moray_background_begin(&one, sizeof values, values, double_all, &n));
+        good = good && (n == 0 || !limited) && !moray_failed(moray_background_end(one, values));
+        _exit(good && values[0] == 2 && values[1] == 4 ? 0 : 1);
+    }
+    int state = -1;
+    waitpid(child, &state, 0);
+    CHECK(WIFEXITED(state) && WEXITSTATUS(state) == 0, "without another process the task is done here");
+}
+
+static void test_no_memory(void)
+{
+    moray_background *one = (moray_background *)&one;
+    int n = 0;
+    double value = 0;
+    const moray_status status = moray_background_begin(&one, SIZE_MAX / 4, &value, double_all, &n);
+    CHECK(status.code == MORAY_MEMORY && !one && strstr(status.text, "no memory for a task of"), "%s", status.text);
+}
+
 int main(void)
 {
     test_shared();
+    test_background();
+    test_alone();
+    test_no_memory();
     test_begun();
     test_counts();
     test_processors();
