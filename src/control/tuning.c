@@ -12,11 +12,13 @@ enum { most = MORAY_TUNED_NUMBERS, SPREAD = 4, POLISHED = 3, ROUNDS = 8 };
 static const double worthwhile = 5e-3; // relative gain of a round that calls for another
 static const double alike = 2e-2;      // relative difference of estimates that confirm each other
 static const double rough = 1e-2;      // tolerance of searches whose ends are polished
+static const double near = 1e-2;       // on all scales, and
+static const double level = 1e-3;      // in cost, relatively: within these two ends are one
 
 // A point in the box of all scales, each of which goes from 0 to 1.
 typedef struct place {
     double z[most], cost; // INFINITY: there is none
-    bool stopped;
+    bool stopped, low;    // low: none beside it is better
 } place;
 
 // What a point costs; local searches come by many points again.
@@ -292,6 +294,29 @@ static moray_status from_each(tuning *t, moray_task_fn *task, int room, place *p
     return status;
 }
 
+static bool is_one(const tuning *t, const place *a, const place *b)
+{
+    bool one = fabs(a->cost - b->cost) <= level * fabs(a->cost);
+    for (int j = 0; j < t->problem->n; j++)
+        one = one && fabs(a->z[j] - b->z[j]) < near;
+    return one;
+}
+
+// Puts the best of n places, in the order of their costs, first; of those that are one the best alone. How many there
+// are, up to `most_apart`.
+static int set_apart(const tuning *t, place *places, int n, int most_apart)
+{
+    int apart = 0;
+    for (int k = 0; k < n && apart < most_apart; k++) {
+        bool another = true;
+        for (int i = 0; i < apart; i++)
+            another = another && !is_one(t, &places[i], &places[k]);
+        if (another)
+            places[apart++] = places[k];
+    }
+    return apart;
+}
+
 // The best of them once more and again, in boxes around them.
 static moray_status polish(tuning *t, int room, place *places, int n, moray_tuning_info *info)
 {
@@ -301,6 +326,7 @@ static moray_status polish(tuning *t, int room, place *places, int n, moray_tuni
         t->reach = round < ROUNDS / 2 ? 0.15 : 0.04;
         MORAY_TRY(from_each(t, improve, room, places, n, info));
         qsort(places, (size_t)n, sizeof *places, by_cost);
+        n = set_apart(t, places, n, n);
         if (round % 2 == 0)
             continue;
         if (!(places[0].cost < enough))
@@ -310,20 +336,51 @@ static moray_status polish(tuning *t, int room, place *places, int n, moray_tuni
     return moray_ok();
 }
 
+// Whether none of n places on either side of the k-th, of one number, is better.
+static bool is_low(const place *places, int n, int k)
+{
+    int below = -1, above = -1;
+    for (int i = 0; i < n; i++) {
+        const double z = places[i].z[0];
+        if (z < places[k].z[0] && (below < 0 || z > places[below].z[0]))
+            below = i;
+        if (z > places[k].z[0] && (above < 0 || z < places[above].z[0]))
+            above = i;
+    }
+    return (below < 0 || places[below].cost >= places[k].cost) && (above < 0 || places[above].cost >= places[k].cost);
+}
+
+// How many of n places are searched from: those given and the best of the others, up to `starts` of them. Along one
+// number the places that were looked at show every valley that is as wide as they are apart, and the lowest of each is
+// enough; it is put before the rest.
+static int choose_starts(const tuning *t, place *places, int n, int n_from)
+{
+    const int enough = n_from + t->settings->starts; // of n_from + SPREAD times as many
+    int starts = n_from;
+    if (t->problem->n > 1)
+        return enough;
+    for (int k = n_from; k < n; k++)
+        places[k].low = is_low(places, n, k);
+    for (int k = n_from; k < n && starts < enough; k++)
+        if (places[k].low)
+            places[starts++] = places[k];
+    return starts;
+}
+
 static moray_status search(tuning *t, place *places, int n, int n_from, moray_tuning_info *info)
 {
-    const int starts = t->settings->starts + n_from; // of n_from + SPREAD times as many
     const int room = t->settings->evaluations * t->problem->n;
     t->reach = 1;
     MORAY_TRY(from_each(t, look, 1, places, n, info));
     qsort(places + n_from, (size_t)(n - n_from), sizeof *places, by_cost); // those given start whatever they cost
+    const int starts = choose_starts(t, places, n, n_from);
     if (!t->stopped)
         MORAY_TRY(from_each(t, improve, room, places, starts, info));
     qsort(places, (size_t)starts, sizeof *places, by_cost);
     for (int k = 0; k < starts; k++)
         info->agree += places[k].cost - places[0].cost <= 0.05 * fabs(places[0].cost);
     info->searches = starts;
-    return polish(t, room, places, starts < POLISHED ? starts : POLISHED, info);
+    return polish(t, room, places, set_apart(t, places, starts, POLISHED), info);
 }
 
 moray_status moray_tune(const moray_tuning_problem *problem, const moray_tuning_settings *settings, const double *from,

@@ -136,6 +136,29 @@ static double ratio(int n)
     return low;
 }
 
+static double bowl(double x)
+{
+    return (x - 0.3) * (x - 0.3);
+}
+
+// How many of the points looked at are no worse than those on either side of them, at most `most`; of one number.
+static int count_lows(const diary *seen, double (*cost_of)(double), int first, int n, int most)
+{
+    int lows = 0;
+    for (int k = first; k < n; k++) {
+        double at = seen->x[k][0], below = -INFINITY, above = INFINITY, cost[3];
+        for (int i = 0; i < n; i++) {
+            below = seen->x[i][0] < at ? fmax(below, seen->x[i][0]) : below;
+            above = seen->x[i][0] > at ? fmin(above, seen->x[i][0]) : above;
+        }
+        const double places[] = {below, at, above};
+        for (int i = 0; i < 3; i++)
+            cost[i] = isfinite(places[i]) ? cost_of(places[i]) : INFINITY;
+        lows += cost[1] <= cost[0] && cost[1] <= cost[2];
+    }
+    return lows < most ? lows : most;
+}
+
 // First the points that are told, then a Kronecker sequence; in no search more calls than are allowed.
 static void test_looks(int n)
 {
@@ -161,7 +184,8 @@ static void test_looks(int n)
             worst = tap_worse(worst, fabs(d.x[i][j] - want));
         }
     CHECK(worst < 1e-11, "%d numbers: it looks where it should, to %.1e", n, worst);
-    CHECK(info.searches == told + starts && info.evaluations == d.calls &&
+    const int begun = n > 1 ? starts : count_lows(&d, bowl, told, looks, starts);
+    CHECK(info.searches == told + begun && info.evaluations == d.calls &&
               d.calls <= looks + (told + starts + rounds * polished) * of_each * n,
           "%d calls", d.calls);
     bool inside = true;
@@ -169,6 +193,38 @@ static void test_looks(int n)
         for (int j = 0; j < n; j++)
             inside = inside && d.x[k][j] >= all[j].lower && d.x[k][j] <= all[j].upper;
     CHECK(inside, "and nowhere outside");
+}
+
+static double wavy(double x)
+{
+    return 2 + cos(12 * x) + 0.1 * x;
+}
+
+static bool waves(void *self, const double *x, double *cost)
+{
+    diary *d = self;
+    if (d->calls < ROOM)
+        d->x[d->calls][0] = x[0];
+    d->calls++;
+    *cost = wavy(x[0]);
+    return true;
+}
+
+// Along one number a search begins in every valley that was seen, in as many as are allowed.
+static void test_valleys(int starts)
+{
+    static diary d;
+    static const moray_tuned_number unit = {MORAY_TUNED_LINEAR, -2, 3, 0};
+    const double told = 2.9, least = -7 * M_PI / 12 - asin(0.1 / 12) / 12;
+    const moray_tuning_problem problem = {.n = 1, .number = &unit, .cost = waves, .self = &d};
+    moray_tuning_settings settings = moray_tuning_settings_default();
+    moray_tuning_info info;
+    double x;
+    d = (diary){.n = 1};
+    settings.starts = starts, settings.jobs = 1;
+    CHECK_OK(moray_tune(&problem, &settings, &told, 1, &x, &info), "tunes");
+    CHECK(info.searches == 1 + count_lows(&d, wavy, 1, 1 + 4 * starts, starts), "%d searches", info.searches);
+    CHECK(starts < 12 || fabs(x - least) < 1e-3, "the least is at %g: %g", least, x);
 }
 
 static void test_precise(int n)
@@ -371,6 +427,9 @@ int main(void)
     test_no_better();
     for (int n = 1; n <= 3; n++)
         test_looks(n);
+    test_valleys(2);
+    test_valleys(3);
+    test_valleys(12);
     test_precise(1);
     test_precise(3);
     test_ended();

@@ -174,16 +174,19 @@ static void test_models(void)
 
 // ---- Down a slope --------------------------------------------------------------------------------------------------
 
-// Three times one place is told, which is best until all three have been searched; then the cost falls along both axes.
+// Three places are told, the first the farthest down, which are best until all three have been searched; then the cost
+// falls along both axes.
 typedef struct slope {
-    double start[N], along[N];
+    double start[POLISHED * N], along[N];
     int visits;
 } slope;
 
 static bool sloping(void *self, const double *x, double *cost)
 {
     slope *s = self;
-    const bool at_start = x[0] == s->start[0] && x[1] == s->start[1];
+    bool at_start = false;
+    for (int i = 0; i < POLISHED; i++)
+        at_start = at_start || (x[0] == s->start[i * N] && x[1] == s->start[i * N + 1]);
     s->visits += at_start;
     *cost = at_start ? 20 : 100;
     if (s->visits > 2 * POLISHED)
@@ -198,20 +201,64 @@ static void test_walk(void)
     static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
     for (int k = 0; k < 4; k++) {
         slope s = {.along = {directions[k][0], directions[k][1]}};
-        double from[POLISHED * N], x[N];
-        for (int j = 0; j < N; j++)
-            s.start[j] = s.along[j] > 0 ? 0.125 : 0.875;
+        double x[N];
         for (int i = 0; i < POLISHED * N; i++)
-            from[i] = s.start[i % N];
+            s.start[i] = (s.along[i % N] > 0 ? 0.125 : 0.875) - 0.02 * (i / N) * s.along[i % N];
         const moray_tuning_problem problem = {.n = N, .number = unit, .cost = sloping, .self = &s};
         moray_tuning_settings settings = moray_tuning_settings_default();
         moray_tuning_info info;
         settings.starts = settings.jobs = 1;
         settings.remembers = false;
-        CHECK_OK(moray_tune(&problem, &settings, from, POLISHED, x, &info), "tunes");
+        CHECK_OK(moray_tune(&problem, &settings, s.start, POLISHED, x, &info), "tunes");
         for (int j = 0; j < N; j++)
             CHECK_NEAR(fabs(x[j] - s.start[j]), 4 * (0.15 + 0.04), 2e-3, "the way of eight rounds");
     }
+}
+
+// ---- Ends that are one ----------------------------------------------------------------------------------------------
+
+typedef struct pair {
+    double at[2][N], level[2];
+    int visits[2];
+} pair;
+
+static bool of_pair(void *self, const double *x, double *cost)
+{
+    pair *p = self;
+    *cost = 100;
+    for (int i = 0; i < 2; i++)
+        if (x[0] == p->at[i][0] && x[1] == p->at[i][1]) {
+            *cost = p->level[i];
+            p->visits[i]++;
+        }
+    return true;
+}
+
+// Of places within 0.01 of each other on all scales and within 0.1 % in cost only the best is searched again.
+static void test_one_end(void)
+{
+    const struct {
+        double apart[N], level;
+        bool one;
+    } cases[] = {{{9e-3, 0}, 1, true},          {{0, 9e-3}, 1, true},    {{-9e-3, 9e-3}, 1.0009, true},
+                 {{9e-3, 9e-3}, 1.0011, false}, {{1.1e-2, 0}, 1, false}, {{0, -1.1e-2}, 1, false},
+                 {{9e-3, 1.1e-2}, 1, false}};
+    static const moray_tuned_number unit[N] = {{MORAY_TUNED_LINEAR, 0, 1, 0}, {MORAY_TUNED_LINEAR, 0, 1, 0}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const double level = sign > 0 ? cases[k].level : 2 - cases[k].level; // the second place is not the better
+            pair p = {.at = {{0.5, 0.25}, {0.5 + cases[k].apart[0], 0.25 + cases[k].apart[1]}},
+                      .level = {20 * sign, 20 * sign * level}};
+            const moray_tuning_problem problem = {.n = N, .number = unit, .cost = of_pair, .self = &p};
+            moray_tuning_settings settings = moray_tuning_settings_default();
+            moray_tuning_info info;
+            double x[N];
+            settings.starts = settings.jobs = 1;
+            settings.remembers = false;
+            CHECK_OK(moray_tune(&problem, &settings, p.at[0], 2, x, &info), "tunes");
+            CHECK(p.visits[0] == 6 && p.visits[1] == (cases[k].one ? 2 : 6), "%g, %g apart, costs %g: visits %d and %d",
+                  cases[k].apart[0], cases[k].apart[1], level, p.visits[0], p.visits[1]);
+        }
 }
 
 // ---- A valley ------------------------------------------------------------------------------------------------------
@@ -275,6 +322,7 @@ int main(void)
     test_one();
     test_remembers();
     test_walk();
+    test_one_end();
     test_start();
     test_rounds();
     test_agree();
