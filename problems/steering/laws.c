@@ -100,7 +100,7 @@ moray_status steer_set_receding(steer_steersman *h, const char *scheme, moray_re
 steer_trial *steer_add(steer_job *job, const char *name, const steer_law *law, int gait, moray_model plan)
 {
     steer_trial *trial = &job->trial[job->n_trials++];
-    *trial = (steer_trial){.name = name, .law = law, .gait = gait, .plan = plan};
+    *trial = (steer_trial){.name = name, .law = law, .gait = gait, .plan = plan, .tuned = law->tuned};
     for (int k = 0; k < STEER_NUMBERS; k++)
         trial->number[k] = law->start[k];
     for (int k = 0; k < STEER_SCORES; k++)

@@ -92,7 +92,7 @@ void steer_tuning_table(const steer_job *job, steer_tables *tables)
     table.columns[n] = "simulations";
     for (int k = 0; k < job->n_trials; k++) {
         const steer_trial *trial = &job->trial[k];
-        if (trial->evaluations == 0)
+        if (!trial->law->tuned || !trial->run)
             continue;
         moray_table_row *row = &rows[table.n_rows++];
         *row = (moray_table_row){.label = trial->name};

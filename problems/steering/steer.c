@@ -93,6 +93,9 @@ int steer_main(const moray_program *own, const steer_program *program, int argc,
     steer_clock_start(&job->clock);
     moray_interrupt_begin();
     moray_status status = work(job);
+    const moray_status errands = steer_end_errands(job);
+    if (!moray_failed(status))
+        status = errands;
     moray_interrupt_end();
     moray_ticker_end(&job->ticker);
     if (!moray_failed(status))

@@ -148,13 +148,21 @@ struct steer_trial {
     double number[STEER_NUMBERS];             // tuned; gains of the control-oriented model
     double tuned_cost;                        // of these, as tuning had it
     int evaluations, searches, agree;         // spent on tuning; local searches, and those that came to the same
-    bool run, barred;                         // barred: takes more than the power allowed
-    bool cut;                                 // its tuning was ended by the time given
-    double score[2][STEER_SCORES], cost[2];   // by the model swum on
+    unsigned tuned;                         // bits of its law's numbers that are searched: not those that move nothing
+    bool run, barred;                       // barred: takes more than the power allowed
+    bool away;                              // in the hands of another process
+    bool cut;                               // its tuning was ended by the time given
+    double score[2][STEER_SCORES], cost[2]; // by the model swum on
     moray_receding_horizon_record record[2];
 };
 
-enum { STEER_AVERAGED = 2 }; // plan beside those of the models
+enum { STEER_AVERAGED = 2, STEER_ERRANDS = 3 }; // a plan beside those of the models
+
+// Trials that another process runs, and plans that it certifies: bits.
+typedef struct steer_errand {
+    moray_background *background;
+    unsigned trials, plans;
+} steer_errand;
 
 struct steer_job {
     moray_common common;
@@ -180,6 +188,9 @@ struct steer_job {
     double turn_rate[2];                // sustained at the limit of the offset [rad/s], with its sign
     steer_trial trial[STEER_TRIALS];
     int n_trials;
+    unsigned left_out; // bits of the trials that are not to be run now
+    steer_errand errand[STEER_ERRANDS];
+    int n_errands;
     moray_swim_scene *scene; // of the report, while it is written
     moray_ticker ticker;
 };
@@ -283,6 +294,12 @@ void steer_add_receding(steer_job *job, const steer_law *law);
 // are known, in equal shares of the time that is left; one that does not end in its share stays not run. Error: those
 // of moray_certify and moray_swim_closed_loop_run, MORAY_INTERRUPTED.
 moray_status steer_run_trials(steer_job *job);
+
+// Begins the same in a process of its own, with half of the job's processes, while this one makes another plan;
+// steer_run_trials, or steer_end_errands by itself, takes over what it found. Where the job has one process alone, it
+// is done at once. Error: those of steer_run_trials.
+moray_status steer_begin_trials(steer_job *job);
+moray_status steer_end_errands(steer_job *job);
 
 // Takes over from n trials what was found of those that job has too.
 void steer_keep_trials(steer_job *job, const steer_trial *before, int n);

@@ -89,19 +89,28 @@ moray_status steer_try(const steer_job *job, steer_trial *trial, moray_model mod
 
 // ---- All -----------------------------------------------------------------------------------------------------------
 
-static bool can_run(const steer_job *job, const steer_trial *trial)
+// For another process, or for another time.
+static bool elsewhere(const steer_job *job, const steer_trial *trial)
 {
-    const bool gait_known = job->straight[trial->gait][0].speed > 0;
-    const bool plan_known = trial->law->kind == STEER_UNPLANNED || job->plan[trial->plan].solution;
-    return !trial->run && gait_known && plan_known;
+    return trial->away || job->left_out >> (trial - job->trial) & 1;
 }
 
-// To be run; those of plans that are still to come count three times, for the plans' sake.
+bool steer_can_run(const steer_job *job, const steer_trial *trial)
+{
+    bool here = !elsewhere(job, trial);
+    for (int i = 0; i < STEER_SUBSETS; i++)
+        here = here && !(trial->subset[i] && trial->subset[i]->away);
+    const bool gait_known = job->straight[trial->gait][0].speed > 0;
+    const bool plan_known = trial->law->kind == STEER_UNPLANNED || job->plan[trial->plan].solution;
+    return here && !trial->run && gait_known && plan_known;
+}
+
+// To be run by this process; those of plans that are still to come count three times, for the plans' sake.
 static double still_to_run(const steer_job *job)
 {
     double n = 0;
     for (int k = 0; k < job->n_trials; k++)
-        n += job->trial[k].run ? 0 : can_run(job, &job->trial[k]) ? 1 : 3;
+        n += job->trial[k].run || elsewhere(job, &job->trial[k]) ? 0 : steer_can_run(job, &job->trial[k]) ? 1 : 3;
     return n;
 }
 
@@ -128,7 +137,11 @@ static moray_status run_tuned(steer_job *job, steer_trial *trial)
     const double tuning_share = 0.7;
     moray_ticker_show(&job->ticker, "%s: tuning %s", job->name, trial->name);
     steer_clock_give(&job->clock, tuning_share / still_to_run(job));
-    MORAY_TRY(steer_tune(job, trial));
+    const steer_trial *same = steer_same_law(trial);
+    if (same)
+        steer_take_numbers(trial, same);
+    else
+        MORAY_TRY(steer_tune(job, trial));
     steer_clock_give(&job->clock, 1 / still_to_run(job));
     MORAY_TRY(try_both(job, trial));
     const steer_trial *better = steer_better_subset(trial);
@@ -215,7 +228,7 @@ static moray_status take_certificates(const deal *d, const outcome *of)
     return moray_ok();
 }
 
-static moray_status run_others(steer_job *job)
+moray_status steer_run_others(steer_job *job)
 {
     deal d = {.job = job, .runs = 2 * still_to_run(job)};
     outcome of[2 + 2 * STEER_TRIALS] = {0};
@@ -223,7 +236,7 @@ static moray_status run_others(steer_job *job)
         if (job->plan[plan].solution && job->plan[plan].solution != job->certified[plan])
             d.plan[d.plans++] = plan;
     for (int k = 0; k < job->n_trials; k++)
-        if (can_run(job, &job->trial[k]) && !job->trial[k].law->tuned)
+        if (steer_can_run(job, &job->trial[k]) && !job->trial[k].law->tuned)
             d.of[d.n++] = k;
     MORAY_TRY(moray_parallel(d.plans + 2 * d.n, sizeof *of, of, do_one, &d, job->jobs));
     MORAY_TRY(steer_interruption());
@@ -233,11 +246,11 @@ static moray_status run_others(steer_job *job)
     return moray_ok();
 }
 
-moray_status steer_run_trials(steer_job *job)
+moray_status steer_run_ready(steer_job *job)
 {
-    MORAY_TRY(run_others(job));
+    MORAY_TRY(steer_run_others(job));
     for (int k = 0; k < job->n_trials; k++)
-        if (can_run(job, &job->trial[k]) && job->trial[k].law->tuned)
+        if (steer_can_run(job, &job->trial[k]) && job->trial[k].law->tuned)
             MORAY_TRY(unless_late(run_tuned(job, &job->trial[k])));
     return moray_ok();
 }

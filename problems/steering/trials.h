@@ -20,9 +20,20 @@ moray_status steer_try(const steer_job *job, steer_trial *trial, moray_model mod
 // Error: MORAY_NOT_SOLVED where the clock ended it before anything was tried, MORAY_INTERRUPTED, those of moray_tune.
 moray_status steer_tune(steer_job *job, steer_trial *trial);
 
+// What steer_run_trials does, but for what other processes do and what waits for it; on these, and on what they leave.
+moray_status steer_run_ready(steer_job *job);
+bool steer_can_run(const steer_job *job, const steer_trial *trial);
+
+// Certifies the plans that are not yet, and swims what is not tuned.
+moray_status steer_run_others(steer_job *job);
+
 // The best law that leaves some of the trial's numbers out, on the same gait, where it did better; NULL: none did.
 // Tuning simulates roughly, and what hangs by a stroke may come out otherwise with care.
 const steer_trial *steer_better_subset(const steer_trial *trial);
+
+// The law that it comes to, on the same gait, where what it has besides moves nothing; NULL: there is none, or it has
+// not run.
+const steer_trial *steer_same_law(const steer_trial *trial);
 
 // The numbers of that law; of a plan alone, which has none, a gain of 0.
 void steer_take_numbers(steer_trial *trial, const steer_trial *of);

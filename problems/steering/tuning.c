@@ -4,7 +4,8 @@
 #include "trials.h"
 
 // Steps a period of the gait. Beyond some gain a law swings from limit to limit, and its error is another in any steps.
-static const moray_swim_on_gait quick = {.steps = 24}, others[] = {{.steps = 28}, {.steps = 34}, {.steps = 40}};
+static const moray_swim_on_gait quick = {.steps = 24, .order = 3},
+                                others[] = {{.steps = 24}, {.steps = 36, .order = 3}, {.steps = 64, .order = 3}};
 enum { OTHERS = sizeof others / sizeof *others };
 
 typedef struct tuning {
@@ -14,7 +15,7 @@ typedef struct tuning {
 
 static bool tuned(const steer_trial *trial, int number)
 {
-    return trial->law->tuned & 1u << number;
+    return trial->tuned & 1u << number;
 }
 
 static void set_numbers(steer_trial *trial, const double *x)
@@ -97,6 +98,16 @@ moray_status steer_tune(steer_job *job, steer_trial *trial)
     trial->searches = info.searches;
     trial->agree = info.agree;
     return moray_ok();
+}
+
+const steer_trial *steer_same_law(const steer_trial *trial)
+{
+    for (int i = 0; i < STEER_SUBSETS; i++) {
+        const steer_trial *of = trial->subset[i];
+        if (of && of->run && of->gait == trial->gait && of->law->set == trial->law->set && of->tuned == trial->tuned)
+            return of;
+    }
+    return NULL;
 }
 
 const steer_trial *steer_better_subset(const steer_trial *trial)

@@ -37,6 +37,9 @@ check "replanning on the first-principles model keeps what its plan predicts: $(
 check "blind replanning does not do without knowing: $(rms receding 3) deg" less "$(rms receding 2)" "$(rms receding 3)"
 check "three times of replanning" \
     eval '[ "$(sed -n "s/.*\"times_real_time\":[ \t]*\([0-9.]*\).*/\1/p" out | awk "\$1 > 0" | wc -l)" -eq 3 ]'
+check "what feeds forward the rate of steps, which have none, is feedback alone: $(rms 'feedback and rate' 1) deg" \
+    [ "$(rms 'feedback and rate' 1)" = "$(rms feedback 1)" ]
+check "and is not searched" [ "$(number 'feedback and rate' forward_m_s_rad)" = 0 ]
 check "a gait that is given is kept" near "$(number first_principles_plan omega_deg_s)" 120 1e-6
 check "what limits it is said" grep -q 'A jump of 20 deg takes' out
 

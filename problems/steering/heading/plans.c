@@ -100,20 +100,20 @@ static moray_status make_plan(heading_job *job, moray_model model, const moray_g
     if (from && from->straight.model == model && from != &job->steer.plan[STEER_AVERAGED])
         settings.barrier = 1e-6;
     moray_steering_plan *plan = &job->steer.plan[model];
+    MORAY_TRY(steer_straight_motions(&job->steer, 1 + (int)model, gait, model));
+    if (model == job->steer.snake.model) // the rest of the gait's trials
+        MORAY_TRY(steer_begin_trials(&job->steer));
     MORAY_TRY(moray_heading_plan_make(plan, &spec, &settings, gait, from));
     const moray_gait kept = moray_steering_gait(moray_solution_parameters(plan->solution));
     MORAY_TRY(steer_find_turn_rate(&job->steer, model, &kept));
-    if (!steer_solved(plan->solution))
-        return why_not(job, plan);
-    return steer_straight_motions(&job->steer, 1 + (int)model, &plan->straight.gait, model);
+    return steer_solved(plan->solution) ? moray_ok() : why_not(job, plan);
 }
 
 moray_status heading_plan_first(heading_job *job)
 {
     steer_job *steer = &job->steer;
-    const moray_gait paper = moray_gait_paper(&steer->snake.robot), first = steer_first_gait(steer);
+    const moray_gait first = steer_first_gait(steer);
     steer_clock_give(&steer->clock, 0.4);
-    MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
     moray_steering_plan *first_plan = &steer->plan[STEER_AVERAGED];
     const moray_heading_spec averaged = heading_spec(job, MORAY_CONTROL_ORIENTED, true);
     const moray_settings coarse = heading_settings(job, true, 2 * M_PI / first.omega);

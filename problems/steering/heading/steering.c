@@ -67,6 +67,19 @@ static const steer_law laws[] = {
     [RECEDING_UNKNOWING] = {"receding", STEER_RECEDING, .set = set_receding, .start = {NAN, NAN, 0, NAN, NAN}},
 };
 
+// What feeds the reference's rate forward, where it has none, moves nothing.
+static void leave_out_rate(steer_job *job)
+{
+    const moray_reference *reference = &((const heading_job *)job)->reference;
+    if (moray_reference_fastest(reference, 0, INFINITY) > 0)
+        return;
+    for (int k = 0; k < job->n_trials; k++)
+        if (job->trial[k].tuned & 1u << FORWARD) {
+            job->trial[k].tuned &= ~(1u << FORWARD);
+            job->trial[k].number[FORWARD] = 0;
+        }
+}
+
 // On the gait of the last plan all that feedback can be given; on the paper's, where another was found, the plainest.
 static void choose_trials(steer_job *job)
 {
@@ -87,6 +100,7 @@ static void choose_trials(steer_job *job)
     steer_add_receding(job, &laws[RECEDING]);
     if (job->receding)
         steer_add(job, "receding, nothing known ahead", &laws[RECEDING_UNKNOWING], found, any);
+    leave_out_rate(job);
 }
 
 // ---- Swimming ------------------------------------------------------------------------------------------------------
@@ -309,14 +323,18 @@ static moray_status work(steer_job *steer)
         MORAY_TRY(moray_reference_read(&job->reference, job->reference_text));
     if (isnan(job->horizon))
         job->horizon = 100;
+    const moray_gait paper = moray_gait_paper(&steer->snake.robot);
     choose_trials(steer);
-    MORAY_TRY(heading_plan_first(job));
+    MORAY_TRY(steer_straight_motions(steer, 0, &paper, MORAY_CONTROL_ORIENTED));
     bar_trials(steer);
-    MORAY_TRY(steer_run_trials(steer));
+    MORAY_TRY(steer_begin_trials(steer));
+    MORAY_TRY(heading_plan_first(job));
     if (steer->snake.model == MORAY_CONTROL_ORIENTED)
-        return moray_ok();
+        return steer_run_trials(steer);
+    MORAY_TRY(steer_begin_trials(steer));
     const moray_status last = heading_plan_last(job);
     if (moray_failed(last)) {
+        MORAY_TRY(steer_end_errands(steer));
         MORAY_TRY(steer_do_without(steer, last));
         choose_again(steer);
     }
