@@ -131,6 +131,32 @@ static void test_return(void)
     moray_null_space_free(ns);
 }
 
+// [1 a; 1 a] of two variables that weigh most and one that does not: the limit of a thousand is no reason to change, a
+// little more is; of two that are as good a reason the first one leaves.
+static void test_limit(void)
+{
+    for (int k = 0; k < 2; k++) {
+        static sample s;
+        null_space *ns;
+        bool fits;
+        s.seed = 3;
+        s.m = 2;
+        start(&s, 5);
+        for (int i = 0; i < 3; i++)
+            put(&s, i, i, i < 2 ? 16 : 1); // whose roots weigh
+        for (int c = 0; c < 2; c++) {
+            put(&s, 3 + c, c, 0.5);
+            put(&s, 3 + c, 2, k ? 125.5 : 125); // 250 or 251 of the first and of the second
+        }
+        CHECK_OK(moray_null_space_new(&ns, s.n, &s.pattern), "made");
+        CHECK_OK(moray_null_space_factor(ns, s.value, &fits), "factored");
+        CHECK(fits && (ns->basis.place[2] < 0) == !k && (ns->basis.place[0] < 0) == k && ns->basis.place[1] >= 0,
+              "%s a thousand: places %d, %d, %d", k ? "beyond" : "just", ns->basis.place[0], ns->basis.place[1],
+              ns->basis.place[2]);
+        moray_null_space_free(ns);
+    }
+}
+
 // ---- Refinement ----------------------------------------------------------------------------------------------------
 
 // A residual of nothing calls for no other solution; one that is too large for at least a second, and four at most.
@@ -163,6 +189,7 @@ int main(void)
 {
     test_exchanges();
     test_return();
+    test_limit();
     test_refinement();
     return tap_done();
 }

@@ -101,7 +101,13 @@ static void test_null_space(void)
         check_told(moray_null_space_factor(ns, value, &fits), MORAY_NUMERIC, "a sparse matrix of 3 rows is not finite");
         CHECK(!fits && moray_null_space_inertia(ns).positive == 0, "has none");
     }
+    for (int k = 0; k < 2; k++) { // a constraint of nothing, to a basis of before
+        CHECK_OK(moray_null_space_factor(ns, (double[]){1, 2, k ? 3 : 0, k ? 4 : 0}, &fits), "looked at");
+        CHECK(fits == k, "and %s", k ? "factored" : "left");
+    }
     moray_null_space_free(ns);
+    CHECK_OK(moray_null_space_new(&ns, 0, &(moray_pattern){0, row, col}), "of no rows");
+    CHECK(!ns, "there is no null space");
 }
 
 // Up to 24 degrees of freedom, and constraints that have nothing on the diagonal, the first of them and the last.

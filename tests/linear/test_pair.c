@@ -150,7 +150,10 @@ static void test_rules(void)
         start(&s, 1 + pick(&s, MOST));
         const int entries = pick(&s, 4 * s.n);
         for (int k = 0; k < entries; k++)
-            put(&s, pick(&s, s.n), pick(&s, s.n), pick(&s, 4) ? tap_random(&s.seed, -1, 1) : 0);
+            put(&s, pick(&s, s.n), pick(&s, s.n),
+                !pick(&s, 4) ? 0
+                : trial % 3  ? tap_random(&s.seed, -1, 1)
+                             : (trial % 2 ? 0.1 : 0.5) * (1 << pick(&s, 5)));
         for (int i = 0; i < s.n; i++)
             if (pick(&s, 2))
                 put(&s, i, i, pick(&s, 3) ? 0.01 : 0.0099);
@@ -192,8 +195,28 @@ static void test_crowd(int constraints, bool crowded)
     free(row), free(value), free(mate);
 }
 
+// A constraint of as many variables as it may have takes one of them, with one more it takes none.
+static void test_crowded(int variables, int pairs)
+{
+    int *row = calloc(8 * (size_t)variables, sizeof *row), *col = row + 4 * variables, k = 0;
+    int *mate = calloc(4 * (size_t)variables + 8, sizeof *mate);
+    double *value = calloc(4 * (size_t)variables, sizeof *value);
+    struct graph graph;
+    for (int i = 0; i < variables; i++) {
+        row[k] = col[k] = i, value[k++] = 1;
+        row[k] = variables, col[k] = i, value[k++] = 1;
+    }
+    CHECK_OK(moray_ldl_graph_new(&graph, variables + 1, &(moray_pattern){k, row, col}, value), "graph");
+    const int found = moray_ldl_graph_pair(&graph, 0.1, mate, mate + variables + 1);
+    CHECK(found == pairs, "%d variables: %d pairs", variables, found);
+    moray_ldl_graph_free(&graph);
+    free(row), free(value), free(mate);
+}
+
 int main(void)
 {
+    test_crowded(130, 1); // 16 + 10 sqrt(131) = 130
+    test_crowded(131, 0); // 16 + 10 sqrt(132) = 130
     test_by_hand();
     test_rules();
     test_crowd(216, false); // of 433 unknowns: 16 + 10 sqrt(433) = 224

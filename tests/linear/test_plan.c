@@ -240,16 +240,26 @@ static bool apart(const struct node *one, const struct node *other)
     return one->update + a <= other->update || other->update + b <= one->update;
 }
 
-// While a front is made, what waits for its parent lies apart, and the front's children; each of two stacks holds no
-// more than what waits.
+static bool at_odd_depth(const struct plan *plan, int s)
+{
+    bool odd = false;
+    for (; plan->node[s].parent >= 0; s = plan->node[s].parent)
+        odd = !odd;
+    return odd;
+}
+
+// While a front is made, what waits for its parent lies apart, and the front's children; each of two stacks, of even
+// and of odd depth, holds no more than what waits.
 static void check_blocks(const struct plan *plan, struct faults *f)
 {
-    size_t most = 0;
+    size_t most[2] = {0, 0};
     for (int now = 0; now < plan->nodes; now++) {
-        size_t waiting = 0;
+        size_t waiting[2] = {0, 0};
         for (int one = 0; one <= now; one++)
-            waiting += plan->node[one].parent >= now ? (size_t)(plan->node[one].rows * plan->node[one].rows) : 0;
-        most = waiting > most ? waiting : most;
+            if (plan->node[one].parent >= now)
+                waiting[at_odd_depth(plan, one)] += (size_t)(plan->node[one].rows * plan->node[one].rows);
+        for (int odd = 0; odd < 2; odd++)
+            most[odd] = waiting[odd] > most[odd] ? waiting[odd] : most[odd];
         for (int one = 0; one <= now; one++) {
             f->blocks += plan->node[one].update + (size_t)plan->node[one].rows * (size_t)plan->node[one].rows >
                          plan->update_room;
@@ -258,7 +268,7 @@ static void check_blocks(const struct plan *plan, struct faults *f)
                     f->blocks += !apart(&plan->node[one], &plan->node[other]);
         }
     }
-    f->blocks += plan->update_room > 2 * most;
+    f->blocks += plan->update_room != most[0] + most[1];
 }
 
 static void check_sizes(const struct plan *plan, struct faults *f)
