@@ -9,7 +9,8 @@
 
 #include "ocp/observe/observed.h"
 
-// Which local inputs and pairs h has.
+// Which local inputs and pairs h has: a second derivative is of inputs of one row of slopes, so that products of these
+// have it.
 static moray_status find_pairs(struct part *part, int ns)
 {
     const int n = part->phase->nx + part->phase->nu + ns;
@@ -28,9 +29,6 @@ static moray_status find_pairs(struct part *part, int ns)
             if (map->jac.row[d] == map->jac.row[e] && map->jac.col[d] <= map->jac.col[e])
                 pair[map->jac.col[e] * n + map->jac.col[d]] = true;
         }
-    for (int e = 0; e < map->hess.nnz; e++)
-        if (map->hess.row[e] < n)
-            pair[map->hess.row[e] * n + map->hess.col[e]] = true;
     for (int i = 0; i < n; i++)
         if (felt[i])
             part->input[part->inputs++] = i;

@@ -155,6 +155,16 @@ static void test_cuts(void)
          {0, 1, 2},
          far_edge,
          false},
+        {"before an edge that is the user's last",
+         3,
+         1,
+         4,
+         {0, 0.5, 1 - 0x1p-31, 1},
+         {0.9375},
+         {0, 0.5, 0.9375, 1 - 0x1p-31, 1},
+         {0, 1, 1, 2},
+         far_edge,
+         false},
         {"where controls are held",
          4,
          2,
@@ -226,6 +236,8 @@ static void test_node(void)
     static const int want[] = {5, 0, 7, 2};
     for (int k = 0; k < 4; k++)
         CHECK(moray_observed_node(&layout, &ocp, 1, k) == &node[want[k]], "t = %g at node %d", time[k], want[k]);
+    node[2].tau = 0.5 - 0x1p-31, node[5].tau = 0.5 + 0x1p-31;
+    CHECK(moray_observed_node(&layout, &ocp, 1, 0) == &node[2], "of two edges that are as near the first");
 }
 
 int main(void)
