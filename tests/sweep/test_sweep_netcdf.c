@@ -4,6 +4,7 @@
 #define _GNU_SOURCE // mkdtemp
 #include "tap.h"
 
+#include <errno.h>
 #include <malloc.h>
 #include <netcdf.h>
 #include <string.h>
@@ -12,6 +13,39 @@
 
 #include "moray/app/options.h"
 #include "sweep/sweep.h"
+
+// ---- A disk that takes a part of what it is given, is interrupted, and fails at the end; the linker leads here ----
+
+static bool slow;
+static int sync_error, close_error, writes;
+ssize_t __real_write(int fd, const void *from, size_t size);
+int __real_fsync(int fd);
+int __real_close(int fd);
+ssize_t __wrap_write(int fd, const void *from, size_t size);
+int __wrap_fsync(int fd);
+int __wrap_close(int fd);
+
+ssize_t __wrap_write(int fd, const void *from, size_t size)
+{
+    if (!slow)
+        return __real_write(fd, from, size);
+    errno = EINTR;
+    return ++writes % 2 ? -1 : __real_write(fd, from, size > 1000 ? 1000 : size);
+}
+
+int __wrap_fsync(int fd)
+{
+    const int result = __real_fsync(fd);
+    errno = sync_error ? sync_error : EDOM;
+    return sync_error ? -1 : result;
+}
+
+int __wrap_close(int fd)
+{
+    const int result = __real_close(fd);
+    errno = close_error ? close_error : EDOM;
+    return close_error ? -1 : result;
+}
 
 static moray_status none(const moray_sweep_point *point, FILE *summary, void *self)
 {
@@ -323,6 +357,42 @@ static void test_file(void)
     moray_store_free(&store);
 }
 
+static void test_disk(void)
+{
+    static const struct {
+        int sync, close;
+        const char *told; // NULL: nothing
+    } cases[] = {{0, 0, NULL},
+                 {EINVAL, 0, NULL}, // of what is no file on a disk
+                 {EIO, 0, "Input/output error"},
+                 {EIO, ENOSPC, "Input/output error"},
+                 {EINVAL, ENOSPC, "No space left on device"},
+                 {0, ENOSPC, "No space left on device"}};
+    const moray_sweep_spec spec = {
+        .file = "disk.nc", .objective = "cost", .title = "T", .ranges = 1, .range = ranges, .draws = 3, .solve = none};
+    struct grid grid;
+    struct store store;
+    int file;
+    CHECK_OK(moray_grid_new(&spec, &grid), "a grid");
+    CHECK_OK(moray_store_new(&store, &grid), "a store");
+    slow = true;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        unlink("disk.nc");
+        sync_error = cases[k].sync, close_error = cases[k].close;
+        const moray_status status = moray_store_write(&store, true);
+        if (cases[k].told)
+            CHECK(status.code == MORAY_IO && strstr(status.text, cases[k].told) && access("disk.nc", F_OK) != 0, "%s",
+                  status.text);
+        else
+            CHECK(!moray_failed(status) && nc_open("disk.nc", NC_NOWRITE, &file) == NC_NOERR &&
+                      nc_close(file) == NC_NOERR,
+                  "a file, written in %d parts: %s", writes, status.text);
+        CHECK(access("disk.nc.new", F_OK) != 0, "and nothing is left beside it");
+    }
+    slow = false, sync_error = close_error = 0;
+    moray_store_free(&store);
+}
+
 int main(void)
 {
     char folder[] = "/tmp/moray-netcdf-XXXXXX", command[100];
@@ -330,6 +400,7 @@ int main(void)
         return 1;
     test_names();
     test_file();
+    test_disk();
     snprintf(command, sizeof command, "rm -rf %s", folder);
     CHECK(chdir("/") == 0 && system(command) == 0, "nothing is left behind");
     return tap_done();
