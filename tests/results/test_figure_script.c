@@ -132,6 +132,11 @@ static void test_layout(void)
     const moray_curve still = {.x = (double[]){2, 2}, .y = at, .n = 2};
     figure.over_time = true, figure.curves = &still, figure.n_curves = 1;
     CHECK(!moray_figure_time(&figure, range), "nor where none goes by");
+    for (int k = 0; k < 2; k++) {
+        const moray_curve endless = {.x = (double[]){k ? 0 : -INFINITY, k ? INFINITY : 0}, .y = at, .n = 2};
+        figure.curves = &endless;
+        CHECK(!moray_figure_time(&figure, range), "nor without an end");
+    }
     figure.n_curves = 0;
     CHECK(!moray_figure_time(&figure, range), "nor where nothing is drawn");
 }

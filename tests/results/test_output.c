@@ -105,6 +105,39 @@ static void test_failed_commit(void)
     CHECK(entries("half") == 2, "and stays so");
 }
 
+// Removes old/.moray-*/new.NAME, as somebody else might.
+static void lose(const char *folder, const char *name)
+{
+    DIR *directory = opendir(in_root(folder));
+    for (const struct dirent *entry; directory && (entry = readdir(directory));)
+        if (strncmp(entry->d_name, ".moray-", 7) == 0) {
+            char path[700];
+            snprintf(path, sizeof path, "%s/%s/new.%s", in_root(folder), entry->d_name, name);
+            unlink(path);
+        }
+    if (directory)
+        closedir(directory);
+}
+
+// One that is gone cannot be put in place; what it was to replace had been put aside by then.
+static void test_lost(void)
+{
+    mkdir(in_root("gone"), 0777);
+    put("gone/first", "kept");
+    put("gone/last", "kept too");
+    moray_output *output = open_in("gone");
+    fprintf(start(output, "first"), "lost");
+    fprintf(start(output, "between"), "lost");
+    fprintf(start(output, "last"), "lost");
+    lose("gone", "last");
+    const moray_status status = moray_output_commit(output);
+    CHECK(status.code == MORAY_IO &&
+              strcmp(status.text, "output file last: cannot be put in place: No such file or directory") == 0,
+          "%s", status.text);
+    CHECK(holds("gone/first", "kept") && holds("gone/last", "kept too") && entries("gone") == 2, "all is as before");
+    moray_output_free(output);
+}
+
 static void test_full_disk(void)
 {
     struct rlimit limit, was;
@@ -178,6 +211,7 @@ int main(void)
     test_abandoned();
     test_killed();
     test_failed_commit();
+    test_lost();
     test_full_disk();
     test_unwritable();
     test_side_by_side();

@@ -36,7 +36,7 @@ static void test_tables(void)
                                 "<td class=\"unit\"></td></tr>\n" END,
        "a table with units and heads");
     const moray_table_row bare_rows[] = {{"a", {-2e12}, "", NULL}, {"b", {0.125}, NULL, NULL}};
-    const moray_table bare = {.n_columns = 1, .rows = bare_rows, .n_rows = 2};
+    const moray_table bare = {.columns = {NULL, "beyond"}, .n_columns = 1, .rows = bare_rows, .n_rows = 2};
     page = open_memstream(&text, &size);
     moray_html_table(page, &bare);
     is(page,
@@ -99,6 +99,12 @@ static void test_added(void)
     moray_text_add(line, sizeof line, " %s", "now");
     CHECK(strcmp(line, "one, two, 123 digits now") == 0, "as much as there is room for: %s", line);
     moray_text_add(line, sizeof line, ".");
+    char more[40];
+    memset(more, '#', sizeof more);
+    strcpy(more, "one two");
+    moray_text_add(more, 16, " six and more");
+    CHECK(strcmp(more, "one two six ...") == 0 && more[16] == '#' && more[20] == '#', "nothing behind its room: %s",
+          more);
     CHECK(strcmp(line, "one, two, 123 digits ...") == 0, "%s", line);
 }
 
