@@ -9,7 +9,7 @@
 
 #include "ocp/diagnosis/diagnosis.h"
 
-enum shape { corner, waves, ramp, jump, rounded, smooth };
+enum shape { corner, waves, ramp, jump, rounded, smooth, steepening, flattening };
 static const double low = -3, high = 5, piece = 0.5; // of the range that is looked at, a sixteenth
 
 // A function of one input, from one node of the phase on.
@@ -19,6 +19,13 @@ struct bent {
     int of, in;   // output, input
     double after; // time
 };
+
+// Bent all along, by 4 from piece to piece, and by size in the middle: down by 100 and half of that in the last.
+static double steepen(double past, double size)
+{
+    const double last = past - (high - low) / 2 + piece / 2;
+    return -100 * past - 4 / piece * last * last / 2 - size * fabs(past) / 2;
+}
 
 static double bend(const struct bent *bent, double z)
 {
@@ -34,6 +41,10 @@ static double bend(const struct bent *bent, double z)
         return past > 0 ? bent->size : 0;
     case rounded:
         return hypot(past, bent->size);
+    case steepening:
+        return steepen(past, bent->size);
+    case flattening:
+        return -steepen(-past, bent->size);
     default:
         return exp(past);
     }
@@ -127,6 +138,10 @@ static void test_sizes(void)
         check(&(struct bent){corner, 5.5 * sign, 1, 2, 3, 0}, true, "a corner");
     }
     check(&(struct bent){corner, -5, 1, 2, 3, 0}, false, "a corner"); // in binary numbers: a twentieth exactly
+    for (int shape = steepening; shape <= flattening; shape++) {      // a twentieth of the steepest piece, at an end
+        check(&(struct bent){shape, 5, 1, 3, 2, 0}, false, "a corner");
+        check(&(struct bent){shape, 5.3, 1, 3, 2, 0}, true, "a corner");
+    }
     check(&(struct bent){ramp, piece / 10, 1, 3, 0, 0}, false, "a ramp");
     // Between pieces of 1/2 waves bend by (2 - 2 cos(1)) 2, a corner by all that it is: a fifth of both is the least.
     const double most = (2 - 2 * cos(1)) * 2;
