@@ -18,9 +18,9 @@ moray_status moray_examiner_new(struct examiner *e, const struct witness *witnes
         return moray_error(MORAY_MEMORY, "no memory to examine phase %s", phase->name);
     *e = (struct examiner){.solution = solution, .p = p, .n = n, .in = block, .out = block + phase->map->n_in};
     e->witness = &witness->phase[p];
-    e->size = e->out + phase->map->n_out;
-    e->slope = e->size + n;
+    e->slope = e->out + phase->map->n_out;
     e->error = e->slope + n;
+    e->size = e->error + n;
     for (int i = 0; i < phase->nx; i++) {
         for (int node = 0; node < layout->nodes; node++)
             e->size[i] = fmax(e->size[i], fabs(solution->iterate.x[layout->node[node].x + i]));

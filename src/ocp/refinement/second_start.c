@@ -20,10 +20,10 @@ static moray_status run_steps(const moray_integrator *self, const moray_ode *ode
     (void)self, (void)times, (void)n_times, (void)observe, (void)observer;
     if (!y)
         return moray_error(MORAY_MEMORY, "no memory for a guess of %d states", n);
-    double *slope = y + n, *sum = slope + n;
+    double *sum = y + n, *slope = sum + n;
     bool ok = true;
     for (int k = 0; k < steps && ok; k++) {
-        memset(slope, 0, 2 * (size_t)n * sizeof *slope);
+        memset(sum, 0, 2 * (size_t)n * sizeof *sum); // and slopes
         for (int s = 0; s < stages && ok; s++) {
             for (int r = 0; r < n; r++)
                 y[r] = x[r] + h * reach[s] * slope[r];
