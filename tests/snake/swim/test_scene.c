@@ -138,6 +138,33 @@ static void test_bodies(moray_model model)
     moray_swimmer_free(swimmer);
 }
 
+// Two samples are a motion; what is told of efforts is of the first robot, its second half.
+static void test_two_samples(void)
+{
+    moray_swimmer *swimmer = make(MORAY_CONTROL_ORIENTED);
+    moray_swim_track track = make_track(swimmer, given_t), two = track;
+    const moray_swim_look look = {.name = "two", .width = 0.01, .aside = {-0.1, 0.2}};
+    const double values[] = {4, -2};
+    moray_swim_scene made = {0};
+    two.n = 2;
+    CHECK_OK(moray_swim_scene_add(&made, &look, &two, swimmer), "two samples");
+    CHECK_OK(moray_swim_scene_tell(&made, "told", "m", &two, values), "and a number");
+    CHECK(made.scene.n_bodies == 1 && made.scene.n_channels == 1 && made.scene.frames == 11, "%d frames",
+          made.scene.frames);
+    check_body(&made.scene, 0, swimmer, given_t, look.aside);
+    for (int k = 0; k < 11; k++)
+        CHECK_NEAR(made.channel[0].values[k], 4 - 0.6 * k, 1e-12, "the number");
+    for (int c = 0; c < 2; c++)
+        CHECK_NEAR(made.scene.current[c], (given_V[0][c] + given_V[1][c]) / 2, 1e-15, "mean current");
+    for (int i = 0; i < 2 * JOINTS; i++)
+        two.u[i] *= 3;
+    CHECK_OK(moray_swim_scene_add(&made, &look, &two, swimmer), "another that pushes harder");
+    CHECK(strcmp(made.scene.effort, "force, up to 31 N") == 0, "efforts of the first: %s", made.scene.effort);
+    moray_swim_scene_free(&made);
+    moray_swim_track_free(&track);
+    moray_swimmer_free(swimmer);
+}
+
 static void test_numbers(void)
 {
     moray_swimmer *swimmer = make(MORAY_CONTROL_ORIENTED);
@@ -242,6 +269,7 @@ int main(void)
         test_bodies((moray_model)model);
         test_gait((moray_model)model);
     }
+    test_two_samples();
     test_numbers();
     check_outlines(1, 2);
     check_outlines(4.6, 3);
