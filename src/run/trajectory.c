@@ -112,7 +112,6 @@ static moray_status draw_kind(const struct track *t, const char *kind, int p, in
                                             .stride = t->columns};
                 done[j] = j > i;
             }
-        done[i] = true;
         if (n > 0)
             MORAY_TRY(draw(t, kind, p, ++group, curves, n, unit));
     }

@@ -46,7 +46,7 @@ static bool other(void *self, const double *x, int k, double *cost)
     }
     b->confirmations++;
     b->of[k]++;
-    *cost = (lucky(x[0]) ? 3 : bowl(x)) + b->steps * (k + 1) + b->level;
+    *cost = (lucky(x[0]) ? b->never ? 0.1 : 3 : bowl(x)) + b->steps * (k + 1) + b->level;
     return !(b->never && lucky(x[0]));
 }
 

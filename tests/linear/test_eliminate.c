@@ -313,6 +313,21 @@ static void test_equal(void)
           made.index[1]);
 }
 
+// A partner may be the first column, where its own best partner is another.
+static void test_first_partner(void)
+{
+    static const double lower[4][3] = {{0.01, 0, 0}, {1, 0, 0}, {2, 0, 0}, {30, 0, 1000}};
+    static struct made made;
+    struct full full = {.width = 3, .height = 4, .index = {100, 101, 102}};
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j <= i && j < 3; j++)
+            full.M[i][j] = full.M[j][i] = lower[i][j];
+    make(&made, &full, 0.01, false);
+    moray_ldl_front_eliminate(&made.ldl, 0);
+    CHECK(made.ldl.statistics.pivots_2x2 == 1 && made.front.pivots >= 2 && made.index[0] + made.index[1] == 201,
+          "%d pairs, of %d and %d", made.ldl.statistics.pivots_2x2, made.index[0], made.index[1]);
+}
+
 // A column that is as good as the threshold, and no better, is left to the parent, unless there is none.
 static void test_just_threshold(void)
 {
@@ -331,6 +346,7 @@ static void test_just_threshold(void)
 int main(void)
 {
     test_equal();
+    test_first_partner();
     test_just_threshold();
     test_ties();
     static const double thresholds[] = {0.01, 0.1, 0.25, 0.45};

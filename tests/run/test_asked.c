@@ -77,6 +77,7 @@ static void arrive(const moray_ends *at, moray_end_values *out, const void *data
     out->objective = at->phase->q[0];
 }
 
+static int n_constants;     // of the problem
 static char said[1000];     // on standard error
 static bool answered_since; // interruptions, behind the solve
 
@@ -104,7 +105,18 @@ static int run(const moray_settings *settings, const moray_guess *guess, const c
     dup2(fileno(told), STDERR_FILENO);
     if (!freopen("/dev/null", "w", stdout))
         return -1;
-    const int code = moray_app_run(&(moray_app){.spec = &spec, .settings = settings, .guess = guess}, argc, argv);
+    double value[MORAY_APP_CONSTANTS + 1];
+    char key[MORAY_APP_CONSTANTS + 1][16];
+    moray_app_constant constants[MORAY_APP_CONSTANTS + 1];
+    for (int i = 0; i < n_constants; i++) {
+        snprintf(key[i], sizeof key[i], "k%d", i);
+        value[i] = i;
+        constants[i] = (moray_app_constant){.key = key[i], .value = &value[i], .max = 100};
+    }
+    const int code = moray_app_run(
+        &(moray_app){
+            .spec = &spec, .settings = settings, .guess = guess, .constants = constants, .n_constants = n_constants},
+        argc, argv);
     struct sigaction now;
     sigaction(SIGINT, NULL, &now);
     answered_since = now.sa_handler != SIG_DFL;
@@ -261,6 +273,19 @@ static void test_advice(void)
     check_advice("all of it just right", "try more intervals or refinements");
 }
 
+// As many constants as there may be, and one more.
+static void test_constants(void)
+{
+    certificate = (moray_certificate){.pass = true};
+    verdict = moray_ok();
+    n_constants = MORAY_APP_CONSTANTS;
+    CHECK(RUN(&coarse, NULL, "--quiet", "--set", "k31=7") == MORAY_EXIT_SOLVED && !*said, "%s", said);
+    n_constants++;
+    CHECK(RUN(&coarse, NULL, "--quiet") == MORAY_EXIT_USAGE && strcmp(said, "slide: 33 constants: at most 32\n") == 0,
+          "%s", said);
+    n_constants = 0;
+}
+
 // A certificate that cannot be made of numbers fails; one for which there is no memory ends the run.
 static void test_certified(void)
 {
@@ -279,6 +304,7 @@ int main(void)
     test_asked();
     test_continued();
     test_advice();
+    test_constants();
     test_certified();
     return tap_done();
 }

@@ -199,9 +199,11 @@ run --scheme euler --json --out euler
 check "bad scheme: exit 2, nothing printed or written: $(cat err)" \
     eval '[ $code -eq 2 ] && says "scheme = euler: must be" && [ ! -s out ] && [ ! -e euler ]'
 run --help
-check "--help has the constants and nothing of robots" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -qiE "robot|model" out'
+check "--help has the constants and nothing of robots" eval '[ $code -eq 0 ] && grep -q "^  gate=X" out && ! grep -qiE "robot|model|^Solution" out'
 run --version
-check "--version: $(cat out)" grep -q '^run_demo (moray) [0-9.]*$' out
+check "--version: $(cat out)" eval '[ "$(wc -l <out)" -eq 1 ] && grep -q "^run_demo (moray) [0-9.]*$" out'
+run --quiet --out d
+check "a folder may have one letter" [ -s d/summary.json ]
 (ulimit -f 1 && "$program" --quiet --out limited >out 2>err)
 code=$?
 check "files that may not grow: exit 2, not a signal: $(cat err)" eval '[ $code -eq 2 ] && says "cannot be written"'

@@ -312,6 +312,12 @@ static void test_own(rig *r)
     check_row(&t.table[2].rows[1], "s[1]", (double[]){-0.5, 0.25, -3, 2}, 4);
     check_meshes(r, &t.table[4]);
     moray_run_tables_free(&t);
+    r->run.fit.ns = r->run.fit.undetermined = 0;
+    CHECK_OK(moray_run_tables_new(&t, &r->run), "tables");
+    CHECK(strcmp(t.table[1].rows[4].text, "none") == 0 && strcmp(t.table[2].title, "Solver") == 0, "%s, then %s",
+          t.table[1].rows[4].text, t.table[2].title);
+    moray_run_tables_free(&t);
+    r->run.fit.ns = NS, r->run.fit.undetermined = 1;
     show(r);
     check_parts(r);
     has("\"s[1]\":{\"value\":-0.5,\"standard_error\":0.25,\"lower\":-3,\"upper\":2}");

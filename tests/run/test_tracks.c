@@ -195,6 +195,14 @@ static void test_both(void)
         CHECK_NEAR(figure_of("fit_2_1")->x[1][k], seen_at[k], 0, "when it was seen in the second");
     CHECK_NEAR(figure_of("fit_2_1")->y[1][2], seen[2 * CHANNELS], 0, "and what");
     table_free(&t);
+    rig first = r; // alone
+    first.spec.phases = 1;
+    first.app.spec = &first.spec;
+    first.run.app = &first.app;
+    write_table(&first, moray_run_write_residuals, "residuals.csv", &t);
+    CHECK(strcmp(t.names, "t [h],y[0],y[0] predicted,y[0] residual") == 0 && t.csv.rows == 2, "%s", t.names);
+    CHECK(n_figures == 1 && strcmp(figure_of("fit_1")->title, "hill: fit to y[0]") == 0, "%s", figures[0].title);
+    table_free(&t);
     rig_free(&r);
     seen_first = (moray_observations){0};
 }
@@ -319,6 +327,24 @@ static void test_plain(const rig *r)
     table_free(&t);
 }
 
+// Into a folder whose path leaves just room enough, and one of one letter more.
+static void test_room(const rig *r)
+{
+    moray_common given = moray_common_default();
+    char kept[MORAY_PATH_SIZE];
+    for (int more = 0; more < 2; more++) {
+        const size_t length = MORAY_PATH_SIZE - strlen("/b.iterate") - 1 + (size_t)more;
+        memset(given.out, 'a', length);
+        given.out[length] = 0;
+        given.output = (moray_output *)(void *)&given; // which the linker leads to the test
+        opened = NULL;
+        const moray_status status = moray_iterate_keep(&given, "b", r->run.solution, kept);
+        CHECK(status.code == (more ? MORAY_INPUT : MORAY_OK), "%.60s", status.text);
+        if (opened)
+            fclose(opened);
+    }
+}
+
 int main(void)
 {
     rig r;
@@ -330,6 +356,7 @@ int main(void)
     test_mapped(&r);
     test_figures(&r);
     test_plain(&r);
+    test_room(&r);
     rig_free(&r);
     test_both();
     unlink(path);
