@@ -106,11 +106,11 @@ static void test_null_space(void)
         CHECK(fits == k, "and %s", k ? "factored" : "left");
     }
     moray_null_space_free(ns);
-    int rows[] = {0, 1, 2, 3, 3, 4, 4}, cols[] = {0, 1, 2, 0, 1, 0, 1};
-    CHECK_OK(moray_null_space_new(&ns, 5, &(moray_pattern){7, rows, cols}), "two constraints of two variables");
+    int rows[] = {0, 1, 2, 3, 3, 4, 4, 4}, cols[] = {0, 1, 2, 0, 1, 0, 1, 2};
+    CHECK_OK(moray_null_space_new(&ns, 5, &(moray_pattern){8, rows, cols}), "two constraints");
     for (int k = 0; k < 3; k++) { // regular, of nothing, regular again
         const double z = k % 2 ? 0 : 1;
-        CHECK_OK(moray_null_space_factor(ns, (double[]){1, 2, 3, 4 * z, 5 * z, 6 * z, -7 * z}, &fits), "looked at");
+        CHECK_OK(moray_null_space_factor(ns, (double[]){1, 2, 3, 4 * z, 5 * z, 6 * z, -7 * z, z}, &fits), "looked at");
         CHECK(fits == !(k % 2), "and %s", fits ? "factored" : "left");
     }
     moray_null_space_free(ns);
