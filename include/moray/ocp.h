@@ -284,6 +284,7 @@ typedef struct moray_settings {
     int max_variables;      // 0, no limit: of a finer mesh
     double barrier;         // 0.1: where the barrier starts; less when the guess is nearly feasible and nearly right
     bool barrier_shared;    // false; true: that of up to 1500 bounds, beyond which it is shared out among them
+    bool rough;             // false; true: what the barrier leaves stays, though a certificate would not accept it
     bool own_scaling;       // true; false leaves scaling to Ipopt
     bool gauss_newton; // false; true leaves the curvature of constraints and of what is observed out of the Hessian
     int print_level;   // 0: Ipopt's log on standard error

@@ -79,6 +79,7 @@ static moray_status solve(moray_receding_horizon *r, double t, const double *sta
     if (!r->spec.ocp || !r->solution)
         guess = guess_from(r, t, state, &samples);
     moray_settings settings = r->spec.settings;
+    settings.rough = true;
     if (r->solution)
         settings.barrier = WARM;
     MORAY_TRY(moray_solve(ocp, &settings, &guess, solution));

@@ -196,5 +196,5 @@ moray_status moray_solve_again(moray_solution *solution)
         MORAY_TRY(solve_in_scale(solution));
         add(&solution->info, &first);
     }
-    return is_inside(solution) ? solve_closer(solution) : moray_ok();
+    return !solution->settings.rough && is_inside(solution) ? solve_closer(solution) : moray_ok();
 }

@@ -350,6 +350,11 @@ static void test_closer(void)
     CHECK(room_of(&made) < before / 5, "less of it is left: %.1e of %.1e", room_of(&made), before);
     CHECK(made.solution->settings.tolerance == 1e-8, "the tolerance that is asked for stays");
     drop(&made);
+    made = make();
+    made.at->objective = before / 5e-5;
+    made.solution->settings.rough = true;
+    CHECK(!again(&made, "room that nobody minds"), "is left as it is");
+    drop(&made);
 }
 
 // Where a closer one is not found, all stays as it was.
