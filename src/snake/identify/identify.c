@@ -128,16 +128,15 @@ static moray_status make_guess(const moray_identify *v, struct run *run)
 static double longest_delay(const moray_identify *v, bool ahead)
 {
     double most = 0;
-    for (int k = 0; k < 3; k++) {
-        static const char *const names[] = {"position_delay", "heading_delay", "joint_delay"};
+    for (int k = 0; k < 2; k++) { // that of the joints moves what is swum, not what is read
+        static const char *const names[] = {"position_delay", "heading_delay"};
         const int unknown = moray_unknown_named(names[k]);
         moray_unknowns world = v->spec.start;
         double low = *moray_unknown_at(unknown, &world), high = low;
         for (int i = 0; i < v->spec.n; i++)
             if (v->unknown[i] == unknown)
                 low = v->lower[i], high = v->upper[i];
-        if (k < 2)
-            most = fmax(most, ahead ? -low : high);
+        most = fmax(most, ahead ? -low : high);
     }
     return most;
 }
