@@ -286,8 +286,36 @@ static void test_first_conditions(void)
     moray_map_release(&map);
 }
 
+// Where nothing is found the equations end with those of how it closes, and what stands behind them stays.
+static void test_beyond(void)
+{
+    static const moray_closing_condition both[] = {{MORAY_CLOSE_RETURNS, 0, 0}, {MORAY_CLOSE_RETURNS, 1, 0}};
+    const double probe[] = {0.3, 0.4, 0.5, 0.6, 0.7};
+    moray_map plant, closing;
+    orbit_system system;
+    double z[UNKNOWN], F[UNKNOWN];
+    CHECK_OK(moray_map_from_complex(&plant, NX + NS + 1, NX, driven, NULL, NULL, probe), "plant");
+    CHECK_OK(moray_closing_map(&closing, NX, NS, both, NX), "closing");
+    const moray_periodic_orbit_spec spec = {
+        .nx = NX, .ns = NS, .plant = &plant, .closing = &closing, .scheme = "radau2", .intervals = 3};
+    CHECK_OK(moray_orbit_system_new(&system, &spec), "system");
+    for (int i = 0; i < UNKNOWN; i++)
+        z[i] = 0.1 * i, F[i] = 7;
+    for (int i = 0; i <= NS; i++)
+        system.p[i] = 1.1;
+    CHECK(moray_orbit_residual(&system, z, F) && system.unknowns == system.nodes * NX, "%d equations", system.unknowns);
+    int changed = 0;
+    for (int i = 0; i < UNKNOWN; i++)
+        changed += F[i] != 7;
+    CHECK(changed == system.unknowns && F[system.unknowns] == 7, "%d of them", changed);
+    moray_orbit_system_free(&system);
+    moray_map_release(&plant);
+    moray_map_release(&closing);
+}
+
 int main(void)
 {
+    test_beyond();
     test_slopes();
     test_no_parameters();
     test_conditions();
