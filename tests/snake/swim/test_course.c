@@ -109,6 +109,7 @@ int main(void)
     test_held(swimmer, 0, 0, -2);
     test_held(swimmer, 0.06, 0, 0.4);
     test_held(swimmer, 0, 0.06, -0.3);
+    test_held(swimmer, 0.06, 0, -0.4);
     test_astern(swimmer);
     test_refused(swimmer);
     moray_swimmer_free(swimmer);
