@@ -175,6 +175,31 @@ static void test_long(void)
     moray_record_free(&record);
 }
 
+static moray_status flood(const moray_sweep_point *point, FILE *summary, void *self)
+{
+    (void)point;
+    for (long k = 0; k < *(const long *)self; k++)
+        fputc('1', summary);
+    return moray_ok();
+}
+
+// Of a summary no more than 16 megabytes, in pieces as they come.
+static void test_too_long(void)
+{
+    const long most = 1L << 24;
+    for (long size = most; size <= most + 1; size++) {
+        struct worker worker = {0};
+        long length = size;
+        spec.solve = flood, spec.self = &length;
+        CHECK_OK(moray_worker_begin(&worker, &grid, &(const struct task){.point = 1, .start = -1}), "a point");
+        until_ended(&worker);
+        CHECK(size == most ? worker.length[0] == (size_t)most
+                           : worker.length[0] < (size_t)most && worker.length[0] >= (size_t)(most - (1 << 14)),
+              "%ld bytes are kept as %zu", size, worker.length[0]);
+        moray_worker_kill(&worker);
+    }
+}
+
 // Once begun again it is killed time and again.
 static void test_again(void)
 {
@@ -279,6 +304,7 @@ int main(void)
     test_endings();
     test_told();
     test_long();
+    test_too_long();
     test_again();
     test_killed();
     test_crew();
