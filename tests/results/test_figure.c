@@ -19,6 +19,21 @@ static void test_figure(void)
     free(svg);
 }
 
+// Where time runs along the axis, and where that stands in the picture.
+static void test_time(void)
+{
+    const double at[] = {0.5, 1, 3};
+    const moray_curve curve = {.label = "c", .x = at, .y = at, .n = 3};
+    const moray_figure drawn = {.name = "time", .title = "t", .over_time = true, .curves = &curve, .n_curves = 1};
+    moray_output *output = open_in("time");
+    CHECK_OK(moray_output_figure(output, &drawn), "drawn");
+    CHECK_OK(moray_output_commit(output), "commit");
+    moray_output_free(output);
+    char *svg = content("time/time.svg");
+    CHECK(strstr(svg, "aria-label=\"t\" data-time=\"0.5 3 96 582 42 340\" "), "%.200s", svg);
+    free(svg);
+}
+
 static void test_log_axes(void)
 {
     const double power[] = {0.03, 0.3, 4}, speed[] = {0.19, 0.5, 2.1};
@@ -209,6 +224,7 @@ int main(void)
         return 1;
     const int open = handles();
     test_figure();
+    test_time();
     test_log_axes();
     test_colours_and_field();
     test_layout();
