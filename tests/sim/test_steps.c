@@ -77,6 +77,9 @@ static void test_first(void)
     // Nor does what is just that.
     check_first_by(1e-14, 1, -50, (double[]){1e-5, 0}, 1, 1e-6, 100 * 1e-6);
     check_first_by(1e-14, 1, 1024 * 1e-5, (double[]){1.0 / 1024, 0}, 1, 1e-6, 100 * 1e-6);
+    // A curvature of no more than 1e-15 leaves the step as short as one by Euler is then.
+    check_first_by(1e-14, 1, 1024 * 1e-15, (double[]){1.0 / 1024, 0}, 1, 1e-6, 1e-6);
+    check_first_by(1e-14, 1, 1024 * 1.1e-15, (double[]){1.0 / 1024, 0}, 1, 1e-6, 100 * 1e-6);
 }
 
 // ---- The steps after it --------------------------------------------------------------------------------------------
