@@ -38,7 +38,7 @@ static void say_left_out(const moray_ladder_row row[MORAY_RUNGS], char *text, si
 // "+1.30", and "0.00" without a sign.
 static const char *signed_text(double value, char text[32])
 {
-    snprintf(text, 32, fabs(value) < 0.005 ? "%.2f" : "%+.2f", fabs(value) < 0.005 ? 0 : value);
+    snprintf(text, 32, value < 0.005 ? "%.2f" : "%+.2f", fabs(value) < 0.005 ? 0 : value);
     return text;
 }
 
