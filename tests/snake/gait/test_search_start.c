@@ -169,6 +169,12 @@ static void test_refusals(void)
     refuses(&spec, "phi0 = -0.02:-0.01: in still water the heading returns at 0 only");
     spec.limits.offset = moray_between(0.01, 0.02);
     refuses(&spec, "phi0 = 0.01:0.02: in still water the heading returns at 0 only");
+    for (int side = 0; side < 2; side++) {
+        moray_gait_search *search;
+        spec.limits.offset = side ? moray_between(-0.02, 0) : moray_between(0, 0.02);
+        CHECK_OK(moray_gait_search_new(&search, &spec, "lobatto5", 12), "to one side, from 0 on");
+        moray_gait_search_free(search);
+    }
 }
 
 int main(void)
