@@ -6,6 +6,7 @@
 #include "arguments.h"
 #include "tap.h"
 
+#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -33,10 +34,16 @@ static moray_status finish(void *place)
     return p->mass < 100 ? moray_ok() : moray_error(MORAY_INPUT, "a mass of %g kg", p->mass);
 }
 
+static moray_status finish_tail(void *place)
+{
+    ((part *)place)->finished += 100;
+    return finish(place);
+}
+
 static const moray_option head_rows[] = {MORAY_ROW(REAL, part, mass, "head", "head_kg", .help = "h")},
                           tail_rows[] = {MORAY_ROW(REAL, part, mass, "tail", "tail_kg", .help = "h"),
                                          MORAY_ROW(REAL, part, length, "tail", "tail_m", .help = "h")};
-static const moray_option_table head_table = {head_rows, 1, finish}, tail_table = {tail_rows, 2, finish};
+static const moray_option_table head_table = {head_rows, 1, finish}, tail_table = {tail_rows, 2, finish_tail};
 static const moray_option_group groups[] = {{&head_table, offsetof(settings, head)},
                                             {&tail_table, offsetof(settings, tail)}};
 
@@ -54,7 +61,8 @@ static bool sleeps(const void *self)
     return ((const settings *)self)->asleep;
 }
 
-static const moray_idle idle[] = {{"jobs", sleeps, "asleep"}, {"tail_m", sleeps, "asleep"}, {NULL, NULL, NULL}};
+static const moray_idle idle[] = {
+    {"scheme", sleeps, "asleep"}, {"jobs", sleeps, "asleep"}, {"tail_m", sleeps, "asleep"}, {NULL, NULL, NULL}};
 static const char *const without[] = {"scheme", "ipopt.KEY", NULL};
 static const moray_program program = {.name = "edge",
                                       .summary = "s",
@@ -95,7 +103,7 @@ static void test_groups(void)
 {
     settings s;
     CHECK_OK(PARSE(&s, "--set", "tail_kg=7", "--set", "head_kg=4"), "two groups");
-    CHECK(s.head.mass == 4 && s.tail.mass == 7 && s.head.finished == 5 && s.tail.finished == 8, "finished %d and %d",
+    CHECK(s.head.mass == 4 && s.tail.mass == 7 && s.head.finished == 5 && s.tail.finished == 108, "finished %d and %d",
           s.head.finished, s.tail.finished);
     refused(PARSE(&s, "--set", "tail_kg=700"), "a mass of 700 kg");
     refused(PARSE(&s, "--set", "head_kg=400"), "a mass of 400 kg");
@@ -118,7 +126,9 @@ static void test_told(void)
     settings s = {.common = moray_common_default(), .tail = {.mass = NAN, .length = NAN}};
     char *argv[] = {"d", "--out", "x", "--set", "tail_kg=4"}, *ini = NULL;
     moray_request request;
+    const locale_t before = uselocale((locale_t)0);
     CHECK_OK(moray_options_parse(&deriving, 5, argv, &s, &request, &ini), "read");
+    CHECK(uselocale((locale_t)0) == before, "the locale is what it was");
     CHECK(s.common.argc == 5 && s.common.argv == argv && s.tail.length == 8, "with the command line");
     CHECK(ini && strstr(ini, "\n[tail]\ntail_kg = 4\n; tail_m: not given\n") &&
               strstr(ini, "\n; What follows from these:\n;   tail_m = 8\n"),
@@ -145,6 +155,31 @@ static void test_unused(void)
     static const char *const others[] = {"schemes", "scheme2", "--schem", "ipopt", "--ipopt", "count", "ipopr.KEY"};
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)
         CHECK_OK(moray_option_unused(&options, others[k]), others[k]);
+}
+
+// Of names that are as near as each other the first one is suggested; of words that for all goes before.
+static void test_nearest(void)
+{
+    static const moray_option taps[] = {MORAY_ROW(INT, settings, count, "one", "tap_a", .flag = "tap-a", .help = "h"),
+                                        MORAY_ROW(INT, settings, other, "one", "tap_b", .flag = "tap-b", .help = "h")};
+    static const moray_word word[] = {{"cod", "h"}, {"cob", "h"}, {"alp", "h"}};
+    static const moray_words words = {
+        .noun = "fish", .word = word, .n = 3, .all = "all", .offset = offsetof(settings, asleep)};
+    static const moray_program nearest = {
+        .name = "n", .summary = "s", .options = taps, .n_options = 2, .words = &words};
+    static const struct {
+        const char *argument[2], *told;
+    } cases[] = {{{"--set", "tap_c=1"}, "unknown key tap_c; did you mean tap_a?"},
+                 {{"--tap-c", NULL}, "unknown option --tap-c; did you mean --tap-a?"},
+                 {{"cot", NULL}, "unknown fish cot; did you mean cod?"},
+                 {{"alq", NULL}, "unknown fish alq; did you mean all?"}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        command_line line;
+        moray_request request;
+        settings s = {.common = moray_common_default()};
+        command_set(&line, "n", cases[k].argument, 2);
+        refused(moray_app_parse(&nearest, line.argc, line.argv, &s, &request), cases[k].told);
+    }
 }
 
 // A row without a section between two of one.
@@ -285,6 +320,7 @@ int main(void)
     test_told();
     test_idle();
     test_unused();
+    test_nearest();
     test_sections();
     test_columns();
     test_no_choices();
