@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Joints exactly on the gait: which steps are made between stops, and where an observer ends the simulation.
+// Joints exactly on the gait: which steps are made between stops, and where an observer ends the simulation; and
+// what is commanded in jumps, against the simulation of all joints.
 #include "degree.h"
 #include "tap.h"
 
@@ -94,6 +95,103 @@ static void check_stop(moray_model model)
           apart(&stopped, &short_of));
 }
 
+// ---- Jumps of what is commanded ------------------------------------------------------------------------------------
+
+typedef struct {
+    double value, size;
+    int looks;
+} jumper;
+
+static moray_offset held(double t, const void *self)
+{
+    const jumper *j = self;
+    return (moray_offset){.value = j->value + 0.3 * j->size * t, .rate = 0.3 * j->size};
+}
+
+static moray_status jump(const moray_swim_sample *sample, void *self)
+{
+    static const double to[] = {0.5, -1, 0.8, 0.1};
+    jumper *j = self;
+    CHECK_NEAR(sample->t, begin + 0.37 * j->looks, 1e-12, "looks every period");
+    j->value = j->size * to[j->looks++ % 4];
+    return moray_ok();
+}
+
+static bool keep(const moray_swim_sample *sample, void *self)
+{
+    outcome **next = self;
+    memcpy((*next)->x, sample->x, sizeof(*next)->x);
+    (*next)++->energy = sample->energy;
+    return true;
+}
+
+enum { STOPS = 5 };
+
+// States at times between which steps are longer and shorter; without `how` all joints are simulated.
+static void run_jumps(moray_model model, const moray_swim_on_gait *how, outcome shown[STOPS + 1])
+{
+    const double body[MORAY_BODY_STATES] = {0.2, 0.1, -0.3, 0.04, 0.07, -0.02},
+                 times[STOPS] = {begin + 0.01, begin + 0.34, begin + 0.6, begin + 0.61, begin + 1.4};
+    jumper j = {.size = model == MORAY_CONTROL_ORIENTED ? 0.01 : 0.1};
+    const moray_swim_controller controller = {.offset = held, .measure = jump, .period = 0.37, .self = &j};
+    const moray_sim_settings settings = {.rtol = 1e-11, .atol = 1e-12, .max_steps = 1000000};
+    moray_gait gait = gait_of(model);
+    outcome *next = shown, *end = &shown[STOPS];
+    moray_robot robot = moray_robot_paper();
+    moray_swimmer *swimmer;
+    robot.links = LINKS;
+    CHECK_OK(moray_swimmer_new(&swimmer, &robot, model), "swimmer");
+    gait.offset = held(begin, &j).value, gait.offset_rate = held(begin, &j).rate;
+    moray_swimmer_on_gait(swimmer, &gait, begin, body, end->x);
+    const moray_gait_change change = {0, gait_of(model)};
+    const moray_swim_plan plan = {.t0 = begin,
+                                  .t1 = begin + 1.9,
+                                  .schedule = &change,
+                                  .n_changes = 1,
+                                  .controller = &controller,
+                                  .times = times,
+                                  .n_times = STOPS,
+                                  .observe = keep,
+                                  .observer = &next};
+    CHECK_OK(how ? moray_swim_run_on_gait(swimmer, &plan, how, end->x, &end->energy)
+                 : moray_swim_run(swimmer, &settings, &plan, end->x, &end->energy),
+             "swum");
+    CHECK(j.looks == 6 && next == end, "%d looks", j.looks);
+    moray_swimmer_free(swimmer);
+}
+
+static void check_jumps(moray_model model)
+{
+    outcome all[STOPS + 1], on[STOPS + 1];
+    run_jumps(model, NULL, all);
+    for (int order = 3; order <= 4; order++) {
+        const moray_swim_on_gait how = {.steps = 3200, .order = order};
+        double worst = 0;
+        run_jumps(model, &how, on);
+        for (int k = 0; k <= STOPS; k++) {
+            on[k].energy = order == 3 ? all[k].energy : on[k].energy; // of each step's start
+            worst = tap_worse(worst, apart(&on[k], &all[k]));
+        }
+        CHECK(worst < 2e-8, "order %d: off the simulation of all joints by %.1e", order, worst);
+    }
+}
+
+static void check_refused(int order)
+{
+    const moray_gait_change change = {0, gait_of(MORAY_CONTROL_ORIENTED)};
+    const moray_swim_plan plan = {.t1 = 1, .schedule = &change, .n_changes = 1};
+    const moray_swim_on_gait how = {.steps = 8, .order = order};
+    const moray_robot robot = moray_robot_paper();
+    double x[24] = {0};
+    char says[80];
+    moray_swimmer *swimmer;
+    CHECK_OK(moray_swimmer_new(&swimmer, &robot, MORAY_CONTROL_ORIENTED), "swimmer");
+    const moray_status status = moray_swim_run_on_gait(swimmer, &plan, &how, x, NULL);
+    snprintf(says, sizeof says, "order = %d: must be 3 or 4, or 0, which is 4", order);
+    CHECK(status.code == MORAY_INPUT && strcmp(status.text, says) == 0, "%s", status.text);
+    moray_swimmer_free(swimmer);
+}
+
 int main(void)
 {
     for (int model = 0; model < 2; model++) {
@@ -102,6 +200,11 @@ int main(void)
         check_steps((moray_model)model, 1.01, 10, 11);
         check_steps((moray_model)model, 2, 8, 16);
         check_stop((moray_model)model);
+        check_jumps((moray_model)model);
     }
+    check_refused(2);
+    check_refused(5);
+    check_refused(-1);
+    check_refused(1);
     return tap_done();
 }
