@@ -115,6 +115,25 @@ static void test_times(void)
           "%g ticks, of the linear solver %g", info.seconds, linear);
 }
 
+// ---- What our own factorisation is blamed for: errors that Ipopt cannot refine, where it failed ----
+
+static void test_verdict(void)
+{
+    static const struct {
+        double error;
+        bool failed, blamed;
+    } cases[] = {{2e-7, true, true}, {2e-7, false, false}, {5e-8, true, false}, {NAN, true, true}, {0, true, false}};
+    for (int k = 0; k < 5 && moray_ipopt_linear_available(); k++) {
+        const struct ipopt_linear linear = {.error = cases[k].error};
+        const moray_status status = moray_ipopt_linear_verdict(&linear, cases[k].failed);
+        CHECK(status.code == (cases[k].blamed ? MORAY_NOT_SOLVED : MORAY_OK), "errors of %g: %s", cases[k].error,
+              status.text);
+    }
+    const struct ipopt_linear lacking = {.error = 1, .failure = moray_error(MORAY_MEMORY, "none")};
+    CHECK(!moray_ipopt_linear_available() || moray_ipopt_linear_verdict(&lacking, true).code == MORAY_MEMORY,
+          "what it tells itself goes before");
+}
+
 // ---- Options ----
 
 static Bool no_value(Index n, Number *x, Bool fresh, Number *value, UserDataPtr data)
@@ -191,6 +210,7 @@ int main(void)
     test_log();
     test_descriptors();
     test_times();
+    test_verdict();
     test_options();
     return tap_done();
 }

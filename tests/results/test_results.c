@@ -318,9 +318,27 @@ static void test_json_places(void)
     moray_json_file_free(NULL);
 }
 
+// A name in a place is of at most 127 bytes.
+static void test_json_keys(void)
+{
+    char path[] = "/tmp/moray-json-XXXXXX", key[129];
+    moray_json_file *json;
+    memset(key, 'k', sizeof key);
+    key[128] = 0;
+    FILE *file = fdopen(mkstemp(path), "w");
+    fprintf(file, "{\"%s\": 2, \"%s\": 1}", key, key + 1);
+    fclose(file);
+    CHECK_OK(moray_json_read(&json, path), "a file");
+    CHECK(moray_json_number_at(json, key + 1) == 1, "127 bytes");
+    CHECK(isnan(moray_json_number_at(json, key)), "one more is no name");
+    moray_json_file_free(json);
+    remove(path);
+}
+
 int main(void)
 {
     test_json_places();
+    test_json_keys();
     test_numbers();
     test_json();
     test_json_depth();
