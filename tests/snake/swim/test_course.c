@@ -100,6 +100,18 @@ static void test_astern(moray_swimmer *swimmer)
           "%s", status.text);
 }
 
+// A gait that does not move holds no course, whatever the water does.
+static void test_no_way(moray_swimmer *swimmer)
+{
+    const moray_gait gait = {.amplitude = 0, .omega = 1.8, .delta = 0.8};
+    const moray_swim_setup setup = setup_of(swimmer, 0, 0);
+    moray_steady steady;
+    const moray_status status = moray_swim_hold_course(&setup, &gait, 0.4, &steady);
+    CHECK(status.code == MORAY_NOT_SOLVED && strcmp(status.text, "the gait makes no way through the water") == 0, "%s",
+          status.text);
+    CHECK(steady.speed == 0, "%g m/s", steady.speed);
+}
+
 int main(void)
 {
     const moray_robot robot = moray_robot_paper();
@@ -111,6 +123,7 @@ int main(void)
     test_held(swimmer, 0, 0.06, -0.3);
     test_held(swimmer, 0.06, 0, -0.4);
     test_astern(swimmer);
+    test_no_way(swimmer);
     test_refused(swimmer);
     moray_swimmer_free(swimmer);
     return tap_done();

@@ -119,6 +119,37 @@ static void test_inheritance(void)
     remove(path);
 }
 
+// A line at 0 is instead of the gait that was to be the first; others come after that.
+static void check_first(const char *text, int gaits, const double *t, const double *omega)
+{
+    char path[32];
+    FILE *file = start(path);
+    moray_gait_change *change = NULL;
+    int n = 0;
+    moray_gait_input first = moray_gait_input_default();
+    first.omega = 1.5;
+    CHECK(file, "a temporary file");
+    if (!file)
+        return;
+    fputs(text, file);
+    fclose(file);
+    CHECK_OK(moray_gait_schedule_read(path, &first, &robot, MORAY_FIRST_PRINCIPLES, &change, &n), "a schedule");
+    CHECK(n == gaits, "%d gaits, expected %d", n, gaits);
+    for (int i = 0; i < n && i < gaits; i++) {
+        CHECK_NEAR(change[i].t, t[i], 0, "begins");
+        CHECK_NEAR(change[i].gait.omega, omega[i] * (omega[i] == 1.5 ? 1 : DEG), 1e-15, "omega");
+    }
+    free(change);
+    remove(path);
+}
+
+static void test_first(void)
+{
+    check_first("t_s,omega_deg_s\n0,100\n4,110\n9,120\n", 3, (double[]){0, 4, 9}, (double[]){100, 110, 120});
+    check_first("t_s,omega_deg_s\n0,100\n", 1, (double[]){0}, (double[]){100});
+    check_first("omega_deg_s,t_s\n100,4\n", 2, (double[]){0, 4}, (double[]){1.5, 100});
+}
+
 int main(void)
 {
     robot = moray_robot_paper();
@@ -126,5 +157,6 @@ int main(void)
     test_offsets();
     test_negative();
     test_inheritance();
+    test_first();
     return tap_done();
 }
