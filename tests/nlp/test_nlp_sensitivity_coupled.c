@@ -70,10 +70,10 @@ static void test_coupled(int held, bool lower, bool upper, const double *moves)
         d.x_upper[held] = p[BOUND], d.z_upper[held] = fmax(-left[0], 0);
     CHECK(lower ? left[0] > 1 : left[0] < -1, "variable %d is held: %g", held, left[0]);
     CHECK_OK(moray_nlp_sensitivity_new(&s, &d.nlp, &d.at), "coupled variables");
-    double bound[3] = {0};
+    double bound[3] = {0}, *still = calloc(1, sizeof *still); // of its own, as long as there are rows
     bound[held] = moves[BOUND];
     const moray_nlp_shift shift = {
-        .gradient = moves, .g_lower = &moves[B], .g_upper = &moves[B], .x_lower = bound, .x_upper = bound};
+        .gradient = moves, .g = still, .g_lower = &moves[B], .g_upper = &moves[B], .x_lower = bound, .x_upper = bound};
     CHECK_OK(moray_nlp_sensitivity_solve(s, &shift, &slope), "all of it moves");
     const double change = left[1] - left[0];
     for (int j = 0; j < 3; j++) {
@@ -84,6 +84,7 @@ static void test_coupled(int held, bool lower, bool upper, const double *moves)
     CHECK_NEAR(slope.lambda[0], later[3] - now[3], 1e-12, "multiplier of the row");
     CHECK_NEAR(slope.g[0], moves[B], 1e-12, "the row");
     moray_nlp_sensitivity_free(s);
+    free(still);
 }
 
 // ---- The least slope of a row: x0^2 / 2 + x1^2 / 2, a x0 = b -------------------------------------------------------
