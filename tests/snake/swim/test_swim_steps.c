@@ -176,6 +176,54 @@ static void check_jumps(moray_model model)
     }
 }
 
+// The work of a step of the third order is what its start would make of it.
+typedef struct {
+    moray_swimmer *swimmer;
+    double t, energy, power, worst;
+    int seen;
+} meter;
+
+static bool count(const moray_swim_sample *sample, void *self)
+{
+    meter *m = self;
+    double phi[LINKS - 1], v[LINKS - 1];
+    if (m->seen++ > 0)
+        m->worst = tap_worse(m->worst, fabs(sample->energy - m->energy - (sample->t - m->t) * m->power));
+    moray_swimmer_joints(m->swimmer, sample->x, phi, v);
+    m->power = moray_swimmer_power(m->swimmer, sample->u, v);
+    m->t = sample->t;
+    m->energy = sample->energy;
+    return true;
+}
+
+static void check_energy(moray_model model)
+{
+    const double body[MORAY_BODY_STATES] = {0.2, 0.1, -0.3, 0.04, 0.07, -0.02};
+    const moray_gait gait = gait_of(model);
+    const moray_gait_change change = {0, gait};
+    const moray_swim_on_gait how = {.steps = 8, .order = 3};
+    const double step = 2 * M_PI / gait.omega / 8;
+    moray_robot robot = moray_robot_paper();
+    double x[STATES], times[8];
+    meter m = {.seen = 0};
+    robot.links = LINKS;
+    CHECK_OK(moray_swimmer_new(&m.swimmer, &robot, model), "swimmer");
+    moray_swimmer_on_gait(m.swimmer, &gait, 0, body, x);
+    for (int k = 0; k < 8; k++)
+        times[k] = step * k;
+    const moray_swim_plan plan = {.t1 = 7 * step,
+                                  .schedule = &change,
+                                  .n_changes = 1,
+                                  .times = times,
+                                  .n_times = 8,
+                                  .observe = count,
+                                  .observer = &m};
+    CHECK_OK(moray_swim_run_on_gait(m.swimmer, &plan, &how, x, NULL), "swum");
+    CHECK(m.seen == 8 && m.energy > 0 && m.worst < 1e-13, "work of %d steps: off by %.1e of %.1e", m.seen, m.worst,
+          m.energy);
+    moray_swimmer_free(m.swimmer);
+}
+
 static void check_refused(int order)
 {
     const moray_gait_change change = {0, gait_of(MORAY_CONTROL_ORIENTED)};
@@ -201,6 +249,7 @@ int main(void)
         check_steps((moray_model)model, 2, 8, 16);
         check_stop((moray_model)model);
         check_jumps((moray_model)model);
+        check_energy((moray_model)model);
     }
     check_refused(2);
     check_refused(5);
