@@ -232,6 +232,21 @@ static void test_no_choices(void)
     CHECK(!*text, "nothing is allowed: %s", text);
 }
 
+// As much as there is room for, and nothing behind it.
+static void test_many_choices(void)
+{
+    static const char *const many[] = {"a_choice_whose_name_is_long_enough_for_three_of_them_to_fill_the_room_there_is",
+                                       "b_choice_whose_name_is_long_enough_for_three_of_them_to_fill_the_room_there_is",
+                                       "c_choice_whose_name_is_long_enough_for_three_of_them_to_fill_the_room_there_is",
+                                       "d", NULL};
+    char text[2 * MORAY_SHOWN_SIZE];
+    memset(text, '#', sizeof text);
+    moray_option_allowed(&(moray_option){.type = MORAY_OPTION_CHOICE, .choices = many}, text);
+    CHECK(memchr(text, 0, sizeof text) == text + MORAY_SHOWN_SIZE - 1 && text[MORAY_SHOWN_SIZE] == '#' &&
+              memcmp(text + MORAY_SHOWN_SIZE, text + MORAY_SHOWN_SIZE + 1, MORAY_SHOWN_SIZE - 1) == 0,
+          "cut where the room ends: %.*s", (int)MORAY_SHOWN_SIZE, text);
+}
+
 // ---- Numbers -------------------------------------------------------------------------------------------------------
 
 // "none" is the end of what is allowed, in the unit that is stored.
@@ -324,6 +339,7 @@ int main(void)
     test_sections();
     test_columns();
     test_no_choices();
+    test_many_choices();
     test_ends();
     test_degrees();
     test_lines();
