@@ -70,6 +70,10 @@ static void test_table(void)
           m.torque[2]);
     CHECK_OK(moray_motor_set_table(&m, speed, (const double[]){3, 3, 3, 3}, 4), "as much at any speed");
     CHECK_OK(moray_motor_set_table(&m, speed, (const double[]){4, 3, 1, 0}, 4), "a straight line of three");
+    CHECK_OK(moray_motor_set_table(&m, (const double[]){0, 2}, (const double[]){3, 1}, 2), "two points");
+    CHECK(m.lines == 1 && m.slope[0] == 1 && m.torque[0] == 3, "are one line");
+    const moray_status one = moray_motor_set_table(&m, speed, torque, 1);
+    CHECK(strcmp(one.text, "a motor's table of 1 points: must have 2 to 9") == 0, "%s", one.text);
     double many[10], falling[10];
     for (int k = 0; k < 10; k++)
         many[k] = k, falling[k] = 100 - k * k;
@@ -128,6 +132,11 @@ static void test_checks(void)
     supply.battery = INFINITY;
     const moray_status status = moray_supply_check(&supply);
     CHECK(strcmp(status.text, "supply: battery = inf Wh: must be finite and at least 0") == 0, "%s", status.text);
+    moray_robot robot = moray_robot_paper();
+    CHECK_OK(moray_robot_check(&robot), "a robot");
+    robot.supply = supply;
+    const moray_status of_robot = moray_robot_check(&robot);
+    CHECK(strcmp(of_robot.text, status.text) == 0, "as of the robot that it feeds: %s", of_robot.text);
 }
 
 // ---- Limited torque ------------------------------------------------------------------------------------------------

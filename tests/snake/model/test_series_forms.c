@@ -6,6 +6,7 @@
 
 #include "moray/snake/motor.h"
 #include "random_robot.h"
+#include "snake/model/fp_robot.h"
 #include "snake/model/series.h"
 
 enum { JOINTS = 3, MOST = JOINTS * 9 };
@@ -143,11 +144,32 @@ static void test_swimmers(void)
     }
 }
 
+// What links have more or less than the mean of all adds up to nothing; an equal one has no more than it.
+static void test_parts(void)
+{
+    random_seed seed = 6;
+    moray_link link[4];
+    fp_part part[4];
+    const moray_robot unequal = random_unequal_robot(&seed, 4, link), equal = random_robot(&seed, 4);
+    double uneven = 0, weight = 0, most = 0;
+    moray_fp_robot_of(&unequal, part);
+    for (int i = 0; i < 4; i++) {
+        uneven += part[i].uneven;
+        weight += part[i].weight;
+        most = fmax(most, fabs(part[i].uneven));
+    }
+    CHECK(most > 0.01 && fabs(uneven) < 1e-14, "moments of inertia beside their mean: %.1e", uneven);
+    CHECK_NEAR(weight, 4, 1e-14, "masses in means");
+    moray_fp_robot_of(&equal, part);
+    CHECK(part[0].uneven == 0 && part[0].weight == 1 && part[0].plain, "an equal link");
+}
+
 int main(void)
 {
     test_of_gait();
     test_basis();
     test_mapped();
     test_swimmers();
+    test_parts();
     return tap_done();
 }
