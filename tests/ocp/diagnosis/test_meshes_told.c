@@ -118,8 +118,10 @@ static void test_changes(moray_solution *solution)
          "again with these.\n"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const moray_mesh_record meshes[] = {cases[k].mesh, {.intervals = 20, .error = INFINITY}};
-        check(solution, meshes, 2, true, cases[k].told);
+        const moray_mesh_record meshes[] = {
+            {.intervals = 5, .error = INFINITY}, cases[k].mesh, {.intervals = 20, .error = INFINITY}};
+        check(solution, meshes + 1, 2, true, cases[k].told);
+        check(solution, meshes, 3, true, cases[k].told);
     }
 }
 
