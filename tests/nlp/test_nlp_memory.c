@@ -83,7 +83,7 @@ static bool bowl(void *self, const double *x, double *f, double *c, double *grad
     return true;
 }
 
-// x0^2 + x1^2 + x2^2 = -1: Ipopt turns to its restoration, whose systems are others.
+// x0^2 + x1^2 + x2^2 = -1: Ipopt turns to its restoration.
 static void round_one(const double *x, const double *p, struct facts *f)
 {
     weighted_squares(x, p, f);
