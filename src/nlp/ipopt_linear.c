@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+
 #if __has_include(<HSLLoader.h>)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wstrict-prototypes" // its functions say () for (void)
@@ -95,9 +97,7 @@ static void solve(ipfint *job, ipfint *n, double *fact, ipfint *fact_size, ipfin
     const double start = current->clock();
     kkt_factors *kkt = current->kkt[ifact[0]];
     const moray_status status = moray_kkt_factors_solve(kkt, *columns, B);
-    const double error = moray_kkt_factors_error(kkt);
-    if (!(error <= current->error)) // a NaN too
-        current->error = error;
+    current->error = moray_worse(current->error, moray_kkt_factors_error(kkt));
     info[0] = moray_failed(status) ? no_factors : fine;
     current->seconds += current->clock() - start;
 }
