@@ -120,6 +120,17 @@ static void test_two(void)
     check_allowed(s, 0, "e1", phases);
 }
 
+static void test_later_phases(void)
+{
+    struct phase three[] = {{.name = "out", .nx = 1}, {.name = "home", .nx = 1}, {.name = "home", .nx = 1}};
+    const moray_ocp ocp = {.name = "task", .phases = 3, .phase = three};
+    const moray_status status = moray_check_names(&ocp);
+    CHECK(status.code == MORAY_INPUT && !strcmp(status.text, "phases 1 and 2 of problem task are both named home"),
+          "%s", status.text);
+    three[2].name = "away";
+    CHECK_OK(moray_check_names(&ocp), "three phases of three names");
+}
+
 // Columns of files.
 static void test_reserved(void)
 {
@@ -153,6 +164,7 @@ int main(void)
     test_one();
     test_length();
     test_two();
+    test_later_phases();
     test_reserved();
     test_places();
     return tap_done();

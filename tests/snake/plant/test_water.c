@@ -120,6 +120,29 @@ static void test_derivatives(const kind *k, int links)
     moray_water_free(water);
 }
 
+// No entry of the Jacobian is always zero: what the water does not move has none in its place and time.
+static void test_pattern(const kind *k)
+{
+    moray_water *water = water_table(path, water_cubic, 6);
+    moray_map map = make(k, 5, water, (double[]){0, 0});
+    double in[MOST], *values = calloc((size_t)map.jac.nnz, sizeof *values);
+    bool *seen = calloc((size_t)map.jac.nnz, sizeof *seen);
+    int empty = 0;
+    for (int seed = 0; seed < 4; seed++) {
+        point(k, &map, seed, in);
+        map.jacobian(map.self, in, values);
+        for (int e = 0; e < map.jac.nnz; e++)
+            seen[e] = seen[e] || values[e] != 0;
+    }
+    for (int e = 0; e < map.jac.nnz; e++)
+        empty += !seen[e];
+    CHECK(empty == 0, "%s: %d of %d entries are always zero", k->name, empty, map.jac.nnz);
+    free(values);
+    free(seen);
+    moray_map_release(&map);
+    moray_water_free(water);
+}
+
 static void test_kinds_refused(void)
 {
     moray_water *water = water_table(path, water_uniform, 1);
@@ -139,6 +162,7 @@ int main(void)
         test_values(&kinds[k]);
         test_derivatives(&kinds[k], 3);
         test_derivatives(&kinds[k], 4);
+        test_pattern(&kinds[k]);
     }
     test_kinds_refused();
     unlink(path);
