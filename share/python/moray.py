@@ -101,7 +101,7 @@ class _Settings(c.Structure):
     _fields_ = [("scheme", c.c_char_p), ("intervals", c.c_int), ("tolerance", c.c_double),
                 ("mesh_tolerance", c.c_double), ("max_refinements", c.c_int), ("max_iterations", c.c_int),
                 ("max_cpu_seconds", c.c_double), ("max_variables", c.c_int), ("barrier", c.c_double), ("barrier_shared", c.c_bool),
-                ("own_scaling", c.c_bool), ("gauss_newton", c.c_bool), ("print_level", c.c_int),
+                ("rough", c.c_bool), ("own_scaling", c.c_bool), ("gauss_newton", c.c_bool), ("print_level", c.c_int),
                 ("linear_solver", c.c_int), ("timing", c.c_bool), ("ipopt", c.c_void_p), ("n_ipopt", c.c_int),
                 ("progress", _progress), ("observer", c.c_void_p)]
 
