@@ -64,6 +64,20 @@ static moray_status by_lu(void)
     return status;
 }
 
+// What a factorisation needed is there for the next.
+static void test_again(void)
+{
+    moray_ldl *ldl;
+    CHECK_OK(moray_ldl_new(&ldl, regular.n, &regular.pattern), "factors");
+    for (int k = 0; k < 2; k++) {
+        CHECK_OK(moray_ldl_factor(ldl, k ? weak : regular.value, 0.1), "factored");
+        const long before = calls;
+        CHECK_OK(moray_ldl_factor(ldl, k ? weak : regular.value, 0.1), "and again");
+        CHECK(calls == before, "by %ld allocations", calls - before);
+    }
+    moray_ldl_free(ldl);
+}
+
 int main(void)
 {
     start(&regular, MOST);
@@ -79,6 +93,7 @@ int main(void)
         put(&constrained, i, i, 1 + i);
     for (int c = 0; c < 4; c++)
         put(&constrained, 5 + c, c, 2), put(&constrained, 5 + c, 4, 1), put(&constrained, 5 + c, (c + 1) % 4, 0.5);
+    test_again();
     fail_each("LDL'", false, by_ldl);
     fail_each("the null space", false, in_null_space);
     fail_each("the form that suits", false, by_either);

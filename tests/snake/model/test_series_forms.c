@@ -102,6 +102,23 @@ static void test_mapped(void)
         CHECK(out[k] == 0, "no motion stays none: %g", out[k]);
 }
 
+// What a harmonic becomes depends on itself and on the mean amplitude of the first, of the joints that there are.
+static void test_mapped_apart(void)
+{
+    enum { n = 4, all = n * 5 };
+    const moray_robot robot = moray_robot_paper();
+    double at[all], less[all], out[2][all];
+    for (int k = 0; k < all; k++)
+        at[k] = less[k] = 0.02 + 0.03 * cos(1 + 2.1 * k);
+    for (int k = 3 * n; k < all; k++)
+        less[k] = 0;
+    const moray_series both = {n, 2, at}, first = {n, 2, less};
+    moray_series_to_first_principles(&robot, &both, out[0]);
+    moray_series_to_first_principles(&robot, &first, out[1]);
+    for (int k = 0; k < 3 * n; k++)
+        CHECK(out[0][k] == out[1][k] && out[0][k] != 0, "coefficient %d: %g", k, out[0][k]);
+}
+
 // ---- Swimmers ------------------------------------------------------------------------------------------------------
 
 static void is(moray_status status, const char *text)
@@ -169,6 +186,7 @@ int main(void)
     test_of_gait();
     test_basis();
     test_mapped();
+    test_mapped_apart();
     test_swimmers();
     test_parts();
     return tap_done();
