@@ -176,10 +176,10 @@ static inline void snake_control(const snake_state *state, snake_real t, const s
 #define SNAKE_OFFSET_RATE_MAX SNAKE_C(0.05306687416069644) // [rad/s]
 #define SNAKE_SWING_COS SNAKE_C(0.07603648430176917) // what the gait swings the mean heading by: cosine [rad]
 #define SNAKE_SWING_SIN SNAKE_C(0.016170891739412007) // and sine of omega t [rad]
-#define SNAKE_GAIN SNAKE_C(-3.486216601739873) // [rad/rad]; a positive offset turns the robot clockwise
-#define SNAKE_SIGHT SNAKE_C(1.090165209265795) // lookahead [m]
-#define SNAKE_SIGHT_INTEGRAL SNAKE_C(0.10262730785138459) // sigma [m/s]
-#define SNAKE_AHEAD SNAKE_C(0.2097837163748011) // along the path, where its course is taken [m]
+#define SNAKE_GAIN SNAKE_C(-3.48624457858512) // [rad/rad]; a positive offset turns the robot clockwise
+#define SNAKE_SIGHT SNAKE_C(1.0903234277014333) // lookahead [m]
+#define SNAKE_SIGHT_INTEGRAL SNAKE_C(0.10262865298898459) // sigma [m/s]
+#define SNAKE_AHEAD SNAKE_C(0.20978328825319045) // along the path, where its course is taken [m]
 #define SNAKE_PIECES 3 // of the path
 #define SNAKE_LENGTH SNAKE_C(11.141592653589793) // [m]
 #define SNAKE_RADIUS SNAKE_C(2) // of its arcs [m]
