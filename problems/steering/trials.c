@@ -228,7 +228,7 @@ static moray_status take_certificates(const deal *d, const outcome *of)
     return moray_ok();
 }
 
-moray_status steer_run_others(steer_job *job)
+static moray_status run_others(steer_job *job)
 {
     deal d = {.job = job, .runs = 2 * still_to_run(job)};
     outcome of[2 + 2 * STEER_TRIALS] = {0};
@@ -248,7 +248,7 @@ moray_status steer_run_others(steer_job *job)
 
 moray_status steer_run_ready(steer_job *job)
 {
-    MORAY_TRY(steer_run_others(job));
+    MORAY_TRY(run_others(job));
     for (int k = 0; k < job->n_trials; k++)
         if (steer_can_run(job, &job->trial[k]) && job->trial[k].law->tuned)
             MORAY_TRY(unless_late(run_tuned(job, &job->trial[k])));

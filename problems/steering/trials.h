@@ -24,9 +24,6 @@ moray_status steer_tune(steer_job *job, steer_trial *trial);
 moray_status steer_run_ready(steer_job *job);
 bool steer_can_run(const steer_job *job, const steer_trial *trial);
 
-// Certifies the plans that are not yet, and swims what is not tuned.
-moray_status steer_run_others(steer_job *job);
-
 // The best law that leaves some of the trial's numbers out, on the same gait, where it did better; NULL: none did.
 // Tuning simulates roughly, and what hangs by a stroke may come out otherwise with care.
 const steer_trial *steer_better_subset(const steer_trial *trial);
