@@ -18,9 +18,9 @@ static void keep_worst(double *worst, int *where, double value, int here)
 // Relative to 1 + |bound| + size; not above 0 where there is none.
 static double violation(double value, double lower, double upper, double size)
 {
-    if (lower > -MORAY_INFINITY && value < lower)
-        return (lower - value) / (1 + fabs(lower) + size);
-    return upper < MORAY_INFINITY ? (value - upper) / (1 + fabs(upper) + size) : 0;
+    const double below = lower > -MORAY_INFINITY ? (lower - value) / (1 + fabs(lower) + size) : 0;
+    const double above = upper < MORAY_INFINITY ? (value - upper) / (1 + fabs(upper) + size) : 0;
+    return moray_worse(below, above);
 }
 
 // max(1, mean |multiplier|), so that a problem stated in small units does not look unsolved

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+
 static const double singular = 1e-16;   // reciprocal condition beyond which nothing is determined
 static const double regularity = 1e-10; // of active constraints, see fill; in the scale of the solver
 static const double followed = 1e-6;    // residual of a right-hand side, relative
@@ -168,11 +170,8 @@ static double row_scale(const moray_nlp_sensitivity *s, int row)
 static double scaled_norm(const moray_nlp_sensitivity *s, const double *vector)
 {
     double largest = 0;
-    for (int i = 0; i < s->nlp->n + s->nlp->m; i++) {
-        const double size = fabs(vector[i] * row_scale(s, i));
-        if (!(size <= largest))
-            largest = size;
-    }
+    for (int i = 0; i < s->nlp->n + s->nlp->m; i++)
+        largest = moray_worse(largest, fabs(vector[i] * row_scale(s, i)));
     return largest;
 }
 

@@ -191,9 +191,35 @@ static void test_not_a_number(void)
     }
 }
 
+static bool flat(void *self, const double *x, bool fresh, double *values)
+{
+    (void)self, (void)x, (void)fresh, (void)values; // which begin as 0
+    return true;
+}
+
+// A variable that is none, of which no function tells, is told by a bound on either side.
+static void test_variable(void)
+{
+    const double bounds[][2] = {{0, MORAY_INFINITY}, {-MORAY_INFINITY, 0}, {-1, 1}, {1, 1}};
+    for (int k = 0; k < 4; k++) {
+        double x = NAN, z[2] = {0};
+        const moray_nlp nlp = {.n = 1,
+                               .x_lower = &bounds[k][0],
+                               .x_upper = &bounds[k][1],
+                               .gradient = flat,
+                               .constraints = flat,
+                               .jacobian = flat};
+        moray_kkt kkt;
+        CHECK_OK(moray_kkt_error(&nlp, &(moray_iterate){.x = &x, .z_lower = &z[0], .z_upper = &z[1]}, &kkt),
+                 "measured");
+        CHECK(isnan(kkt.feasibility) && isnan(kkt.error) && kkt.worst_constraint == 0, "bounds %d: %g", k, kkt.error);
+    }
+}
+
 int main(void)
 {
     test_definition();
     test_not_a_number();
+    test_variable();
     return tap_done();
 }

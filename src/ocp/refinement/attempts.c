@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "ocp/certificate/saddle.h"
 #include "ocp/diagnosis/diagnosis.h"
 #include "ocp/refinement/campaign.h"
@@ -55,7 +56,7 @@ static bool is_failed(const moray_solution *solution)
     double worst = 0;
     moray_assemble_constraints(solution->transcription, solution->iterate.g);
     for (int i = 0; i < solution->transcription->nlp.m; i++)
-        worst = fmax(worst, fabs(moray_scaled_violation(solution, i)));
+        worst = moray_worse(worst, fabs(moray_scaled_violation(solution, i)));
     return !moray_is_solved(solution) && outcome != MORAY_NLP_INTERRUPTED &&
            !(outcome == MORAY_NLP_STALLED && worst < feasible);
 }
