@@ -72,8 +72,8 @@ MORAY_API moray_status moray_swim_run(moray_swimmer *swimmer, const moray_sim_se
 // How a swimmer is simulated whose joints are on its gait.
 typedef struct moray_swim_on_gait {
     int steps; // at least so many a period; at least 8
-    int order; // of the method: 0 or 4: the classical Runge-Kutta; 3: Kutta's, at two thirds of the time, whose energy
-               // is that of each step's start: right in the mean of a period
+    int order; // of the method: 0 or 4: the classical Runge-Kutta; 3: Kutta's, of three slopes a step in place of
+               // four, whose energy is that of each step's start: right in the mean of a period
 } moray_swim_on_gait;
 
 // The same for a swimmer whose joints begin on the gait, one without a series, with the offset first commanded: (34)
